@@ -1,0 +1,1 @@
+"""FMI co-simulation components for herringbone gearboxes."""

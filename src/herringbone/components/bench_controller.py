@@ -1,0 +1,108 @@
+"""Bench controller: set points of a test cycle, piecewise linear in time, without state.
+
+    speed_setpoint  = speed_factor speed(t)                              for the drive motor
+    torque_setpoint = torque_factor gear_ratio torque(t) min(1, t / load_ramp_time)  for the load motor
+
+The cycle is a CSV file of time [s], speed [r/min or rad/s] and torque [N.m]; the torque is the
+*pinion* torque, so that the load motor behind the gearbox gets gear_ratio times as much. Before the
+first row and after the last one the set points are constant. `load_ramp_time` > 0 applies the
+torque gradually from zero, linearly: the thesis' start of a simulation at speed.
+
+Source: the test control of the thesis, chapter 5 (TCT1000).
+"""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.components.flat_csv import read_flat_csv
+from herringbone.core import Component, Declaration, Kernels, ResourceError, Text, output, parameter
+from herringbone.kernels import steppers
+from herringbone.kernels.jit import kernel
+
+ROWS = 256
+"""Most rows of a cycle."""
+_UNITS = {"time": ("s",), "speed": ("r/min", "rad/s"), "torque": ("N.m",)}
+
+_d = Declaration(
+    "bench_controller",
+    "Set points of a test cycle, from a CSV of time, speed and torque",
+    [
+        output("speed_setpoint", "rad/s", "for the drive motor", nodes=True),
+        output("torque_setpoint", "N.m", "for the load motor", nodes=True),
+        parameter("gear_ratio", "1", "load torque per pinion torque", 3.0, minimum=1e-6),
+        parameter("speed_factor", "1", "multiplies the cycle's speed", 1.0),
+        parameter("torque_factor", "1", "multiplies the cycle's torque", 1.0),
+        parameter("load_ramp_time", "s", "torque rises from zero over this time", 0.0, minimum=0),
+    ],
+    texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv")],
+    tables=1 + 3 * ROWS,
+)
+
+_SPEED, _TORQUE = _d.indices("speed_setpoint", "torque_setpoint")
+_RATIO, _SPEED_FACTOR, _TORQUE_FACTOR, _RAMP, _DEGREE = _d.indices(
+    "gear_ratio", "speed_factor", "torque_factor", "load_ramp_time", "interface_degree"
+)
+_COUNT = _d.first_table
+_TIMES = _COUNT + 1
+_SPEEDS, _TORQUES = _TIMES + ROWS, _TIMES + 2 * ROWS
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    pass
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    last = int(b[_COUNT]) - 1
+    i = 0
+    while i < last and t >= b[_TIMES + i + 1]:
+        i += 1
+    if i == last or t <= b[_TIMES]:
+        speed, torque = b[_SPEEDS + i], b[_TORQUES + i]
+    else:
+        f = (t - b[_TIMES + i]) / (b[_TIMES + i + 1] - b[_TIMES + i])
+        speed = b[_SPEEDS + i] + f * (b[_SPEEDS + i + 1] - b[_SPEEDS + i])
+        torque = b[_TORQUES + i] + f * (b[_TORQUES + i + 1] - b[_TORQUES + i])
+    if t < b[_RAMP]:
+        torque *= max(0.0, t / b[_RAMP])
+    b[_SPEED] = b[_SPEED_FACTOR] * speed
+    b[_TORQUE] = b[_TORQUE_FACTOR] * b[_RATIO] * torque
+
+
+_advance = steppers.source_stepper(_out, _d)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, t, h, int(b[_DEGREE]))
+
+
+def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
+    file = files["cycle"]
+    columns, units = read_flat_csv(file, (), _UNITS)
+    time, speed, torque = (columns[name] for name in _UNITS)
+    if time.size > ROWS:
+        raise ResourceError(f"{file}: {time.size} rows; at most {ROWS}")
+    if (falls := np.flatnonzero(np.diff(time) <= 0.0)).size:
+        i = falls[0]
+        raise ResourceError(f"{file}: time does not rise from {time[i]:g} s to {time[i + 1]:g} s")
+    if units["speed"].strip() == "r/min":
+        speed = speed * math.pi / 30.0
+    block[_COUNT] = time.size
+    for at, values in ((_TIMES, time), (_SPEEDS, speed), (_TORQUES, torque)):
+        block[at : at + time.size] = values
+
+
+def _breakpoints(block: np.ndarray) -> tuple[float, ...]:
+    """Kinks of the cycle and the end of the load ramp."""
+    times = block[_TIMES : _TIMES + int(block[_COUNT])]
+    return (*times.tolist(), float(block[_RAMP]))
+
+
+BENCH_CONTROLLER = Component(
+    _d, Kernels(_step, _rhs, _out), __doc__, load=_load, breakpoints=_breakpoints
+)

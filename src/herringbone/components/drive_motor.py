@@ -1,0 +1,94 @@
+"""Speed-controlled drive motor: rotor, PI controller, torque limit, set-point ramp.
+
+    J w' = tau + T,   phi' = w
+    T = limit(K_p e + K_i x),   e = w_ref - w
+    x' = e + (T - (K_p e + K_i x)) / K_p          (anti-windup by back-calculation)
+    w_ref' = limit((speed_setpoint - w_ref) / ramp_time_constant, +-maximum_acceleration)
+
+`tau` is the torque of the shaft on the rotor. Electrical power is T w / efficiency when driving and
+T w efficiency when braking.
+
+Source: K. J. Astrom and T. Hagglund, Advanced PID Control (2006), section 3.5 (anti-windup).
+"""
+
+import numpy as np
+
+from herringbone.components.ports import flange_body
+from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.kernels import steppers
+from herringbone.kernels.jit import kernel
+
+_d = Declaration(
+    "drive_motor",
+    "Speed-controlled drive motor with torque limit and set-point ramp",
+    [
+        state("angle", "rad", "rotor angle", steady="rotating"),
+        state("speed", "rad/s", "rotor speed"),
+        state("integral", "rad", "integral of the speed error"),
+        state("speed_reference", "rad/s", "set point behind the ramp"),
+        *flange_body("flange"),
+        input_("speed_setpoint", "rad/s", "speed set point"),
+        output("torque", "N.m", "air-gap torque"),
+        output("electrical_power", "W", "power from the supply, negative when braking"),
+        parameter("inertia", "kg.m2", "rotor inertia", 0.08, minimum=1e-9),
+        parameter("proportional_gain", "N.m.s/rad", "K_p", 30.0, minimum=1e-9),
+        parameter("integral_gain", "N.m/rad", "K_i", 600.0, minimum=0),
+        parameter("torque_limit", "N.m", "largest torque", 1000.0, minimum=0),
+        parameter("maximum_acceleration", "rad/s2", "of the set point", 1e4, minimum=1e-6),
+        parameter("ramp_time_constant", "s", "of the set point", 1e-3, minimum=1e-6),
+        parameter("efficiency", "1", "electrical to mechanical", 0.93, minimum=0.01, maximum=1),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-3),
+    ],
+    work=steppers.body_work(4, 2),
+)
+
+_ANGLE, _SPEED, _INTEGRAL, _REFERENCE = _d.indices(
+    "angle", "speed", "integral", "speed_reference"
+)
+_TAU, _SETPOINT, _PHI, _W, _A = _d.indices(
+    "flange.tau", "speed_setpoint", "flange.phi", "flange.w", "flange.a"
+)
+_TORQUE, _POWER = _d.indices("torque", "electrical_power")
+_INERTIA, _K_P, _K_I, _LIMIT, _MAX_ACCELERATION, _TIME_CONSTANT, _EFFICIENCY = _d.indices(
+    "inertia", "proportional_gain", "integral_gain", "torque_limit", "maximum_acceleration",
+    "ramp_time_constant", "efficiency",
+)  # fmt: skip
+_MICRO_STEP, _DEGREE = _d.indices("micro_step", "interface_degree")
+
+
+@kernel
+def _torque(b: np.ndarray) -> tuple[float, float]:
+    """Torque [N m] and torque before the limit."""
+    demand = b[_K_P] * (b[_REFERENCE] - b[_SPEED]) + b[_K_I] * b[_INTEGRAL]
+    return max(-b[_LIMIT], min(demand, b[_LIMIT])), demand
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    torque, demand = _torque(b)
+    dx[_ANGLE] = b[_SPEED]
+    dx[_SPEED] = (b[_TAU] + torque) / b[_INERTIA]
+    dx[_INTEGRAL] = b[_REFERENCE] - b[_SPEED] + (torque - demand) / b[_K_P]
+    ramp = (b[_SETPOINT] - b[_REFERENCE]) / b[_TIME_CONSTANT]
+    dx[_REFERENCE] = max(-b[_MAX_ACCELERATION], min(ramp, b[_MAX_ACCELERATION]))
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    torque, _ = _torque(b)
+    b[_PHI], b[_W] = b[_ANGLE], b[_SPEED]
+    b[_A] = (b[_TAU] + torque) / b[_INERTIA]
+    b[_TORQUE] = torque
+    power = torque * b[_SPEED]
+    b[_POWER] = power / b[_EFFICIENCY] if power > 0.0 else power * b[_EFFICIENCY]
+
+
+_advance = steppers.body_stepper(_rhs, _out, _d)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
+
+
+DRIVE_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__)

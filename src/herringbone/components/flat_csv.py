@@ -1,0 +1,83 @@
+"""The flat CSV files that FMUs read: one `# units:` line, a header row, then rows.
+
+    # units: load N, phase 1, stiffness N/m
+    side,load,phase,stiffness
+    left,56.306,0.0,8.22e8
+"""
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.core import ResourceError
+
+
+def _units(line: str, file: Path) -> dict[str, str]:
+    _, _, text = line.partition("# units:")
+    if not text:
+        raise ResourceError(f"{file}: the first line must be '# units: <column> <unit>, ...'")
+    return dict(item.split(maxsplit=1) for item in text.strip().split(",") if len(item.split()) > 1)
+
+
+def _check_units(found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: Path) -> None:
+    for column, units in wanted.items():
+        unit = found.get(column, "").strip()
+        if unit not in units:
+            raise ResourceError(
+                f"{file}: column '{column}' has unit '{unit or 'none'}' in the '# units:' line; "
+                f"it takes {' or '.join(units)}"
+            )
+
+
+def read_flat_csv(
+    file: Path, texts: tuple[str, ...], numbers: Mapping[str, tuple[str, ...]], *, more: str = ""
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Read a flat CSV file.
+
+    Args:
+        file: the file.
+        texts: columns of text.
+        numbers: columns of numbers, with the units that each may have.
+        more: if given, all further columns are numbers with the unit that stands under this name.
+
+    Returns:
+        Columns by name, and the unit of each column of numbers.
+
+    Raises:
+        ResourceError: not readable, wrong unit, missing column, or a value that is no finite number.
+    """
+    try:
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ResourceError(f"cannot read {file}: {error}") from error
+    units = _units(lines[0] if lines else "", file)
+    _check_units(units, numbers, file)
+    rows = [(n, r) for n, r in enumerate(csv.reader(lines), 1) if r and not r[0].startswith("#")]
+    if len(rows) < 2:
+        raise ResourceError(f"{file}: it has no rows")
+    header = [name.strip() for name in rows[0][1]]
+    missing = [name for name in (*texts, *numbers) if name not in header]
+    if missing:
+        raise ResourceError(f"{file}: column {', '.join(missing)} is missing; it has {header}")
+    extra = [name for name in header if name not in texts and name not in numbers]
+    if extra and not more:
+        raise ResourceError(f"{file}: column {', '.join(extra)} is unknown")
+    columns: dict[str, list] = {name: [] for name in header}
+    for line, row in rows[1:]:
+        if len(row) != len(header):
+            raise ResourceError(f"{file}, line {line}: {len(row)} fields, {len(header)} expected")
+        for name, text in zip(header, row, strict=True):
+            columns[name].append(text.strip() if name in texts else _number(text, name, file, line))
+    return {name: np.array(values) for name, values in columns.items()}, units
+
+
+def _number(text: str, column: str, file: Path, line: int) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = np.nan
+    if not np.isfinite(value):
+        raise ResourceError(f"{file}, line {line}: {column} = '{text}' is not a finite number")
+    return value

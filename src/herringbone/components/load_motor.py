@@ -1,0 +1,79 @@
+"""Torque-controlled load motor: a generator that feeds its power back (closed power flow).
+
+    J w' = tau - T - viscous_friction w,   phi' = w
+    T' = (torque_setpoint - T) / torque_time_constant
+
+T brakes rotation in driving direction. Of the mechanical power T w the generator recovers
+`efficiency`; the rest is lost, and so is the friction power:
+
+    recovered_power + loss_power = T w + viscous_friction w^2
+
+Source: the closed-power-flow rig of the thesis, chapter 5; data are choices of this project.
+"""
+
+import numpy as np
+
+from herringbone.components.ports import flange_body
+from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.kernels import steppers
+from herringbone.kernels.jit import kernel
+
+_d = Declaration(
+    "load_motor",
+    "Torque-controlled load motor that recovers its power",
+    [
+        state("angle", "rad", "rotor angle", steady="rotating"),
+        state("speed", "rad/s", "rotor speed"),
+        state("braking_torque", "N.m", "air-gap torque against rotation"),
+        *flange_body("flange"),
+        input_("torque_setpoint", "N.m", "braking torque set point"),
+        output("torque", "N.m", "air-gap torque against rotation"),
+        output("recovered_power", "W", "power fed back to the supply"),
+        output("loss_power", "W", "generator and friction losses"),
+        parameter("inertia", "kg.m2", "rotor inertia", 2.0, minimum=1e-9),
+        parameter("viscous_friction", "N.m.s/rad", "rotor friction", 0.0, minimum=0),
+        parameter("torque_time_constant", "s", "of the torque control", 5e-3, minimum=1e-6),
+        parameter("efficiency", "1", "mechanical to electrical", 0.93, minimum=0.01, maximum=1),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-3),
+    ],
+    work=steppers.body_work(3, 2),
+)
+
+_ANGLE, _SPEED, _BRAKING = _d.indices("angle", "speed", "braking_torque")
+_TAU, _SETPOINT, _PHI, _W, _A = _d.indices(
+    "flange.tau", "torque_setpoint", "flange.phi", "flange.w", "flange.a"
+)
+_TORQUE, _RECOVERED, _LOSS = _d.indices("torque", "recovered_power", "loss_power")
+_INERTIA, _FRICTION, _TIME_CONSTANT, _EFFICIENCY, _MICRO_STEP, _DEGREE = _d.indices(
+    "inertia", "viscous_friction", "torque_time_constant", "efficiency", "micro_step",
+    "interface_degree",
+)  # fmt: skip
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    dx[_ANGLE] = b[_SPEED]
+    dx[_SPEED] = (b[_TAU] - b[_BRAKING] - b[_FRICTION] * b[_SPEED]) / b[_INERTIA]
+    dx[_BRAKING] = (b[_SETPOINT] - b[_BRAKING]) / b[_TIME_CONSTANT]
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    friction = b[_FRICTION] * b[_SPEED]
+    b[_PHI], b[_W] = b[_ANGLE], b[_SPEED]
+    b[_A] = (b[_TAU] - b[_BRAKING] - friction) / b[_INERTIA]
+    b[_TORQUE] = b[_BRAKING]
+    power = b[_BRAKING] * b[_SPEED]
+    b[_RECOVERED] = power * b[_EFFICIENCY] if power > 0.0 else power / b[_EFFICIENCY]
+    b[_LOSS] = power - b[_RECOVERED] + friction * b[_SPEED]
+
+
+_advance = steppers.body_stepper(_rhs, _out, _d)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
+
+
+LOAD_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__)

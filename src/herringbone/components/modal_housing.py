@@ -1,0 +1,206 @@
+"""Housing as oscillators: modes with shapes at the four bearing seats.
+
+    q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = sum over seats s and axes d of  shape_i(s, d) f(s, d)
+    s(s, d) = sum_i shape_i(s, d) q_i,   v(s, d) = sum_i shape_i(s, d) q_i'
+
+Shapes are mass-normalised [kg^-1/2]. f is the force on the housing. Each oscillator is propagated
+exactly for forces that are polynomials over the macro step (see `kernels.modal`), for any step.
+Positions and velocities never depend on the inputs directly; the accelerations do.
+
+`start.<seat>.f_x` ... are the forces under which the housing is at rest at the start.
+
+Modes of kind "residual" are pseudo modes that make the static compliance at the seats exact;
+"rigid" modes have no stiffness.
+
+Source: K. S. Bathe, Finite Element Procedures, section 9.3 (mode superposition).
+"""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.components.modal_data import read_modes
+from herringbone.components.ports import HALVES
+from herringbone.core import (
+    Component,
+    Declaration,
+    Kernels,
+    Text,
+    Variable,
+    input_,
+    output,
+    parameter,
+)
+from herringbone.kernels import modal
+from herringbone.kernels.jit import kernel
+from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
+from herringbone.kernels.steppers import NOT_FINITE
+
+MODES = 64
+"""Most modes that the component takes."""
+_DOFS = tuple((seat, axis) for seat in HALVES for axis in "xyz")
+_N = len(_DOFS)
+_FORCES = tuple(f"{seat}.f_{axis}" for seat, axis in _DOFS)
+
+
+def _port(seat: str, axis: str) -> list[Variable]:
+    at = f"of {seat} along {axis}"
+    return [
+        input_(f"{seat}.f_{axis}", "N", f"force on the housing at {seat} along {axis}"),
+        output(f"{seat}.s_{axis}", "m", f"position {at}", nodes=True),
+        output(f"{seat}.v_{axis}", "m/s", f"velocity {at}", nodes=True),
+        output(f"{seat}.a_{axis}", "m/s2", f"acceleration {at}", feedthrough=_FORCES),
+        parameter(f"start.{seat}.f_{axis}", "N", "force under which the start is at rest", 0.0),
+    ]
+
+
+# Tables: number of modes, angular frequency, damping ratio, shapes by mode.
+_TABLE_SIZE = 1 + MODES * (2 + _N)
+# Work: the step for which the propagators hold, propagators, scratch, polynomial forces.
+_PROPAGATORS = 1
+_SCRATCH = _PROPAGATORS + MODES * modal.PROPAGATOR
+_POLYNOMIALS = _SCRATCH + modal.SCRATCH_SIZE
+_MODAL_FORCE = _POLYNOMIALS + _N * STRIDE
+_WORK = _MODAL_FORCE + STRIDE
+
+_d = Declaration(
+    "modal_housing",
+    "Gearbox housing as oscillators with shapes at the four bearing seats",
+    [v for seat, axis in _DOFS for v in _port(seat, axis)],
+    texts=[
+        Text("modes", "frequencies and damping, CSV", "modes.csv"),
+        Text("shapes", "mass-normalised shapes at the seats, CSV", "shapes.csv"),
+    ],
+    hidden_states=2 * MODES,
+    tables=_TABLE_SIZE,
+    work=_WORK,
+)
+
+_F, _START = _d.indices(*_FORCES), _d.indices(*(f"start.{name}" for name in _FORCES))
+_S, _V, _A = (_d.indices(*(f"{seat}.{q}_{axis}" for seat, axis in _DOFS)) for q in "sva")
+_FIRST_INPUT, _FIRST_OUTPUT, _OUTPUTS = _d.first_input, _d.first_output, len(_d.node_outputs)
+_DEGREE = _d.index["interface_degree"]
+_COUNT = _d.first_table
+_OMEGA = _COUNT + 1
+_ZETA = _OMEGA + MODES
+_SHAPES = _ZETA + MODES
+
+
+@kernel
+def _force(b: np.ndarray, mode: int) -> float:
+    """Modal force at the present inputs."""
+    total = 0.0
+    for k in range(_N):
+        total += b[_SHAPES + mode * _N + k] * b[_F[k]]
+    return total
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    count = int(b[_COUNT])
+    for i in range(MODES):
+        dx[i] = b[MODES + i]
+        dx[MODES + i] = 0.0
+    for i in range(count):
+        w = b[_OMEGA + i]
+        dx[MODES + i] = _force(b, i) - w * (2.0 * b[_ZETA + i] * b[MODES + i] + w * b[i])
+
+
+@kernel
+def _motion(b: np.ndarray) -> None:
+    """Write positions and velocities of the seats."""
+    for k in range(_N):
+        b[_S[k]] = b[_V[k]] = 0.0
+    for i in range(int(b[_COUNT])):
+        row = _SHAPES + i * _N
+        for k in range(_N):
+            b[_S[k]] += b[row + k] * b[i]
+            b[_V[k]] += b[row + k] * b[MODES + i]
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    _motion(b)
+    for k in range(_N):
+        b[_A[k]] = 0.0
+    for i in range(int(b[_COUNT])):
+        w = b[_OMEGA + i]
+        a = _force(b, i) - w * (2.0 * b[_ZETA + i] * b[MODES + i] + w * b[i])
+        for k in range(_N):
+            b[_A[k]] += b[_SHAPES + i * _N + k] * a
+
+
+@kernel
+def _update_propagators(b: np.ndarray, w: np.ndarray, h: float) -> None:
+    if w[0] == h:
+        return
+    scratch = w[_SCRATCH:_POLYNOMIALS]
+    for i in range(int(b[_COUNT])):
+        at = _PROPAGATORS + i * modal.PROPAGATOR
+        modal.propagator(b[_OMEGA + i], b[_ZETA + i], h, w, at, scratch)
+    w[0] = h
+
+
+@kernel
+def _propagate(b: np.ndarray, w: np.ndarray, degree: int) -> None:
+    """Advance all modes by the step of the propagators, under the forces in the work space."""
+    for i in range(int(b[_COUNT])):
+        at = _PROPAGATORS + i * modal.PROPAGATOR
+        q = w[at] * b[i] + w[at + 1] * b[MODES + i]
+        v = w[at + 2] * b[i] + w[at + 3] * b[MODES + i]
+        for j in range(degree + 1):
+            force = 0.0
+            for k in range(_N):
+                force += b[_SHAPES + i * _N + k] * w[_POLYNOMIALS + k * STRIDE + j]
+            q += w[at + 4 + 2 * j] * force
+            v += w[at + 5 + 2 * j] * force
+        b[i], b[MODES + i] = q, v
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    degree = int(b[_DEGREE])
+    intervals = max(degree, 1)
+    _update_propagators(b, w, h / intervals)
+    for node in range(1, intervals + 1):
+        for k in range(_N):
+            at = _POLYNOMIALS + k * STRIDE
+            monomial(b, _F[k], degree, w, at)
+            shift(w, at, degree, (node - 1.0) / intervals, 1.0 / intervals)
+        _propagate(b, w, degree)
+        if node < intervals:
+            _motion(b)
+            store_node(b, _FIRST_OUTPUT, _OUTPUTS, node)
+    for k in range(_N):
+        w[_POLYNOMIALS + k] = b[_F[k]]
+        b[_F[k]] = b[_F[k] + degree]
+    _out(b, t + h)
+    store_node(b, _FIRST_OUTPUT, _OUTPUTS, intervals)
+    for k in range(_N):
+        b[_F[k]] = w[_POLYNOMIALS + k]
+    return 0 if all_finite(b, 0, 2 * MODES) else NOT_FINITE
+
+
+def _start(block: np.ndarray) -> None:
+    """Static deflection under the start forces; rigid modes stay at zero."""
+    count = int(block[_COUNT])
+    shapes = block[_SHAPES : _SHAPES + count * _N].reshape(count, _N)
+    omega = block[_OMEGA : _OMEGA + count]
+    force = shapes @ block[list(_START)]
+    block[: 2 * MODES] = 0.0
+    block[:count] = np.divide(force, omega**2, out=np.zeros(count), where=omega > 0.0)
+
+
+def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
+    frequency_hz, damping_ratio, shapes = read_modes(files["modes"], files["shapes"], _DOFS, MODES)
+    count = frequency_hz.size
+    block[_COUNT : _COUNT + _TABLE_SIZE] = 0.0
+    block[_COUNT] = count
+    block[_OMEGA : _OMEGA + count] = 2.0 * math.pi * frequency_hz
+    block[_ZETA : _ZETA + count] = damping_ratio
+    block[_SHAPES : _SHAPES + count * _N] = shapes.T.ravel()
+
+
+MODAL_HOUSING = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_load, start=_start)

@@ -1,0 +1,83 @@
+"""Massless torsional spring-damper between two flanges; the torque transducer.
+
+    torque = stiffness (phi_a - phi_b) + damping (w_a - w_b)
+    tau_a = -torque,  tau_b = +torque
+
+`torque` is the torque that flange a hands to flange b, `speed` the mean of both speeds: what the
+transducer shows. Both flanges' motions belong to the same instant: never hold one side's angle
+against the other side's newer one.
+
+A master that steps all FMUs in parallel sees this element one macro step h late; the pair of
+rotors then is stable only for h < 4/3 zeta / w, with w, zeta of the local two-rotor oscillation.
+
+Source: Modelica.Mechanics.Rotational.Components.SpringDamper (names and signs).
+"""
+
+import numpy as np
+
+from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
+from herringbone.kernels import steppers
+from herringbone.kernels.jit import kernel
+
+_MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
+
+_d = Declaration(
+    "shaft_coupling",
+    "Massless torsional spring-damper with torque and speed transducer",
+    [
+        input_("flange_a.phi", "rad", "angle of flange a"),
+        input_("flange_a.w", "rad/s", "angular velocity of flange a"),
+        input_("flange_b.phi", "rad", "angle of flange b"),
+        input_("flange_b.w", "rad/s", "angular velocity of flange b"),
+        output(
+            "flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True
+        ),
+        output(
+            "flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True
+        ),
+        output("torque", "N.m", "torque handed from a to b", feedthrough=_MOTION),
+        output("speed", "rad/s", "mean speed", feedthrough=("flange_a.w", "flange_b.w")),
+        output("phi_rel", "rad", "twist", feedthrough=("flange_a.phi", "flange_b.phi")),
+        output(
+            "w_rel",
+            "rad/s",
+            "rate of the twist",
+            feedthrough=("flange_a.w", "flange_b.w"),
+            steady="zero",
+        ),
+        parameter("stiffness", "N.m/rad", "torsional stiffness", 6e4, minimum=0),
+        parameter("damping", "N.m.s/rad", "torsional damping", 5.0, minimum=0),
+    ],
+    work=steppers.element_work(len(_MOTION)),
+)
+
+_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
+_TAU_A, _TAU_B, _TORQUE, _SPEED, _PHI_REL, _W_REL = _d.indices(
+    "flange_a.tau", "flange_b.tau", "torque", "speed", "phi_rel", "w_rel"
+)
+_STIFFNESS, _DAMPING, _DEGREE = _d.indices("stiffness", "damping", "interface_degree")
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    pass
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    b[_PHI_REL] = b[_PHI_A] - b[_PHI_B]
+    b[_W_REL] = b[_W_A] - b[_W_B]
+    b[_TORQUE] = b[_STIFFNESS] * b[_PHI_REL] + b[_DAMPING] * b[_W_REL]
+    b[_TAU_A], b[_TAU_B] = -b[_TORQUE], b[_TORQUE]
+    b[_SPEED] = 0.5 * (b[_W_A] + b[_W_B])
+
+
+_advance = steppers.element_stepper(_out, _d)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, w, t, h, int(b[_DEGREE]))
+
+
+SHAFT_COUPLING = Component(_d, Kernels(_step, _rhs, _out), __doc__)

@@ -1,0 +1,35 @@
+"""Declarations that everything else is derived from: variables, blocks, units, errors, outcomes."""
+
+from herringbone.core.component import Component, Kernels
+from herringbone.core.declaration import Declaration
+from herringbone.core.errors import (
+    FmuError,
+    HerringboneError,
+    ParameterError,
+    ResourceError,
+    StructureError,
+)
+from herringbone.core.instance import Instance
+from herringbone.core.outcome import Outcome, OutcomeKind
+from herringbone.core.variable import Text, Variable, input_, local, output, parameter, state
+
+__all__ = [
+    "Component",
+    "Declaration",
+    "FmuError",
+    "HerringboneError",
+    "Instance",
+    "Kernels",
+    "Outcome",
+    "OutcomeKind",
+    "ParameterError",
+    "ResourceError",
+    "StructureError",
+    "Text",
+    "Variable",
+    "input_",
+    "local",
+    "output",
+    "parameter",
+    "state",
+]

@@ -1,0 +1,63 @@
+"""A component: its declaration bound to the kernels that compute it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.core.declaration import Declaration
+
+
+class Kernels(NamedTuple):
+    """The three compiled functions of a component, on its block `b` and work space `w`.
+
+    step(b, w, t, h) -> int: advance from t to t + h [s], any h >= 0; 0 is success.
+    rhs(b, t, dx): write the derivatives of all states.
+    out(b, t): write all outputs from states and inputs.
+    """
+
+    step: Callable[[np.ndarray, np.ndarray, float, float], int]
+    rhs: Callable[[np.ndarray, float, np.ndarray], None]
+    out: Callable[[np.ndarray, float], None]
+
+
+def _no_resources(block: np.ndarray, files: Mapping[str, Path]) -> None:
+    del block, files
+
+
+def _no_breakpoints(block: np.ndarray) -> tuple[float, ...]:
+    del block
+    return ()
+
+
+def _no_start(block: np.ndarray) -> None:
+    del block
+
+
+@dataclass(frozen=True)
+class Component:
+    """A component that can be instantiated.
+
+    Attributes:
+        declaration: variables and layout.
+        kernels: compiled functions.
+        equations: the docstring of the component's module, Markdown.
+        load: reads the resource files (by String parameter) into the tables of a block;
+            raises ResourceError.
+        start: makes a block's states from its start parameters, at the end of initialisation.
+        breakpoints: times [s] at which the right-hand side is not smooth.
+    """
+
+    declaration: Declaration
+    kernels: Kernels
+    equations: str
+    load: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
+    start: Callable[[np.ndarray], None] = _no_start
+    breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
+
+    @property
+    def name(self) -> str:
+        """FMI model identifier."""
+        return self.declaration.name

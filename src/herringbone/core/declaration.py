@@ -1,0 +1,170 @@
+"""A component's declaration and the layout of its block.
+
+The block is one float64 array: mutable part (states, hidden states, inputs, outputs, locals),
+then parameters, then tables. The FMI value reference of a real is its index in the block.
+"""
+
+from collections.abc import Iterable
+from functools import cached_property
+
+from herringbone.core.errors import ParameterError, StructureError
+from herringbone.core.units import base_exponents
+from herringbone.core.variable import NODES, Causality, Text, Variable, parameter
+
+INTERFACE_DEGREE = "interface_degree"
+
+
+def node_name(name: str, node: int) -> str:
+    """Name of a signal's value at node 1 ... NODES."""
+    return f"{name}.node{node}"
+
+
+class Declaration:
+    """What a component is, without how it is computed.
+
+    Args:
+        name: FMI model identifier and folder name.
+        description: one line.
+        variables: states first or not, in the order in which they are shown.
+        texts: String parameters that name resource files.
+        hidden_states: states that are no FMI variables, such as modal coordinates.
+        tables: length of the table part of the block.
+        work: length of the work space that the kernels need.
+
+    A component with inputs also gets the tunable parameter `interface_degree` (0 to 4).
+
+    Raises:
+        StructureError: a name stands twice, a unit is unknown, or a feedthrough names no input.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        description: str,
+        variables: Iterable[Variable],
+        *,
+        texts: Iterable[Text] = (),
+        hidden_states: int = 0,
+        tables: int = 0,
+        work: int = 0,
+    ) -> None:
+        self.name = name
+        self.description = description
+        self.texts = tuple(texts)
+        self.hidden_states = hidden_states
+        self.tables = tables
+        self.work = work
+        self.variables = (
+            *variables,
+            parameter(
+                INTERFACE_DEGREE,
+                "1",
+                "degree of the signals inside a macro step: 0 holds, n uses n nodes",
+                0.0,
+                minimum=0,
+                maximum=NODES,
+                tunable=True,
+            ),
+        )
+        self._check()
+
+    def _check(self) -> None:
+        names = [v.name for v in self.variables] + [t.name for t in self.texts]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise StructureError(f"{self.name}: declared twice: {', '.join(twice)}")
+        inputs = {v.name for v in self.inputs}
+        for v in self.variables:
+            base_exponents(v.unit)
+            unknown = set(v.feedthrough) - inputs
+            if unknown:
+                raise StructureError(f"{self.name}.{v.name}: feedthrough from unknown {unknown}")
+
+    def _select(self, causality: Causality) -> tuple[Variable, ...]:
+        return tuple(v for v in self.variables if v.causality is causality)
+
+    @cached_property
+    def states(self) -> tuple[Variable, ...]:
+        """The states that are FMI variables."""
+        return tuple(v for v in self.variables if v.state)
+
+    @cached_property
+    def inputs(self) -> tuple[Variable, ...]:
+        """All inputs; each is a polynomial signal with nodes."""
+        return self._select(Causality.INPUT)
+
+    @cached_property
+    def outputs(self) -> tuple[Variable, ...]:
+        """All outputs; those with nodes come first in the block."""
+        return self._select(Causality.OUTPUT)
+
+    @cached_property
+    def parameters(self) -> tuple[Variable, ...]:
+        """All real parameters."""
+        return self._select(Causality.PARAMETER)
+
+    @property
+    def state_count(self) -> int:
+        """Number of states, hidden ones included; they lie at the start of the block."""
+        return len(self.states) + self.hidden_states
+
+    @cached_property
+    def first_input(self) -> int:
+        """Index of the first input; inputs lie `NODES + 1` apart: value, node 1 ... node 4."""
+        return self.state_count
+
+    @cached_property
+    def node_outputs(self) -> tuple[Variable, ...]:
+        """The outputs that have nodes."""
+        return tuple(v for v in self.outputs if v.nodes)
+
+    @cached_property
+    def first_output(self) -> int:
+        """Index of the first output with nodes; these lie `NODES + 1` apart."""
+        return self.first_input + len(self.inputs) * (NODES + 1)
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """Index in the block of every real variable, nodes included."""
+        index = {v.name: i for i, v in enumerate(self.states)}
+        position = self.first_input
+        plain_outputs = tuple(v for v in self.outputs if not v.nodes)
+        locals_ = tuple(v for v in self._select(Causality.LOCAL) if not v.state)
+        for v in (*self.inputs, *self.node_outputs, *plain_outputs, *locals_, *self.parameters):
+            index[v.name] = position
+            position += 1
+            if v.nodes:
+                for node in range(1, NODES + 1):
+                    index[node_name(v.name, node)] = position
+                    position += 1
+        return index
+
+    @cached_property
+    def mutable_size(self) -> int:
+        """Length of the part that a step may change."""
+        return self.index[self.parameters[0].name]
+
+    @cached_property
+    def first_table(self) -> int:
+        """Index of the first table entry."""
+        return self.mutable_size + len(self.parameters)
+
+    @property
+    def size(self) -> int:
+        """Length of the block."""
+        return self.first_table + self.tables
+
+    def indices(self, *names: str) -> tuple[int, ...]:
+        """Indices of several variables, as constants for a kernel."""
+        return tuple(self.index[name] for name in names)
+
+    def variable(self, name: str) -> Variable:
+        """The variable of that name.
+
+        Raises:
+            ParameterError: there is none.
+        """
+        for v in self.variables:
+            if v.name == name:
+                return v
+        raise ParameterError(f"{self.name} has no variable '{name}'")

@@ -1,0 +1,21 @@
+"""One tree of errors. A message names the place, the value with its unit, and what to do next."""
+
+
+class HerringboneError(Exception):
+    """Base of every error that the package raises on bad input."""
+
+
+class ParameterError(HerringboneError):
+    """A variable is unknown, missing, of the wrong type or outside its range."""
+
+
+class ResourceError(HerringboneError):
+    """A file that a component reads (table, modes, cycle) is missing or malformed."""
+
+
+class StructureError(HerringboneError):
+    """A system cannot be wired: unknown name, unit, direction, double source, algebraic loop."""
+
+
+class FmuError(HerringboneError):
+    """An FMU cannot be read, loaded, instantiated or initialised."""

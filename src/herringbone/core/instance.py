@@ -1,0 +1,142 @@
+"""An instance of a component: its block, its work space, and checked access by name."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.core.component import Component
+from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.errors import ParameterError, ResourceError
+from herringbone.core.paths import resources_folder
+from herringbone.core.variable import Causality, Variable
+
+
+class Instance:
+    """One instance of a component.
+
+    Block and work space lie in one allocation, block first, so that one address reaches both.
+
+    Args:
+        component: what it is an instance of.
+        name: instance name, for messages.
+        resources: folder for relative resource names; the component's own if not given.
+    """
+
+    def __init__(self, component: Component, name: str, resources: Path | None = None) -> None:
+        declaration = component.declaration
+        self.component = component
+        self.name = name
+        self.resources = resources or resources_folder(component.name)
+        self.memory = np.zeros(declaration.size + max(declaration.work, 1))
+        self.block = self.memory[: declaration.size]
+        self.work = self.memory[declaration.size :]
+        self.texts = {text.name: text.start for text in declaration.texts}
+        for variable in declaration.variables:
+            self.block[declaration.index[variable.name]] = variable.start
+        self._stale_resources = bool(self.texts)
+
+    def _known(self, name: str) -> int:
+        try:
+            return self.component.declaration.index[name]
+        except KeyError:
+            raise ParameterError(
+                f"{self.name}: there is no variable '{name}'; "
+                f"'herringbone list {self.component.name}' shows them"
+            ) from None
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.block[self._known(name)])
+
+    def set(self, name: str, value: float | str) -> None:
+        """Set a real variable or a String parameter.
+
+        Raises:
+            ParameterError: unknown name, wrong type, not finite, or outside the range.
+        """
+        if name in self.texts:
+            if not isinstance(value, str):
+                raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a file name")
+            if value != self.texts[name]:
+                self.texts[name] = value
+                self._stale_resources = True
+            return
+        index = self._known(name)
+        if isinstance(value, str | bool):
+            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a number")
+        if index >= self.component.declaration.mutable_size:
+            check_value(self.name, self.component.declaration.variable(name), float(value))
+        elif not math.isfinite(value):
+            raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
+        self.block[index] = value
+
+    def load_resources(self) -> None:
+        """Read the resource files if a String parameter changed since the last time.
+
+        Raises:
+            ResourceError: a file is missing or malformed.
+        """
+        if not self._stale_resources:
+            return
+        files = {name: self._resource(name, text) for name, text in self.texts.items()}
+        try:
+            self.component.load(self.block, files)
+        except ResourceError as error:
+            raise ResourceError(f"{self.name}: {error}") from error
+        self.work[:] = 0.0
+        self._stale_resources = False
+
+    def _resource(self, name: str, text: str) -> Path:
+        file = Path(text) if Path(text).is_absolute() else self.resources / text
+        if not file.is_file():
+            raise ResourceError(
+                f"{self.name}.{name} = '{text}': there is no file {file}; "
+                f"give an absolute path or a name in {self.resources}"
+            )
+        return file
+
+    def initialise(self, time: float = 0.0) -> None:
+        """Check parameters, read resources, make the states from start parameters, compute outputs.
+
+        Raises:
+            ParameterError, ResourceError: see `set` and `load_resources`.
+        """
+        declaration = self.component.declaration
+        for variable in declaration.parameters:
+            check_value(self.name, variable, self.block[declaration.index[variable.name]])
+        self.load_resources()
+        self.component.start(self.block)
+        self.component.kernels.out(self.block, time)
+
+    def step(self, time: float, step_size: float) -> int:
+        """Advance the block; 0 is success."""
+        return self.component.kernels.step(self.block, self.work, float(time), float(step_size))
+
+    def first_not_finite(self) -> tuple[str, float] | None:
+        """Name and value of the first variable that is NaN or infinite, if any."""
+        declaration = self.component.declaration
+        for name, index in declaration.index.items():
+            if not math.isfinite(self.block[index]):
+                return name, float(self.block[index])
+        hidden = self.block[len(declaration.states) : declaration.state_count]
+        bad = np.flatnonzero(~np.isfinite(hidden))
+        return (f"hidden state {bad[0] + 1}", float(hidden[bad[0]])) if bad.size else None
+
+
+def check_value(instance: str, variable: Variable, value: float) -> None:
+    """Check that a value is finite and, for a parameter, in its range.
+
+    Raises:
+        ParameterError: it is not.
+    """
+    where = f"{instance}.{variable.name} = {value:g} {variable.unit}"
+    if not math.isfinite(value):
+        raise ParameterError(f"{where}: it must be finite")
+    if variable.causality is Causality.PARAMETER and not (
+        variable.minimum <= value <= variable.maximum
+    ):
+        raise ParameterError(
+            f"{where}: it must lie between {variable.minimum:g} and {variable.maximum:g}"
+        )
+    if variable.name == INTERFACE_DEGREE and value != int(value):
+        raise ParameterError(f"{where}: it must be a whole number")

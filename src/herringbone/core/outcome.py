@@ -1,0 +1,35 @@
+"""How a run ended. Failures inside a run are outcomes with a culprit and a remedy, not exceptions."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class OutcomeKind(StrEnum):
+    """The ways in which a run ends."""
+
+    COMPLETED = "completed"
+    INTERRUPTED = "interrupted"
+    DIVERGED = "diverged"
+    PART_FAILED = "part_failed"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How, when and why a run ended.
+
+    Attributes:
+        kind: the way in which the run ended.
+        time: simulated time that was reached [s].
+        culprit: `instance.variable` or instance that ended the run early; empty if none did.
+        message: one line that says what happened and what to do next; empty if completed.
+    """
+
+    kind: OutcomeKind
+    time: float
+    culprit: str = ""
+    message: str = ""
+
+    @property
+    def completed(self) -> bool:
+        """True if the run reached its end."""
+        return self.kind is OutcomeKind.COMPLETED

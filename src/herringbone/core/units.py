@@ -1,0 +1,41 @@
+"""The units that variables may carry, as exponents of the SI base units."""
+
+from typing import Final
+
+from herringbone.core.errors import StructureError
+
+BASE_UNITS: Final = ("kg", "m", "s", "rad")
+
+UNITS: Final[dict[str, dict[str, int]]] = {
+    "1": {},
+    "s": {"s": 1},
+    "m": {"m": 1},
+    "m/s": {"m": 1, "s": -1},
+    "m/s2": {"m": 1, "s": -2},
+    "rad": {"rad": 1},
+    "rad/s": {"rad": 1, "s": -1},
+    "rad/s2": {"rad": 1, "s": -2},
+    "kg": {"kg": 1},
+    "kg.m2": {"kg": 1, "m": 2},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "N.m/rad": {"kg": 1, "m": 2, "s": -2, "rad": -1},
+    "N.m.s/rad": {"kg": 1, "m": 2, "s": -1, "rad": -1},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "Hz": {"s": -1},
+}
+
+
+def base_exponents(unit: str) -> dict[str, int]:
+    """SI base-unit exponents of a unit.
+
+    Raises:
+        StructureError: the unit is not one of `UNITS`.
+    """
+    try:
+        return UNITS[unit]
+    except KeyError:
+        known = ", ".join(UNITS)
+        raise StructureError(f"unit '{unit}' is unknown; use one of: {known}") from None

@@ -1,0 +1,143 @@
+"""Variables, declared once; everything that shows a variable is derived from these."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+NODES = 4
+"""Most nodes that a polynomial coupling signal has inside a macro step, besides its value at c = 0."""
+
+
+class Causality(StrEnum):
+    """FMI causality."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+    LOCAL = "local"
+    PARAMETER = "parameter"
+
+
+class Variability(StrEnum):
+    """FMI variability."""
+
+    CONTINUOUS = "continuous"
+    FIXED = "fixed"
+    TUNABLE = "tunable"
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One real variable of a component.
+
+    Attributes:
+        name: structured FMI name, such as `pinion_left.s_y`.
+        unit: one of `herringbone.core.units.UNITS`.
+        causality, variability: as in FMI.
+        description: one line.
+        start: start value, in `unit`.
+        feedthrough: inputs on which an output depends directly.
+        nodes: the signal also has values at the nodes of a macro step (`name.node1` ...).
+        state: a continuous state, integrated by the component; its start value is exact.
+        steady: how a state, or a flagged output, behaves in steady rotation:
+            "constant" (its derivative vanishes), "rotating" (an absolute angle),
+            "zero" (an output that vanishes), or "" (no statement).
+        minimum, maximum: range of a parameter, in `unit`.
+    """
+
+    name: str
+    unit: str
+    causality: Causality
+    variability: Variability
+    description: str
+    start: float = 0.0
+    feedthrough: tuple[str, ...] = ()
+    nodes: bool = False
+    state: bool = False
+    steady: str = ""
+    minimum: float = -math.inf
+    maximum: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A String parameter that names a resource file.
+
+    A relative name is looked up in the component's resources folder.
+    """
+
+    name: str
+    description: str
+    start: str
+
+
+def input_(name: str, unit: str, description: str, start: float = 0.0) -> Variable:
+    """A continuous input; every input is a polynomial signal."""
+    return Variable(
+        name, unit, Causality.INPUT, Variability.CONTINUOUS, description, start, nodes=True
+    )
+
+
+def output(
+    name: str,
+    unit: str,
+    description: str,
+    *,
+    feedthrough: tuple[str, ...] = (),
+    nodes: bool = False,
+    steady: str = "",
+) -> Variable:
+    """A continuous output."""
+    return Variable(
+        name,
+        unit,
+        Causality.OUTPUT,
+        Variability.CONTINUOUS,
+        description,
+        feedthrough=feedthrough,
+        nodes=nodes,
+        steady=steady,
+    )
+
+
+def state(
+    name: str, unit: str, description: str, start: float = 0.0, steady: str = "constant"
+) -> Variable:
+    """A continuous state: a local variable whose start value is exact."""
+    return Variable(
+        name,
+        unit,
+        Causality.LOCAL,
+        Variability.CONTINUOUS,
+        description,
+        start,
+        state=True,
+        steady=steady,
+    )
+
+
+def local(name: str, unit: str, description: str) -> Variable:
+    """A local variable that the kernel updates and that is no state, such as a time counter."""
+    return Variable(name, unit, Causality.LOCAL, Variability.CONTINUOUS, description)
+
+
+def parameter(
+    name: str,
+    unit: str,
+    description: str,
+    start: float,
+    *,
+    minimum: float = -math.inf,
+    maximum: float = math.inf,
+    tunable: bool = False,
+) -> Variable:
+    """A parameter with the range in which the equations hold."""
+    return Variable(
+        name,
+        unit,
+        Causality.PARAMETER,
+        Variability.TUNABLE if tunable else Variability.FIXED,
+        description,
+        start,
+        minimum=minimum,
+        maximum=maximum,
+    )

@@ -1,0 +1,153 @@
+"""How the three kinds of components advance over a macro step.
+
+Each factory compiles one stepper for a component's kernels and layout. The component's own `step`
+calls it, and holds the compiled code in its cache.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.core.declaration import Declaration
+from herringbone.kernels.jit import inner
+from herringbone.kernels.signals import STRIDE, all_finite, evaluate, monomial, store_node
+
+Rhs = Callable[[np.ndarray, float, np.ndarray], None]
+Out = Callable[[np.ndarray, float], None]
+
+NOT_FINITE = 1
+"""Status of a step whose states or outputs are NaN or infinite."""
+
+
+def body_work(state_count: int, input_count: int) -> int:
+    """Length of the work space that a body's stepper needs."""
+    return 3 * state_count + (STRIDE + 1) * input_count
+
+
+def element_work(input_count: int) -> int:
+    """Length of the work space that an element's stepper needs."""
+    return input_count
+
+
+def body_stepper(
+    rhs: Rhs, out: Out, declaration: Declaration
+) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
+    """Compile the step of a body: classical Runge-Kutta (order 4) with equal micro steps.
+
+    Inputs are polynomials over the macro step; outputs are written at every live node. The block's
+    inputs are afterwards what the caller had set.
+
+    Returns:
+        step(b, w, t, h, micro_step, degree) -> int: block, work space (`body_work` long), start
+        and length of the macro step [s] (h >= 0), longest micro step [s], interface degree;
+        0, or NOT_FINITE.
+    """
+    n = declaration.state_count
+    inputs = len(declaration.inputs)
+    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
+    x0, slope, at = n, 2 * n, 3 * n
+    kept = at + STRIDE * inputs
+
+    @inner
+    def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
+        for i in range(inputs):
+            b[n + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
+
+    @inner
+    def step(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
+    ) -> int:
+        for i in range(inputs):
+            monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)
+            w[kept + i] = b[n + i * STRIDE]
+        intervals = max(degree, 1)
+        count = max(1, math.ceil(h / (intervals * micro_step) - 1e-9))
+        total = intervals * count
+        hs = h / total
+        dx = w[:n]
+        for k in range(total):
+            ts = t + k * hs
+            for i in range(n):
+                w[x0 + i] = b[i]
+            set_inputs(b, w, degree, k / total)
+            rhs(b, ts, dx)
+            for i in range(n):
+                w[slope + i] = dx[i]
+                b[i] = w[x0 + i] + 0.5 * hs * dx[i]
+            set_inputs(b, w, degree, (k + 0.5) / total)
+            rhs(b, ts + 0.5 * hs, dx)
+            for i in range(n):
+                w[slope + i] += 2.0 * dx[i]
+                b[i] = w[x0 + i] + 0.5 * hs * dx[i]
+            rhs(b, ts + 0.5 * hs, dx)
+            for i in range(n):
+                w[slope + i] += 2.0 * dx[i]
+                b[i] = w[x0 + i] + hs * dx[i]
+            set_inputs(b, w, degree, (k + 1) / total)
+            rhs(b, ts + hs, dx)
+            for i in range(n):
+                b[i] = w[x0 + i] + hs / 6.0 * (w[slope + i] + dx[i])
+            if (k + 1) % count == 0:
+                out(b, t + (k + 1) * hs)
+                store_node(b, first_output, outputs, (k + 1) // count)
+        for i in range(inputs):
+            b[n + i * STRIDE] = w[kept + i]
+        return 0 if all_finite(b, 0, n) else NOT_FINITE
+
+    return step
+
+
+def element_stepper(
+    out: Out, declaration: Declaration
+) -> Callable[[np.ndarray, np.ndarray, float, float, int], int]:
+    """Compile the step of a massless element: evaluated at every live node of its inputs.
+
+    At degree 0 it is evaluated at the inputs' values.
+
+    Returns:
+        step(b, w, t, h, degree) -> int: block, work space (`element_work` long), start and length
+        of the macro step [s], interface degree; 0, or NOT_FINITE.
+    """
+    first_input, inputs = declaration.first_input, len(declaration.inputs)
+    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
+
+    @inner
+    def step(b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int) -> int:
+        for i in range(inputs):
+            w[i] = b[first_input + i * STRIDE]
+        for node in range(1, degree + 1):
+            for i in range(inputs):
+                b[first_input + i * STRIDE] = b[first_input + i * STRIDE + node]
+            out(b, t + h * node / degree)
+            store_node(b, first_output, outputs, node)
+        if degree == 0:
+            out(b, t + h)
+            store_node(b, first_output, outputs, 1)
+        for i in range(inputs):
+            b[first_input + i * STRIDE] = w[i]
+        return 0 if all_finite(b, first_output, STRIDE * outputs) else NOT_FINITE
+
+    return step
+
+
+def source_stepper(
+    out: Out, declaration: Declaration
+) -> Callable[[np.ndarray, float, float, int], int]:
+    """Compile the step of a component without inputs: evaluated at every live node.
+
+    Returns:
+        step(b, t, h, degree) -> int: block, start and length of the macro step [s], interface
+        degree; 0, or NOT_FINITE.
+    """
+    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
+
+    @inner
+    def step(b: np.ndarray, t: float, h: float, degree: int) -> int:
+        intervals = max(degree, 1)
+        for node in range(1, intervals + 1):
+            out(b, t + h * node / intervals)
+            store_node(b, first_output, outputs, node)
+        return 0 if all_finite(b, first_output, STRIDE * outputs) else NOT_FINITE
+
+    return step
