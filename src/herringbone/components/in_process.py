@@ -1,0 +1,119 @@
+"""In-process participant: an instance of a component behind the addresses of FMI functions."""
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import Instance
+from herringbone.core.declaration import Declaration, node_name
+from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.units import base_exponents
+from herringbone.core.variable import NODES, Causality
+from herringbone.kernels import fmi_calls
+
+
+@cache
+def _do_step_address(component: str) -> int:
+    declaration = COMPONENTS[component].declaration
+    function = fmi_calls.do_step(
+        COMPONENTS[component].kernels.step, declaration.size, max(declaration.work, 1)
+    )
+    _keep_alive.append(function)
+    return function.address
+
+
+_keep_alive: list[object] = []
+
+
+@cache
+def part_variables(component: str) -> Mapping[str, PartVariable]:
+    """The variables of a component as a master sees them, nodes and Strings included."""
+    declaration = COMPONENTS[component].declaration
+    found = {text.name: PartVariable(text.name, -1, "parameter", is_real=False)
+             for text in declaration.texts}  # fmt: skip
+    for variable in declaration.variables:
+        names = [variable.name]
+        if variable.nodes:
+            names += [node_name(variable.name, node) for node in range(1, NODES + 1)]
+        for name in names:
+            found[name] = PartVariable(
+                name,
+                declaration.index[name],
+                variable.causality.value,
+                variable.unit,
+                unit_dimension(variable.unit),
+                frozenset(variable.feedthrough)
+                if variable.causality is Causality.OUTPUT
+                else None,
+            )
+    return found
+
+
+def unit_dimension(unit: str) -> tuple:
+    """Factor, offset and exponents of an SI unit, in the form that masters compare."""
+    return (1.0, 0.0, tuple(sorted(base_exponents(unit).items())))
+
+
+class InProcessPart:
+    """A component that runs in the master's process, without FMU.
+
+    Args:
+        instance: the component's instance; parameters may have been set.
+    """
+
+    def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        self.name = instance.name
+        self.variables = part_variables(instance.component.name)
+        self._start_time: float | None = None
+        self._stale = False
+
+    @property
+    def declaration(self) -> Declaration:
+        """Declaration of the component."""
+        return self.instance.component.declaration
+
+    @property
+    def addresses(self) -> Addresses:
+        """Addresses of the compiled FMI functions; the component is the instance's memory."""
+        return Addresses(
+            self.instance.memory.ctypes.data_as(ctypes.c_void_p).value or 0,
+            fmi_calls.set_real.address,
+            fmi_calls.get_real.address,
+            _do_step_address(self.instance.component.name),
+        )
+
+    def set(self, name: str, value: float | str) -> None:
+        """Set a variable; raises ParameterError."""
+        self.instance.set(name, value)
+        self._stale = self._start_time is not None
+
+    def get(self, names: Sequence[str]) -> list[float]:
+        """Values of real variables; in initialisation mode they belong to the inputs just set."""
+        self._refresh()
+        return [self.instance[name] for name in names]
+
+    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+        """Compute initial outputs; raises ParameterError, ResourceError."""
+        del stop_time
+        self._start_time, self._stale = start_time, True
+        self._refresh()
+
+    def _refresh(self) -> None:
+        if self._stale and self._start_time is not None:
+            self.instance.initialise(self._start_time)
+            self._stale = False
+
+    def exit_initialization(self) -> None:
+        """Compute the outputs of the start; from now on only steps change them."""
+        self._refresh()
+        self._start_time = None
+
+    def messages(self) -> list[str]:
+        """What went wrong, if something did."""
+        found = self.instance.first_not_finite()
+        return [f"{self.name}.{found[0]} = {found[1]}"] if found else []
+
+    def close(self) -> None:
+        """Nothing to free."""

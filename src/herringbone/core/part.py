@@ -1,0 +1,76 @@
+"""What a co-simulation master needs to know of a participant, be it an FMU or in-process."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+from herringbone.core.declaration import INTERFACE_DEGREE, node_name
+
+
+@dataclass(frozen=True, slots=True)
+class PartVariable:
+    """One variable of a participant.
+
+    Attributes:
+        name: structured name.
+        reference: FMI value reference.
+        causality: "input", "output", "parameter", "local" or other.
+        unit: unit name, None if none is declared.
+        dimension: factor, offset and base-unit exponents, for comparing units; None if unknown.
+        dependencies: inputs on which an output depends directly; None if not declared.
+        is_real: False for Integer, Boolean and String variables.
+    """
+
+    name: str
+    reference: int
+    causality: str
+    unit: str | None = None
+    dimension: tuple | None = None
+    dependencies: frozenset[str] | None = None
+    is_real: bool = True
+
+
+class Addresses(NamedTuple):
+    """Addresses of the FMI functions that the compiled loop calls, and of the component."""
+
+    component: int
+    set_real: int
+    get_real: int
+    do_step: int
+
+
+class Part(Protocol):
+    """A participant of a co-simulation, instantiated."""
+
+    name: str
+    variables: Mapping[str, PartVariable]
+
+    @property
+    def addresses(self) -> Addresses:
+        """What the compiled loop calls."""
+
+    def set(self, name: str, value: float | str) -> None:
+        """Set a variable; raises ParameterError."""
+
+    def get(self, names: Sequence[str]) -> list[float]:
+        """Values of real variables."""
+
+    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+        """Go to initialisation mode; start values have been set."""
+
+    def exit_initialization(self) -> None:
+        """Go to step mode; raises HerringboneError if the part refuses."""
+
+    def messages(self) -> list[str]:
+        """Messages that the part logged since the last call."""
+
+    def close(self) -> None:
+        """Terminate and free the part."""
+
+
+def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:
+    """True if these inputs of a part take polynomial signals of that degree."""
+    return degree == 0 or (
+        INTERFACE_DEGREE in part.variables
+        and all(node_name(name, degree) in part.variables for name in inputs)
+    )

@@ -1,0 +1,35 @@
+"""Coupling algorithms, and how they are named on the command line: `jacobi:order=2`."""
+
+from dataclasses import fields
+
+from herringbone.core import ParameterError
+from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.gauss_seidel import GaussSeidel
+from herringbone.cosim.algorithms.jacobi import Jacobi
+
+__all__ = ["ALGORITHMS", "Algorithm", "GaussSeidel", "Jacobi", "parse_algorithm"]
+
+ALGORITHMS: dict[str, type[Algorithm]] = {a.name: a for a in (Jacobi, GaussSeidel)}
+
+
+def parse_algorithm(text: str) -> Algorithm:
+    """Algorithm from `name` or `name:key=value,key=value`.
+
+    Raises:
+        ParameterError: unknown name or option, or a value out of range.
+    """
+    name, _, options = text.partition(":")
+    if name not in ALGORITHMS:
+        raise ParameterError(f"there is no algorithm '{name}'; there are: {', '.join(ALGORITHMS)}")
+    kind = ALGORITHMS[name]
+    types = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
+    values: dict[str, int | str] = {}
+    for item in filter(None, options.split(",")):
+        key, _, value = item.partition("=")
+        if key not in types:
+            raise ParameterError(f"{name} has no option '{key}'; it has: {', '.join(types)}")
+        try:
+            values[key] = types[key](value)
+        except ValueError:
+            raise ParameterError(f"{name}:{key}={value} is no {types[key].__name__}") from None
+    return kind(**values)

@@ -1,0 +1,92 @@
+"""What an algorithm is.
+
+A new algorithm is one file in this folder: a frozen dataclass of its options that derives from
+`Algorithm`, and, if stages do not suffice, a compiled loop of its own beside `loop.run_stages`.
+Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+import numpy as np
+
+from herringbone.core.part import has_nodes
+from herringbone.cosim.loop import run_stages
+from herringbone.cosim.network import Network
+from herringbone.cosim.plan import Plan, build_plan
+
+
+class Algorithm(ABC):
+    """A coupling algorithm; its options are the fields of a frozen dataclass.
+
+    Attributes:
+        name: on the command line.
+        needs: capabilities that parts must have: "nodes", "rollback", "accelerations".
+    """
+
+    name: ClassVar[str]
+    needs: ClassVar[frozenset[str]] = frozenset()
+
+    @property
+    @abstractmethod
+    def convergence_order(self) -> int:
+        """Power of the macro step with which the global error falls."""
+
+    @abstractmethod
+    def prepare(self, network: Network) -> "Prepared":
+        """Lay out a network for this algorithm."""
+
+    def __str__(self) -> str:
+        options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))  # type: ignore[arg-type]
+        return f"{self.name}:{options}" if options else self.name
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A network laid out for an algorithm.
+
+    Attributes:
+        plan: parts, signals and stages.
+        degree: interface degree that each part is to be set to.
+        order: degree of extrapolation.
+        notes: downgrades, and what they cost.
+    """
+
+    plan: Plan
+    degree: tuple[int, ...]
+    order: int
+    notes: tuple[str, ...]
+
+    def run(
+        self,
+        history: np.ndarray,
+        t0: float,
+        h: float,
+        start: int,
+        count: int,
+        records: np.ndarray,
+        every: int,
+    ) -> tuple[int, int, int]:
+        """Run macro steps; see `loop.run_stages`."""
+        return run_stages(self.plan, history, self.order, t0, h, start, count, records, every)
+
+
+def prepare_stages(
+    network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
+) -> Prepared:
+    """Lay out a network for stages, with as many nodes as the order asks and the parts have."""
+    degree, notes = [], []
+    for p, part in enumerate(network.parts):
+        inputs = [c.input for c in network.inputs(p)]
+        wanted = order if p in network.bodies else 0
+        if wanted and not has_nodes(part, inputs, wanted):
+            notes.append(
+                f"{part.name} takes no signal nodes: its inputs are held over a step, "
+                "which makes the coupling first order in the step"
+            )
+            wanted = 0
+        degree.append(wanted)
+    plan = build_plan(network, stages, degree, parallel)
+    return Prepared(plan, tuple(degree), order, tuple(notes))

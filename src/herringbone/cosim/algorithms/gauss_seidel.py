@@ -1,0 +1,63 @@
+"""Gauss-Seidel coupling: bodies step one after another, in the system's order.
+
+Before a body steps, the elements between it and the bodies that have stepped are evaluated at the
+end of the macro step, with the new motion of these and the extrapolated motion of the others. Their
+forces are then interpolated for the body. Each part steps once a macro step; the elements' forces
+are those at the partly extrapolated motion. Never is one side's position held against the other
+side's newer one.
+
+Order q: degree of extrapolation and interpolation.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from herringbone.core import ParameterError
+from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
+from herringbone.cosim.network import Network
+
+
+@dataclass(frozen=True)
+class GaussSeidel(Algorithm):
+    """Gauss-Seidel coupling.
+
+    Args:
+        order: degree of extrapolation and interpolation, 1 or 2.
+
+    Raises:
+        ParameterError: the order is out of its range.
+    """
+
+    order: int = 2
+
+    name: ClassVar[str] = "gauss_seidel"
+
+    def __post_init__(self) -> None:
+        if self.order not in (1, 2):
+            raise ParameterError(
+                f"gauss_seidel: order={self.order}; it must be 1 or 2 "
+                "(held positions against newer ones are never stable)"
+            )
+
+    @property
+    def convergence_order(self) -> int:
+        """Order + 1: both halves of the exchange are polynomials of degree `order`."""
+        return self.order + 1
+
+    def prepare(self, network: Network) -> Prepared:
+        """Stages: sources; then each body, after the elements that its predecessors load."""
+        stages = [list(network.sources)] if network.sources else []
+        done: set[int] = set(network.sources)
+        waiting = list(network.elements)
+        for body in network.bodies:
+            feeds_body = {c.source for c in network.inputs(body)}
+            for element in list(waiting):
+                neighbours = {c.source for c in network.inputs(element)}
+                if element in feeds_body and neighbours & done:
+                    stages.append([element])
+                    done.add(element)
+                    waiting.remove(element)
+            stages.append([body])
+            done.add(body)
+        stages += [[element] for element in waiting]
+        return prepare_stages(network, stages, self.order)

@@ -1,0 +1,30 @@
+"""Ctrl-C while a compiled loop runs.
+
+A KeyboardInterrupt raised inside a Python FMU would be fatal to it, so that the handler only sets a
+flag, which is read between chunks of the loop.
+"""
+
+import signal
+import threading
+from types import FrameType
+
+
+class InterruptFlag:
+    """Context in which SIGINT sets a flag instead of raising; only in the main thread."""
+
+    def __init__(self) -> None:
+        self.raised = False
+
+    def __enter__(self) -> "InterruptFlag":
+        self._main = threading.current_thread() is threading.main_thread()
+        if self._main:
+            self._before = signal.signal(signal.SIGINT, self._set)
+        return self
+
+    def _set(self, number: int, frame: FrameType | None) -> None:
+        del number, frame
+        self.raised = True
+
+    def __exit__(self, *exception: object) -> None:
+        if self._main:
+            signal.signal(signal.SIGINT, self._before)

@@ -1,0 +1,176 @@
+"""What every algorithm's compiled loop is made of: set, step, get, record.
+
+Signals are polynomials through the values at communication points. With `order` q, a stale signal
+(its source is stepped later in this macro step, or in parallel) is the polynomial through the last
+q + 1 known values, extrapolated; a fresh one goes through its new value and the q values before,
+interpolated.
+"""
+
+import numpy as np
+
+from herringbone.cosim.calls import do_step, exchange_reals
+from herringbone.cosim.plan import Plan
+from herringbone.kernels.jit import kernel
+
+DONE, PART_FAILED, NOT_FINITE = 0, 1, 2
+"""Status of a chunk of macro steps."""
+_LAST_GOOD = 1  # fmi2Warning
+_REAL, _REFERENCE = 8, 4
+
+
+@kernel
+def signal(history: np.ndarray, index: int, fresh: int, order: int, known: int, c: float) -> float:
+    """Value of a signal at c in [0, 1] of the macro step.
+
+    Args:
+        history: rows are the newest values (after a step) and those at the communication points
+            before; row 1 is the start of the macro step.
+        index: output.
+        fresh: 1 if row 0 holds the value at the end of this macro step.
+        order: degree of the polynomial.
+        known: communication points passed, the start included.
+        c: place in the macro step.
+    """
+    newest = 1 - fresh
+    q = min(order, known - 1 + fresh)
+    x = c - fresh
+    value = history[newest, index]
+    if q >= 1:
+        first = value - history[newest + 1, index]
+        value += x * first
+        if q >= 2:
+            before = history[newest + 1, index] - history[newest + 2, index]
+            value += 0.5 * x * (x + 1.0) * (first - before)
+    return value
+
+
+@kernel
+def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) -> int:
+    """Set all connected inputs of a part, with nodes; FMI status."""
+    first, end = plan.input_first[p], plan.input_first[p + 1]
+    if first == end:
+        return 0
+    at, degree = plan.set_first[p], plan.degree[p]
+    for node in range(degree + 1):
+        c = node / degree if degree > 0 else 0.0
+        for i in range(first, end):
+            fresh = plan.input_fresh[i]
+            # A held input of an element, or of a body whose source is known, is its newest value.
+            place = 1.0 if plan.at_end[p] or (degree == 0 and fresh) else c
+            plan.set_value[at] = signal(
+                history, plan.input_source[i], fresh, order, known, place
+            )
+            at += 1
+    first = plan.set_first[p]
+    return exchange_reals(
+        plan.set_real[p],
+        plan.component[p],
+        plan.set_reference.ctypes.data + _REFERENCE * first,
+        at - first,
+        plan.set_value.ctypes.data + _REAL * first,
+    )
+
+
+@kernel
+def get_outputs(plan: Plan, history: np.ndarray, p: int) -> int:
+    """Get all connected outputs of a part into row 0 of the history; FMI status."""
+    first, end = plan.output_first[p], plan.output_first[p + 1]
+    if first == end:
+        return 0
+    return exchange_reals(
+        plan.get_real[p],
+        plan.component[p],
+        plan.output_reference.ctypes.data + _REFERENCE * first,
+        end - first,
+        history.ctypes.data + _REAL * first,
+    )
+
+
+@kernel
+def record(plan: Plan, row: np.ndarray) -> int:
+    """Get the recorded outputs of all parts; FMI status."""
+    for p in range(plan.component.size):
+        first, end = plan.record_first[p], plan.record_first[p + 1]
+        if end > first:
+            status = exchange_reals(
+                plan.get_real[p],
+                plan.component[p],
+                plan.record_reference.ctypes.data + _REFERENCE * first,
+                end - first,
+                row.ctypes.data + _REAL * first,
+            )
+            if status > _LAST_GOOD:
+                return status
+    return 0
+
+
+@kernel
+def step_stage(
+    plan: Plan, history: np.ndarray, stage: int, order: int, known: int, t: float, h: float
+) -> int:
+    """Step the parts of one stage over the macro step; -1, or the part that failed."""
+    first, end = plan.stage_first[stage], plan.stage_first[stage + 1]
+    for k in range(first, end):
+        if set_inputs(plan, history, plan.stage_part[k], order, known) > _LAST_GOOD:
+            return plan.stage_part[k]
+    for k in range(first, end):
+        p = plan.stage_part[k]
+        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+            return p
+    for k in range(first, end):
+        if get_outputs(plan, history, plan.stage_part[k]) > _LAST_GOOD:
+            return plan.stage_part[k]
+    return -1
+
+
+@kernel
+def not_finite(plan: Plan, history: np.ndarray) -> int:
+    """Part whose newest outputs are NaN or infinite, or -1."""
+    for p in range(plan.component.size):
+        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+            if not (history[0, i] - history[0, i] == 0.0):
+                return p
+    return -1
+
+
+@kernel
+def run_stages(
+    plan: Plan,
+    history: np.ndarray,
+    order: int,
+    t0: float,
+    h: float,
+    start: int,
+    count: int,
+    records: np.ndarray,
+    every: int,
+) -> tuple[int, int, int]:
+    """Run `count` macro steps, stage after stage: Jacobi and Gauss-Seidel schemes.
+
+    Time is t0 + n h with integer n, so that it does not drift.
+
+    Args:
+        plan, history: parts and signals; row 0 of the history holds the values at step `start`.
+        order: degree of extrapolation and interpolation.
+        t0, h: start time and macro step [s].
+        start, count: first macro step and how many.
+        records: one row per `every` macro steps, row 0 at t0.
+        every: macro steps per record.
+
+    Returns:
+        Status, macro steps done in all, and the part that ended the run (or -1).
+    """
+    for n in range(start, start + count):
+        for row in range(history.shape[0] - 1, 0, -1):
+            for i in range(history.shape[1]):
+                history[row, i] = history[row - 1, i]
+        for stage in range(plan.stage_first.size - 1):
+            failed = step_stage(plan, history, stage, order, n + 1, t0 + n * h, h)
+            if failed >= 0:
+                return PART_FAILED, n, failed
+        culprit = not_finite(plan, history)
+        if culprit >= 0:
+            return NOT_FINITE, n + 1, culprit
+        if (n + 1) % every == 0 and record(plan, records[(n + 1) // every]) > _LAST_GOOD:
+            return PART_FAILED, n + 1, -1
+    return DONE, start + count, -1

@@ -1,0 +1,124 @@
+"""The network as flat arrays, for the compiled loop."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.core.declaration import node_name
+from herringbone.cosim.network import Network
+
+HISTORY = 4
+"""Rows of the signal history: the newest values, and those at the three communication points before."""
+
+
+class Plan(NamedTuple):
+    """Parts, signals and stages as arrays; all offsets are CSR (first[i] ... first[i + 1]).
+
+    Inputs of a part are set in one call: all inputs at node 0, then all at node 1, ...
+    """
+
+    component: np.ndarray
+    set_real: np.ndarray
+    get_real: np.ndarray
+    do_step: np.ndarray
+    degree: np.ndarray
+    """Nodes of a part's inputs in a macro step; 0 holds."""
+    at_end: np.ndarray
+    """1 for elements: inputs are taken at the end of the macro step."""
+    input_first: np.ndarray
+    input_source: np.ndarray
+    """Index of the output that feeds an input."""
+    input_fresh: np.ndarray
+    """1 if that output's part is stepped before this part in a macro step."""
+    set_first: np.ndarray
+    set_reference: np.ndarray
+    set_value: np.ndarray
+    output_first: np.ndarray
+    output_reference: np.ndarray
+    record_first: np.ndarray
+    record_reference: np.ndarray
+    stage_first: np.ndarray
+    stage_part: np.ndarray
+
+
+def record_names(network: Network) -> list[list[str]]:
+    """Outputs of each part that are recorded: all real ones, without nodes."""
+    return [
+        [
+            name
+            for name, v in part.variables.items()
+            if v.causality == "output" and v.is_real and ".node" not in name
+        ]
+        for part in network.parts
+    ]
+
+
+def _offsets(counts: Sequence[int]) -> np.ndarray:
+    return np.concatenate(([0], np.cumsum(counts, dtype=np.int64))).astype(np.int64)
+
+
+def _references(rows: Sequence[Sequence[int]]) -> np.ndarray:
+    return np.array([r for row in rows for r in row], dtype=np.uint32)
+
+
+def build_plan(
+    network: Network, stages: Sequence[Sequence[int]], degree: Sequence[int], parallel: bool
+) -> Plan:
+    """Lay a network out for stages that are stepped one after another.
+
+    Args:
+        network: parts and connections.
+        stages: parts by stage; parts of one stage do not see each other's new outputs.
+        degree: nodes of each part's inputs.
+        parallel: elements take their inputs at the start of the macro step, as in masters that
+            step all parts in parallel.
+    """
+    parts = network.parts
+    position = {p: s for s, stage in enumerate(stages) for p in stage}
+    inputs = [network.inputs(p) for p in range(len(parts))]
+    outputs: list[list[str]] = [[] for _ in parts]
+    for c in network.connections:
+        if c.output not in outputs[c.source]:
+            outputs[c.source].append(c.output)
+    output_first = _offsets([len(o) for o in outputs])
+    set_references = [
+        [
+            part.variables[c.input if node == 0 else node_name(c.input, node)].reference
+            for node in range(degree[p] + 1)
+            for c in inputs[p]
+        ]
+        for p, part in enumerate(parts)
+    ]
+    records = record_names(network)
+    addresses = np.array([part.addresses for part in parts], dtype=np.int64)
+    set_first = _offsets([len(r) for r in set_references])
+    return Plan(
+        component=addresses[:, 0].copy(),
+        set_real=addresses[:, 1].copy(),
+        get_real=addresses[:, 2].copy(),
+        do_step=addresses[:, 3].copy(),
+        degree=np.array(degree, dtype=np.int64),
+        at_end=np.array([p in network.elements and not parallel for p in range(len(parts))], np.int64),
+        input_first=_offsets([len(i) for i in inputs]),
+        input_source=np.array(
+            [output_first[c.source] + outputs[c.source].index(c.output) for i in inputs for c in i],
+            dtype=np.int64,
+        ),
+        input_fresh=np.array(
+            [position[c.source] < position[p] for p, i in enumerate(inputs) for c in i], np.int64
+        ),
+        set_first=set_first,
+        set_reference=_references(set_references),
+        set_value=np.zeros(set_first[-1]),
+        output_first=output_first,
+        output_reference=_references(
+            [[part.variables[n].reference for n in outputs[p]] for p, part in enumerate(parts)]
+        ),
+        record_first=_offsets([len(r) for r in records]),
+        record_reference=_references(
+            [[part.variables[n].reference for n in records[p]] for p, part in enumerate(parts)]
+        ),
+        stage_first=_offsets([len(s) for s in stages]),
+        stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
+    )

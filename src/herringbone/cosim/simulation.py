@@ -1,0 +1,233 @@
+"""A co-simulation run: initialisation, the compiled loop in chunks, the record."""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms.base import Algorithm, Prepared
+from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.loop import DONE, NOT_FINITE, record
+from herringbone.cosim.network import Network, build_network
+from herringbone.cosim.plan import HISTORY, record_names
+from herringbone.cosim.system import System
+
+CHUNK_SECONDS = 0.05
+"""Wall time between looks at the interrupt flag; a chunk never takes twice as long."""
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What a run left behind.
+
+    Attributes:
+        time: recorded communication points (n,) [s].
+        values: recorded outputs (n, m), columns as `names`.
+        names: `instance.variable`.
+        units: unit of each column, "" if not declared.
+        outcome: how the run ended.
+        step: communication step size [s], as used.
+        record_step: time between records [s], as used.
+        macro_steps: macro steps that were completed.
+        passes: doStep calls by instance.
+        rollbacks: state restores.
+        wall_seconds: wall time of the loop.
+        notes: downgrades and other lines that the user should read.
+    """
+
+    time: np.ndarray
+    values: np.ndarray
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    outcome: Outcome
+    step: float
+    record_step: float
+    macro_steps: int
+    passes: dict[str, int]
+    rollbacks: int
+    wall_seconds: float
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Communication and record points.
+
+    Attributes:
+        step: communication step size [s].
+        count: macro steps.
+        every: macro steps per record.
+    """
+
+    step: float
+    count: int
+    every: int
+
+
+def make_grid(t_end: float, step: float, record_step: float) -> Grid:
+    """Communication points that hit the end exactly, and records at a whole number of them.
+
+    The step is shortened so that a whole number of steps makes `t_end`; records are taken at the
+    largest whole number of steps within `record_step`, at least every step.
+
+    Raises:
+        ParameterError: a value is not positive and finite, or t_end < step.
+    """
+    for name, value in (("step", step), ("t_end", t_end), ("record_step", record_step)):
+        if not (math.isfinite(value) and value > 0.0):
+            raise ParameterError(f"{name} = {value:g} s: it must be positive and finite")
+    if t_end < step:
+        raise ParameterError(f"t_end = {t_end:g} s is shorter than one step of {step:g} s")
+    count = math.ceil(t_end / step - 1e-9)
+    step = t_end / count
+    return Grid(step, count, max(1, math.floor(record_step / step + 1e-9)))
+
+
+def simulate(
+    system: System,
+    parts: Sequence[Part],
+    algorithm: Algorithm,
+    grid: Grid,
+    progress: Progress | None = None,
+) -> Recording:
+    """Run a system of instantiated parts, whose start values have been set.
+
+    Order of initialisation: outputs are propagated bodies -> elements -> bodies.
+
+    Args:
+        system: structure.
+        parts: participants, in the order of the system's parts.
+        algorithm: coupling algorithm.
+        grid: communication and record points.
+        progress: called with the simulated time [s] reached.
+
+    Raises:
+        StructureError: the connections are wrong.
+        HerringboneError: a part refuses to initialise.
+    """
+    network = build_network(system, parts)
+    prepared = algorithm.prepare(network)
+    for part, degree in zip(parts, prepared.degree, strict=True):
+        if INTERFACE_DEGREE in part.variables:
+            part.set(INTERFACE_DEGREE, float(degree))
+    _initialise(network, grid.step * grid.count)
+    return _Run(network, prepared, grid).go(progress)
+
+
+def _initialise(network: Network, t_end: float) -> None:
+    parts = network.parts
+    for part in parts:
+        part.enter_initialization(0.0, t_end)
+    for target in (*network.elements, *network.bodies):
+        for c in network.inputs(target):
+            value = parts[c.source].get([c.output])[0]
+            parts[target].set(c.input, value)
+    for part in parts:
+        part.exit_initialization()
+
+
+class _Run:
+    """State of one run, outside the compiled loop."""
+
+    def __init__(self, network: Network, prepared: Prepared, grid: Grid) -> None:
+        self.network, self.prepared, self.grid = network, prepared, grid
+        names = record_names(network)
+        self.names = tuple(
+            f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
+        )
+        self.units = tuple(
+            part.variables[n].unit or ""
+            for part, ns in zip(network.parts, names, strict=True)
+            for n in ns
+        )
+        self.records = np.full((grid.count // grid.every + 1, len(self.names)), np.nan)
+        self.history = np.zeros((HISTORY, prepared.plan.output_reference.size))
+
+    def go(self, progress: Progress | None) -> Recording:
+        """Run chunk after chunk."""
+        record(self.prepared.plan, self.records[0])
+        self._read_outputs()
+        done, status, culprit, chunk = 0, DONE, -1, 1
+        begin = time.perf_counter()
+        with InterruptFlag() as flag:
+            while done < self.grid.count and status == DONE and not flag.raised:
+                before, started = done, time.perf_counter()
+                count = min(chunk, self.grid.count - done)
+                status, done, culprit = self.prepared.run(
+                    self.history, 0.0, self.grid.step, done, count, self.records, self.grid.every
+                )
+                rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
+                chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
+                if progress:
+                    progress(done * self.grid.step)
+        wall = time.perf_counter() - begin
+        outcome = self._outcome(done, status, culprit)
+        return self._recording(done, outcome, wall)
+
+    def _read_outputs(self) -> None:
+        """Start of the signal history: the outputs after initialisation."""
+        plan = self.prepared.plan
+        for p, part in enumerate(self.network.parts):
+            by_reference = {
+                v.reference: n
+                for n, v in part.variables.items()
+                if v.causality == "output" and v.is_real
+            }
+            first, end = plan.output_first[p], plan.output_first[p + 1]
+            names = [by_reference[r] for r in plan.output_reference[first:end]]
+            self.history[:, first:end] = part.get(names)
+
+    def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
+        reached = done * self.grid.step
+        if status == DONE:
+            finished = done == self.grid.count
+            kind = OutcomeKind.COMPLETED if finished else OutcomeKind.INTERRUPTED
+            message = "" if finished else f"interrupted at {reached:g} s; results so far are kept"
+            return Outcome(kind, reached, message=message)
+        part = self.network.parts[culprit]
+        said = "; ".join(part.messages())
+        bad = self._not_finite(part)
+        if status == NOT_FINITE or bad:
+            where = f"{part.name}.{bad}" if bad else part.name
+            message = (
+                f"{where} is not finite at {reached:g} s; the coupling or the model is unstable: "
+                f"use a step below {self.grid.step:g} s or an algorithm with a higher limit"
+            )
+            return Outcome(OutcomeKind.DIVERGED, reached, where, message)
+        message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
+        return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    @staticmethod
+    def _not_finite(part: Part) -> str:
+        names = [
+            n for n, v in part.variables.items() if v.causality in {"output", "input"} and v.is_real
+        ]
+        values = part.get(names)
+        return next((n for n, x in zip(names, values, strict=True) if not math.isfinite(x)), "")
+
+    def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
+        rows = done // self.grid.every + 1
+        if outcome.kind in {OutcomeKind.DIVERGED, OutcomeKind.PART_FAILED}:
+            rows = int(np.isfinite(self.records[:rows]).all(axis=1).cumprod().sum())
+        record_step = self.grid.every * self.grid.step
+        return Recording(
+            np.arange(rows) * record_step,
+            self.records[:rows],
+            self.names,
+            self.units,
+            outcome,
+            self.grid.step,
+            record_step,
+            done,
+            {part.name: done for part in self.network.parts},
+            0,
+            wall,
+            (*self.network.notes, *self.prepared.notes),
+        )

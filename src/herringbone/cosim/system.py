@@ -1,0 +1,110 @@
+"""The structure of a system: parts, connections, nested systems. Nothing is instantiated here."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from herringbone.core import ParameterError, StructureError
+
+Values = Mapping[str, float | str]
+
+
+@dataclass(frozen=True)
+class PartSpec:
+    """One participant of a system.
+
+    Attributes:
+        name: instance name, unique in the system with everything nested in it.
+        component: name of a component of this package, or None.
+        fmu: FMU file, or None; exactly one of both is given.
+        values: start values and parameters by variable.
+    """
+
+    name: str
+    component: str | None = None
+    fmu: Path | None = None
+    values: Values = field(default_factory=dict)
+
+    @property
+    def foreign(self) -> bool:
+        """True if the part is an FMU of which only the FMI interface is known."""
+        return self.component is None
+
+
+@dataclass(frozen=True)
+class System:
+    """Parts and how they are wired.
+
+    Attributes:
+        name, description: for people.
+        parts: all parts, nested systems flattened.
+        connections: pairs of paths; a path is `part.port` or `part.variable`.
+        ports: ports that the system offers to an outer one, as paths of inner ports.
+        channels: named groups of result columns (patterns), on which errors are measured.
+    """
+
+    name: str
+    description: str
+    parts: tuple[PartSpec, ...]
+    connections: tuple[tuple[str, str], ...]
+    ports: Mapping[str, str] = field(default_factory=dict)
+    channels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = [part.name for part in self.parts]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise StructureError(
+                f"system '{self.name}': instance name {', '.join(twice)} is used twice; "
+                "names are flat over nested systems, rename one"
+            )
+
+    def part(self, name: str) -> PartSpec:
+        """The part of that name.
+
+        Raises:
+            StructureError: there is none.
+        """
+        for part in self.parts:
+            if part.name == name:
+                return part
+        known = ", ".join(part.name for part in self.parts)
+        raise StructureError(f"system '{self.name}' has no part '{name}'; it has: {known}")
+
+    def with_values(self, values: Values) -> "System":
+        """The same system with values set, by `instance.variable`.
+
+        Raises:
+            ParameterError: a name is not `instance.variable`.
+            StructureError: there is no such instance.
+        """
+        parts = {part.name: dict(part.values) for part in self.parts}
+        for path, value in values.items():
+            instance, dot, variable = path.partition(".")
+            if not dot or not variable:
+                raise ParameterError(f"'{path}' must be INSTANCE.VARIABLE")
+            self.part(instance)
+            parts[instance][variable] = value
+        return replace(
+            self, parts=tuple(replace(part, values=parts[part.name]) for part in self.parts)
+        )
+
+    def with_fmu(self, instance: str, fmu: Path) -> "System":
+        """The same system with one part replaced by an FMU file; its own start values hold.
+
+        Raises:
+            StructureError: there is no such instance.
+        """
+        self.part(instance)
+        return replace(
+            self,
+            parts=tuple(
+                PartSpec(part.name, fmu=fmu) if part.name == instance else part
+                for part in self.parts
+            ),
+        )
+
+    @property
+    def foreign_parts(self) -> tuple[str, ...]:
+        """Names of parts of which only the FMI interface is known."""
+        return tuple(part.name for part in self.parts if part.foreign)

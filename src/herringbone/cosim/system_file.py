@@ -1,0 +1,141 @@
+"""Reading a system from `system.toml`.
+
+    name = "gearbox"
+    description = "..."
+
+    connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
+
+    [parts.gear_mesh]
+    component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
+    set = { backlash = 1.8e-4 }
+
+    [ports]                          # offered to an outer system
+    pinion = "gear_mesh.pinion"
+
+    [channels]                       # result columns on which errors are measured
+    bearing_force = ["bearing_supports.shaft.*.f_?"]
+"""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import StructureError
+from herringbone.core.paths import systems_folder
+from herringbone.cosim.system import PartSpec, System
+
+FILE_NAME = "system.toml"
+_KEYS = {"name", "description", "connections", "parts", "ports", "channels"}
+_KINDS = ("component", "fmu", "system")
+
+
+def find_system(reference: str | Path) -> Path:
+    """Folder of a system, by the name of a shipped one or by its path.
+
+    Raises:
+        StructureError: there is no such system.
+    """
+    for folder in (systems_folder() / reference, Path(reference)):
+        if (folder / FILE_NAME).is_file():
+            return folder
+    shipped = ", ".join(sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}")))
+    raise StructureError(
+        f"there is no system '{reference}': give one of {shipped}, a folder with {FILE_NAME}, "
+        "or an .ssp file"
+    )
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises:
+        StructureError: it cannot be read.
+    """
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise StructureError(f"cannot read {file}: {error}") from error
+
+
+def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
+    """Read a system and everything nested in it.
+
+    Raises:
+        StructureError: not found, not readable, unknown key, or systems that contain each other.
+    """
+    folder = find_system(reference).resolve()
+    if folder in _outer:
+        raise StructureError(f"system '{reference}' contains itself")
+    file = folder / FILE_NAME
+    data = read_toml(file)
+    unknown = set(data) - _KEYS
+    if unknown:
+        raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
+    parts: list[PartSpec] = []
+    nested: dict[str, System] = {}
+    for name, table in data.get("parts", {}).items():
+        spec = _part(name, table, folder, file)
+        if spec:
+            parts.append(spec)
+        else:
+            inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
+            nested[name] = inner.with_values(table.get("set", {}))
+    return _assemble(data, file, parts, nested)
+
+
+def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> PartSpec | None:
+    kinds = [kind for kind in _KINDS if kind in table]
+    unknown = set(table) - {*_KINDS, "set"}
+    if len(kinds) != 1 or unknown:
+        raise StructureError(
+            f"{file}, part '{name}': give exactly one of {', '.join(_KINDS)}, and 'set'"
+            + (f"; unknown: {', '.join(sorted(unknown))}" if unknown else "")
+        )
+    if kinds[0] == "system":
+        return None
+    values = table.get("set", {})
+    if kinds[0] == "fmu":
+        return PartSpec(name, fmu=(folder / table["fmu"]).resolve(), values=values)
+    return PartSpec(name, component=table["component"], values=values)
+
+
+def _nested_reference(reference: str, folder: Path) -> str | Path:
+    inside = folder / reference
+    return inside if (inside / FILE_NAME).is_file() else reference
+
+
+def _assemble(
+    data: Mapping[str, Any], file: Path, parts: list[PartSpec], nested: Mapping[str, System]
+) -> System:
+    """One flat system; paths through a nested system's ports become paths of its parts."""
+
+    def resolve(path: str) -> str:
+        name, _, port = path.partition(".")
+        if name not in nested:
+            return path
+        head, _, rest = port.partition(".")
+        if head not in nested[name].ports:
+            known = ", ".join(nested[name].ports)
+            raise StructureError(f"{file}: '{path}': '{name}' offers the ports {known}")
+        return nested[name].ports[head] + (f".{rest}" if rest else "")
+
+    channels: dict[str, tuple[str, ...]] = {}
+    connections: list[tuple[str, str]] = []
+    for inner in nested.values():
+        parts += inner.parts
+        connections += inner.connections
+        channels |= inner.channels
+    for pair in data.get("connections", []):
+        if len(pair) != 2 or not all(isinstance(path, str) for path in pair):
+            raise StructureError(f"{file}: a connection is a pair of paths, not {pair!r}")
+        connections.append((resolve(pair[0]), resolve(pair[1])))
+    channels |= {name: tuple(p) for name, p in data.get("channels", {}).items()}
+    return System(
+        data.get("name", file.parent.name),
+        data.get("description", ""),
+        tuple(parts),
+        tuple(connections),
+        {name: resolve(path) for name, path in data.get("ports", {}).items()},
+        channels,
+    )

@@ -1,0 +1,141 @@
+"""Result of a run: a table of recorded outputs, units, outcome, and how it was computed."""
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from herringbone.core import HerringboneError, Outcome, ParameterError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+TIME = "time"
+
+
+@dataclass(frozen=True)
+class RunInfo:
+    """How a result was computed; the fields of the JSON summary.
+
+    Attributes:
+        system, scene, model: names; `model` is the list of components by instance.
+        t_end: end that was asked for [s].
+        communication_step, record_step, micro_step: [s]; micro_step by instance.
+        algorithm: as on the command line.
+        fmu: "python" or "in-process".
+        macro_steps, passes, rollbacks, wall_s: cost of the loop.
+        notes: downgrades and other lines to read.
+    """
+
+    system: str
+    scene: str
+    model: Mapping[str, str]
+    t_end: float
+    communication_step: float
+    record_step: float
+    micro_step: Mapping[str, float]
+    algorithm: str
+    fmu: str
+    macro_steps: int
+    passes: Mapping[str, int]
+    rollbacks: int
+    wall_s: float
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Result:
+    """Recorded outputs of a run.
+
+    Attributes:
+        data: column `time` [s], then one column per output, `instance.variable`, SI units.
+        units: unit by column.
+        outcome: how the run ended.
+        info: how it was computed.
+        channels: column patterns by group, such as "bearing_force".
+        error: error against the monolithic twin by group, if it was asked for.
+        files: files that were written, if any.
+    """
+
+    data: pd.DataFrame
+    units: Mapping[str, str]
+    outcome: Outcome
+    info: RunInfo
+    channels: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    error: Mapping[str, float] | None = None
+    files: tuple[str, ...] = ()
+
+    def columns(self, *patterns: str) -> list[str]:
+        """Columns that match any of the patterns (`*`, `?`), in the order of the table.
+
+        Raises:
+            ParameterError: a pattern matches nothing.
+        """
+        names = [c for c in self.data.columns if c != TIME]
+        for pattern in patterns:
+            if not any(fnmatchcase(name, pattern) for name in names):
+                raise ParameterError(f"no column matches '{pattern}'; see result.data.columns")
+        return [n for n in names if any(fnmatchcase(n, p) for p in patterns)]
+
+    def channel(self, group: str) -> list[str]:
+        """Columns of a channel group.
+
+        Raises:
+            ParameterError: the system has no such group.
+        """
+        if group not in self.channels:
+            known = ", ".join(self.channels) or "none"
+            raise ParameterError(f"there is no channel group '{group}'; there are: {known}")
+        return self.columns(*self.channels[group])
+
+    def plot(self, *patterns: str) -> "Figure":
+        """Plot columns over time (patterns or group names); without patterns, an overview."""
+        from herringbone.plotting import overview, plot_columns  # noqa: PLC0415 (matplotlib: lazy)
+
+        return plot_columns(self, *patterns) if patterns else overview(self)
+
+    def to_csv(self, file: Path) -> None:
+        """Write the table: a `#` line with units, a header row, full precision."""
+        with file.open("w", encoding="utf-8", newline="") as stream:
+            units = ", ".join(f"{name} {self.units[name] or '1'}" for name in self.data.columns)
+            stream.write(f"# units: {units}\n")
+            csv.writer(stream, lineterminator="\n").writerow(self.data.columns)
+            self.data.to_csv(stream, index=False, header=False, lineterminator="\n")
+
+    def to_parquet(self, file: Path) -> None:
+        """Write the table as Parquet; needs the extra `tables`.
+
+        Raises:
+            HerringboneError: pyarrow is not installed.
+        """
+        try:
+            self.data.to_parquet(file, index=False)
+        except ImportError as error:
+            raise HerringboneError(
+                "Parquet needs pyarrow; install it with: pip install 'herringbone[tables]'"
+            ) from error
+
+    def summary(self) -> dict[str, Any]:
+        """The JSON summary of the run."""
+        info = asdict(self.info)
+        found: dict[str, Any] = {
+            "outcome": self.outcome.kind.value,
+            **{name: info[name] for name in ("system", "scene", "model", "t_end")},
+            "t_reached": self.outcome.time,
+            **{k: v for k, v in info.items() if k not in {"system", "scene", "model", "t_end"}},
+            "results": list(self.files),
+        }
+        if self.outcome.message:
+            found |= {"message": self.outcome.message, "culprit": self.outcome.culprit}
+        if self.error is not None:
+            found["error"] = dict(self.error)
+        return found
+
+    def to_json(self) -> str:
+        """`summary` as one line of JSON."""
+        return json.dumps(self.summary())

@@ -1,0 +1,97 @@
+"""A scene: start, cycle, duration and record of a run, read from a TOML file beside the system."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import ParameterError
+from herringbone.cosim.system_file import read_toml
+
+DEFAULT_SCENE = "loaded"
+_TABLES = {"set", "start_offset"}
+_NUMBERS = {"t_end", "record_step"}
+
+
+class Start(StrEnum):
+    """How a run starts."""
+
+    EQUILIBRIUM = "equilibrium"
+    """Steady rotation under load: all accelerations vanish."""
+    RAMP = "ramp"
+    """Steady rotation without load; the load is then applied gradually (the thesis' start)."""
+    REST = "rest"
+    """Declared start values."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is run on a system.
+
+    Attributes:
+        name, description: for people.
+        t_end: duration [s].
+        record_step: time between records [s].
+        start: how the run starts.
+        values: variables to set, by `instance.variable`.
+        start_offset: added to start values of states after the start was computed.
+    """
+
+    name: str
+    description: str = ""
+    t_end: float = 0.2
+    record_step: float = 20e-6
+    start: Start = Start.EQUILIBRIUM
+    values: Mapping[str, float | str] = field(default_factory=dict)
+    start_offset: Mapping[str, float] = field(default_factory=dict)
+
+
+def find_scene(system_folder: Path, name: str) -> Path:
+    """File of a scene, by name beside the system or by path.
+
+    Raises:
+        ParameterError: there is none.
+    """
+    folder = system_folder / "scenes"
+    for file in (folder / f"{name}.toml", Path(name)):
+        if file.is_file():
+            return file
+    known = ", ".join(sorted(f.stem for f in folder.glob("*.toml"))) or "none"
+    raise ParameterError(f"there is no scene '{name}'; {folder.parent.name} has: {known}")
+
+
+def read_scene(file: Path) -> Scene:
+    """Read a scene.
+
+    Raises:
+        ParameterError: unknown key, or a value of the wrong type or out of range.
+        StructureError: the file cannot be read.
+    """
+    data = read_toml(file)
+    known = {"description", "start", *_NUMBERS, *_TABLES}
+    if unknown := set(data) - known:
+        raise ParameterError(
+            f"{file}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(known))}"
+        )
+    numbers = {key: _positive(data[key], key, file) for key in _NUMBERS & set(data)}
+    start = data.get("start", Start.EQUILIBRIUM.value)
+    if start not in list(Start):
+        raise ParameterError(f"{file}: start = {start!r}; it must be one of {', '.join(Start)}")
+    return Scene(
+        file.stem,
+        data.get("description", ""),
+        start=Start(start),
+        values=data.get("set", {}),
+        start_offset=data.get("start_offset", {}),
+        **numbers,
+    )
+
+
+def _positive(value: Any, key: str, file: Path) -> float:  # noqa: ANN401 (anything from TOML)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{file}: {key} = {value!r}: it takes a number of seconds")
+    if not (math.isfinite(value) and value > 0.0):
+        raise ParameterError(f"{file}: {key} = {value:g} s: it must be positive and finite")
+    return float(value)
