@@ -30,6 +30,7 @@ class RunInfo:
         fmu: "python" or "in-process".
         macro_steps, passes, rollbacks, wall_s: cost of the loop.
         notes: downgrades and other lines to read.
+        parameters: all real parameters by `instance.variable`, SI units; not in the summary.
     """
 
     system: str
@@ -46,6 +47,7 @@ class RunInfo:
     rollbacks: int
     wall_s: float
     notes: tuple[str, ...] = ()
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,7 @@ class Result:
     def summary(self) -> dict[str, Any]:
         """The JSON summary of the run."""
         info = asdict(self.info)
+        del info["parameters"]
         found: dict[str, Any] = {
             "outcome": self.outcome.kind.value,
             **{name: info[name] for name in ("system", "scene", "model", "t_end")},
