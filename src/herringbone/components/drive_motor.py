@@ -91,4 +91,9 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
 
 
-DRIVE_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__)
+def _guess(block: np.ndarray) -> None:
+    """At the set point neither ramp nor torque limit act."""
+    block[_SPEED] = block[_REFERENCE] = block[_SETPOINT]
+
+
+DRIVE_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__, guess=_guess)

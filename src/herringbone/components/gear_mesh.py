@@ -111,7 +111,7 @@ def _states() -> list[Variable]:
     rotations = [
         state("angle", "rad", "angle of the pinion's left half", steady="rotating"),
         state("pinion_twist", "rad", "pinion, right half ahead of left half"),
-        state("approach", "m", "rb1 theta1 - rb2 theta3 of the left halves", 3e-6),
+        state("approach", "m", "rb1 theta1 - rb2 theta3 of the left halves"),
         state("wheel_twist", "rad", "wheel, right half ahead of left half"),
     ]
     rate = {"m": "m/s", "rad": "rad/s"}
@@ -264,6 +264,7 @@ _DEGREE = _i["interface_degree"]
 _TABLE = (_d.first_table, _d.first_table + force_law.TABLE_SIZE)
 _SCRATCH = _TABLE[1] + force_law.TABLE_SIZE
 _TWO_PI = 2.0 * math.pi
+_CLOSED = 5e-6  # a usual deflection [m], where the search for an equilibrium begins
 
 
 @kernel
@@ -427,4 +428,10 @@ def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
         force_law.build(loads, np.ascontiguousarray(stiffness).ravel(), phases, block, at, scratch)
 
 
-GEAR_MESH = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_load)
+def _guess(block: np.ndarray) -> None:
+    """Both meshes closed, whatever the symmetry deviation."""
+    offset = abs(block[_F_A]) * math.tan(abs(block[_BETA]))
+    block[_APPROACH] = offset + _CLOSED
+
+
+GEAR_MESH = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_load, guess=_guess)

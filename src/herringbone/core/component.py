@@ -32,7 +32,7 @@ def _no_breakpoints(block: np.ndarray) -> tuple[float, ...]:
     return ()
 
 
-def _no_start(block: np.ndarray) -> None:
+def _unchanged(block: np.ndarray) -> None:
     del block
 
 
@@ -47,6 +47,8 @@ class Component:
         load: reads the resource files (by String parameter) into the tables of a block;
             raises ResourceError.
         start: makes a block's states from its start parameters, at the end of initialisation.
+        guess: puts the states where steady rotation is searched from, when the inputs are set:
+            inside the limits of a controller, where the equations are not flat.
         breakpoints: times [s] at which the right-hand side is not smooth.
     """
 
@@ -54,7 +56,8 @@ class Component:
     kernels: Kernels
     equations: str
     load: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
-    start: Callable[[np.ndarray], None] = _no_start
+    start: Callable[[np.ndarray], None] = _unchanged
+    guess: Callable[[np.ndarray], None] = _unchanged
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
 
     @property

@@ -1,0 +1,142 @@
+"""Steady rotation under load: the start at which nothing rings.
+
+Unknown are all states. Wanted: every derivative vanishes but those of absolute angles, and every
+output that is declared to vanish (the rates of shaft twists) does. Angles are free up to a common
+rotation and a system without controller keeps its start speed, so that the system of equations has
+a null space: Gauss-Newton with the smallest step in scaled unknowns.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from herringbone.analysis.monolithic import Twin
+from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.core import HerringboneError
+from herringbone.cosim.system import System
+
+_ITERATIONS = 40
+_CONVERGED = 1e-11
+_DIFFERENCE = 1e-3
+_SCALE = {"m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0}
+_RANK = 1e-12
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Start values of steady rotation.
+
+    Attributes:
+        values: start values by `instance.variable`.
+        residual: largest remaining acceleration, scaled by that of the first guess.
+    """
+
+    values: dict[str, float]
+    residual: float
+
+
+def equilibrium(system: System) -> Equilibrium:
+    """Start values for steady rotation of a system of components.
+
+    Raises:
+        StructureError: a part is a foreign FMU.
+        HerringboneError: no equilibrium was found.
+    """
+    twin = Twin(system)
+    rotating, zero = _steady_rows(twin)
+    scale = _scales(twin)
+    x = _guess(twin)
+    keep = np.setdiff1d(np.arange(x.size), rotating)
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        dx = twin.rhs(0.0, x)
+        outputs = twin.observe(np.zeros(1), x[:, None], zero)[0] if zero else np.empty(0)
+        return np.concatenate([dx[keep], outputs])
+
+    r = residual(x)
+    first = None
+    for _ in range(_ITERATIONS):
+        jacobian = _jacobian(residual, x, r, scale)
+        rows = np.abs(jacobian).max(axis=1)
+        rows[rows == 0.0] = 1.0
+        scaled = np.abs(r / rows).max()
+        first = first or max(scaled, 1.0)
+        if scaled < _CONVERGED * first:
+            return Equilibrium(_start_values(twin, x), float(scaled / first))
+        step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale
+        x, r = _line_search(residual, x, r, step, rows)
+    raise HerringboneError(
+        f"no equilibrium of '{system.name}' was found in {_ITERATIONS} iterations; "
+        "start with --start ramp, or look for a load without anything that balances it"
+    )
+
+
+def _guess(twin: Twin) -> np.ndarray:
+    """Start values, moved to where the components want the search to begin."""
+    x = twin.state
+    twin.observe(np.zeros(1), x[:, None], [])
+    blocks, states = twin.layout.block_first, twin.layout.state_first
+    for p, instance in enumerate(twin.instances):
+        block = twin.block[blocks[p] : blocks[p + 1]]
+        instance.component.guess(block)
+        x[states[p] : states[p + 1]] = block[: states[p + 1] - states[p]]
+    return x
+
+
+def _steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
+    """States that rotate, and outputs that vanish, in steady rotation."""
+    rotating, zero = [], []
+    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
+        declaration = instance.component.declaration
+        rotating += [first + i for i, v in enumerate(declaration.states) if v.steady == "rotating"]
+        zero += [f"{instance.name}.{v.name}" for v in declaration.outputs if v.steady == "zero"]
+    return np.array(rotating, dtype=np.int64), zero
+
+
+def _scales(twin: Twin) -> np.ndarray:
+    """Sizes of the states; modal coordinates have those of a displacement."""
+    scales = []
+    for instance in twin.instances:
+        declaration = instance.component.declaration
+        scales += [_SCALE.get(v.unit, 1.0) for v in declaration.states]
+        scales += [1e-6] * (declaration.hidden_states // 2)
+        scales += [1e-3] * (declaration.hidden_states - declaration.hidden_states // 2)
+    return np.array(scales)
+
+
+def _jacobian(residual, x: np.ndarray, r: np.ndarray, scale: np.ndarray) -> np.ndarray:  # noqa: ANN001
+    """d residual / d (x / scale) by forward differences."""
+    columns = []
+    for i, size in enumerate(scale):
+        moved = x.copy()
+        moved[i] += _DIFFERENCE * size
+        columns.append((residual(moved) - r) / _DIFFERENCE)
+    return np.array(columns).T
+
+
+def _line_search(residual, x: np.ndarray, r: np.ndarray, step: np.ndarray, rows: np.ndarray):  # noqa: ANN001, ANN202
+    """Halve the step until the scaled residual falls; the last trial is taken in any case."""
+    before = np.linalg.norm(r / rows)
+    for k in range(12):
+        trial = x + step * 0.5**k
+        new = residual(trial)
+        if np.linalg.norm(new / rows) < before:
+            break
+    return trial, new
+
+
+def _start_values(twin: Twin, x: np.ndarray) -> dict[str, float]:
+    """States, and the forces under which a modal housing starts at rest."""
+    twin.observe(np.zeros(1), x[:, None], [])
+    values = {}
+    for p, instance in enumerate(twin.instances):
+        declaration = instance.component.declaration
+        first = twin.layout.state_first[p]
+        for i, v in enumerate(declaration.states):
+            values[f"{instance.name}.{v.name}"] = float(x[first + i])
+        if instance.component is MODAL_HOUSING:
+            offset = twin.layout.block_first[p]
+            for v in declaration.inputs:
+                force = float(twin.block[offset + declaration.index[v.name]])
+                values[f"{instance.name}.start.{v.name}"] = force
+    return values

@@ -1,0 +1,195 @@
+"""An FMU as participant: fmpy reads, extracts, loads and instantiates it."""
+
+import atexit
+import ctypes
+import math
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    calloc,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    free,
+)
+from fmpy.logging import addLoggerProxy
+from fmpy.model_description import ModelDescription
+
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.part import Addresses, PartVariable
+from herringbone.cosim.fmu_file import extract_fmu, read_fmu
+
+
+def _dimension(model: ModelDescription) -> dict[str, tuple]:
+    """Factor, offset and base-unit exponents by unit name."""
+    found = {}
+    for unit in model.unitDefinitions:
+        base = unit.baseUnit
+        if base is not None:
+            exponents = {n: getattr(base, n) for n in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")}
+            powers = tuple(sorted((n, int(e)) for n, e in exponents.items() if e))
+            found[unit.name] = (float(base.factor), float(base.offset), powers)
+    return found
+
+
+def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
+    """Variables of an FMU as a master sees them."""
+    dimension = _dimension(model)
+    dependencies = {
+        u.variable.name: None if u.dependencies is None else frozenset(d.name for d in u.dependencies)
+        for u in model.outputs
+    }
+    found = {}
+    for v in model.modelVariables:
+        unit = v.unit or (v.declaredType.unit if v.declaredType else None)
+        found[v.name] = PartVariable(
+            v.name,
+            v.valueReference,
+            v.causality or "local",
+            unit,
+            dimension.get(unit),
+            dependencies.get(v.name),
+            v.type == "Real",
+        )
+    return found
+
+
+class FmuPart:
+    """An instantiated FMU 2.0 for co-simulation.
+
+    Args:
+        name: instance name.
+        file: the FMU.
+
+    Raises:
+        FmuError: the file cannot be used, or does not instantiate.
+    """
+
+    def __init__(self, name: str, file: Path) -> None:
+        self.name, self.file = name, file
+        self.model = read_fmu(file)
+        self.variables = read_variables(self.model)
+        self._types = {v.name: v.type for v in self.model.modelVariables}
+        self._log: list[str] = []
+        self._folder = extract_fmu(file)
+        self._callbacks = self._make_callbacks()
+        try:
+            self._slave = FMU2Slave(
+                guid=self.model.guid,
+                unzipDirectory=str(self._folder),
+                modelIdentifier=self.model.coSimulation.modelIdentifier,
+                instanceName=name,
+            )
+            self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        except Exception as error:  # fmpy raises bare Exception; loading raises OSError
+            shutil.rmtree(self._folder, ignore_errors=True)
+            said = "; ".join([str(error), *self.messages()])
+            raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
+        _finalize_at_exit(self._slave.dll)
+
+    def _make_callbacks(self) -> fmi2CallbackFunctions:
+        """Callbacks whose logger keeps messages; fmpy's proxy formats their arguments."""
+
+        def log(_environment: int, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+            if status > 0 and message:
+                self._log.append(message.decode("utf-8", "replace").strip())
+
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(log)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        addLoggerProxy(ctypes.byref(callbacks))
+        return callbacks
+
+    @property
+    def addresses(self) -> Addresses:
+        """Addresses of the FMU's functions."""
+
+        def address(name: str) -> int:
+            return ctypes.cast(getattr(self._slave.dll, name), ctypes.c_void_p).value or 0
+
+        functions = (address(f"fmi2{name}") for name in ("SetReal", "GetReal", "DoStep"))
+        return Addresses(int(self._slave.component), *functions)
+
+    def set(self, name: str, value: float | str) -> None:
+        """Set a variable before or during initialisation.
+
+        Raises:
+            ParameterError: unknown name, wrong type, not finite, or refused by the FMU.
+        """
+        if name not in self.variables:
+            raise ParameterError(
+                f"{self.name}: {self.file.name} has no variable '{name}'; "
+                f"'herringbone check {self.file}' lists them"
+            )
+        kind, reference = self._types[name], self.variables[name].reference
+        if (kind == "String") != isinstance(value, str):
+            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a {kind}")
+        if not isinstance(value, str) and not math.isfinite(value):
+            raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
+        setter = {
+            "Real": self._slave.setReal,
+            "Integer": self._slave.setInteger,
+            "Enumeration": self._slave.setInteger,
+            "Boolean": self._slave.setBoolean,
+            "String": self._slave.setString,
+        }[kind]
+        converted = value if kind in {"Real", "String"} else int(value)
+        try:
+            setter([reference], [converted])
+        except FMICallException as error:
+            raise ParameterError(self._refusal(f"{self.name}.{name} = {value!r}", error)) from error
+
+    def _refusal(self, what: str, error: Exception) -> str:
+        return "; ".join([f"{what}: {error}", *self.messages()])
+
+    def get(self, names: Sequence[str]) -> list[float]:
+        """Values of real variables; raises FmuError."""
+        try:
+            return self._slave.getReal([self.variables[name].reference for name in names])
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name}: reading {', '.join(names)}", error)) from error
+
+    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+        """Set up the experiment and enter initialisation mode; raises FmuError."""
+        try:
+            self._slave.setupExperiment(startTime=start_time, stopTime=stop_time)
+            self._slave.enterInitializationMode()
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+
+    def exit_initialization(self) -> None:
+        """Go to step mode; raises FmuError."""
+        try:
+            self._slave.exitInitializationMode()
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+
+    def messages(self) -> list[str]:
+        """Warnings and errors logged since the last call, each once."""
+        found = list(dict.fromkeys(self._log))
+        self._log.clear()
+        return found
+
+    def close(self) -> None:
+        """Free the instance and remove the extracted files."""
+        self._slave.freeInstance()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+_finalizers: dict[str, object] = {}
+
+
+def _finalize_at_exit(dll: ctypes.CDLL) -> None:
+    """Let pythonfmu release its interpreter reference once, before the process ends.
+
+    Otherwise it is released twice by static destructors, and the process may abort at exit.
+    """
+    if hasattr(dll, "finalizePythonInterpreter") and not _finalizers:
+        _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
+        atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)  # type: ignore[attr-defined]

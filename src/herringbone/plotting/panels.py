@@ -1,0 +1,127 @@
+"""Panels of the pictures: signals over time, and spectra with mesh orders."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.transforms import blended_transform_factory
+
+from herringbone.analysis.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
+from herringbone.plotting.style import HALF_STYLE, MARKER_COLOUR, draw_line
+from herringbone.result import TIME, Result
+
+SHOWN_PERIODS = 6
+"""Mesh periods that a close-up shows."""
+HIGHEST = 3000.0
+"""End of the spectra [Hz]."""
+DECADES = 4.0
+"""Range of amplitudes in a spectrum."""
+_CLOSE_UP_SHARE = 0.05
+_MOST_MARKS = 9
+
+
+def half_name(half: str) -> str:
+    """`pinion_left` -> `pinion left`."""
+    return half.replace("_", " ")
+
+
+def close_up(result: Result) -> slice:
+    """Rows of the last few mesh periods, or of the last 5 % of the run if there is no mesh."""
+    time = result.data[TIME].to_numpy()
+    frequency = run_mesh_frequency(result)
+    span = time[-1] - time[0]
+    length = SHOWN_PERIODS / frequency if frequency else _CLOSE_UP_SHARE * span
+    return slice(int(np.searchsorted(time, time[-1] - min(length, span))), time.size)
+
+
+def time_panel(
+    axes: Axes,
+    result: Result,
+    columns: Mapping[str, str],
+    label: str,
+    *,
+    factor: float = 1.0,
+    unit: str = "",
+    rows: slice | None = None,
+    mean: bool = False,
+    milliseconds: bool = False,
+) -> None:
+    """Signals over time.
+
+    Args:
+        axes: to draw in.
+        result: of a run.
+        columns: column by legend entry or gear half.
+        label: of the ordinate, without unit.
+        factor, unit: of the ordinate; `factor` multiplies the SI value.
+        rows: part of the table that is shown, all if not given.
+        mean: show the signal without its mean over the steady part, and the mean in the legend.
+        milliseconds: abscissa in ms.
+    """
+    rows = rows or slice(None)
+    part = steady_part(result).rows
+    time = result.data[TIME].to_numpy()[rows] * (1e3 if milliseconds else 1.0)
+    for name, column in columns.items():
+        values = result.data[column].to_numpy() * factor
+        entry = half_name(name)
+        if mean:
+            average = float(values[part].mean())
+            values = values - average
+            entry += f" (mean {average:.4g} {unit})"
+        draw_line(axes, time, values[rows], label=entry, **HALF_STYLE.get(name, {}))
+    axes.set_ylabel(f"{label}{', AC' if mean else ''} [{unit}]")
+    axes.set_xlabel(f"time [{'ms' if milliseconds else 's'}]")
+    axes.margins(x=0.0)
+
+
+def spectrum_panel(
+    axes: Axes,
+    result: Result,
+    columns: Mapping[str, str],
+    label: str,
+    *,
+    factor: float = 1.0,
+    unit: str = "",
+) -> None:
+    """Amplitude spectra of the steady part, 0 to 3 kHz, with the mesh orders marked.
+
+    Args:
+        axes: to draw in.
+        result: of a run.
+        columns: column by legend entry or gear half.
+        label: of the ordinate, without unit.
+        factor, unit: of the ordinate; `factor` multiplies the SI value.
+    """
+    part = steady_part(result)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel(f"{label} [{unit}]")
+    count = part.rows.stop - part.rows.start
+    if count < FEWEST_SAMPLES:
+        axes.text(0.5, 0.5, "too few records for a spectrum", ha="center", transform=axes.transAxes)
+        return
+    signals = result.data[list(columns.values())].to_numpy()[part.rows] * factor
+    spectrum = amplitude_spectrum(signals, part.sample_step, padding=4)
+    highest = min(HIGHEST, float(spectrum.frequency[-1]))
+    shown = spectrum.frequency <= highest
+    frequency, amplitude = spectrum.frequency[shown], spectrum.amplitude[shown]
+    top = float(amplitude.max())
+    for i, name in enumerate(columns):
+        height = np.maximum(amplitude[:, i], top * 10.0 ** -(DECADES + 1.0))
+        axes.plot(frequency, height, label=half_name(name), **HALF_STYLE.get(name, {}))
+    if top > 0.0:
+        axes.set_yscale("log")
+        axes.set_ylim(top * 10.0**-DECADES, top * 1.6)
+    axes.set_xlim(0.0, highest)
+    _mark_orders(axes, run_mesh_frequency(result), highest)
+
+
+def _mark_orders(axes: Axes, frequency: float | None, highest: float) -> None:
+    above = blended_transform_factory(axes.transData, axes.transAxes)
+    orders = mesh_orders(frequency or 0.0, highest)
+    every = max(1, -(-len(orders) // _MOST_MARKS))
+    for order, at in orders[every - 1 :: every]:
+        axes.axvline(at, color=MARKER_COLOUR, linewidth=0.8, linestyle=":", zorder=0.5)
+        text = "$f_m$" if order == 1 else f"${order} f_m$"
+        axes.text(at, 1.0, text, transform=above, ha="center", va="bottom", fontsize=8,
+                  color=MARKER_COLOUR)  # fmt: skip

@@ -1,0 +1,190 @@
+"""The standard pictures of a run: bearing forces, seat velocities, spectra, torques and speeds."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from herringbone.analysis.operating_point import by_half, instance, run_mesh_frequency, steady_part
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.plotting.columns import overview_columns
+from herringbone.plotting.overview import overview
+from herringbone.plotting.panels import close_up, spectrum_panel, time_panel
+from herringbone.plotting.style import DPI, figure_legend, legend, new_figure, styled
+from herringbone.result import Result
+
+DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
+_FORCE_DIRECTION = {"y": "y (line of action)", "z": "z (axial)"}
+_MM = 1e3
+_R_MIN = 30.0 / math.pi
+
+
+def headline(result: Result, what: str) -> str:
+    """Title of a picture: what it shows, of which run."""
+    info = result.info
+    scene = f", scene {info.scene}" if info.scene else ""
+    return f"{what}: {info.system}{scene}"
+
+
+def _rows(
+    result: Result, channel: str, axes: str, what: str
+) -> list[tuple[str, dict[str, str]]]:
+    found = [(axis, by_half(result, channel, axis)) for axis in axes]
+    rows = [(axis, columns) for axis, columns in found if columns]
+    if not rows:
+        raise ParameterError(f"system '{result.info.system}' records no {what}")
+    return rows
+
+
+@styled
+def bearing_forces(result: Result) -> Figure:
+    """Forces of the bearings on the shaft [N]: whole run, and AC over the last mesh periods.
+
+    Raises:
+        ParameterError: the system records none.
+    """
+    rows = _rows(result, "bearing_force", "yz", "bearing forces")
+    figure = new_figure(headline(result, "Bearing forces on the shaft"), len(rows), 2)
+    panels = figure.subplots(len(rows), 2, squeeze=False, width_ratios=(1.0, 1.25))
+    for (whole, last), (axis, columns) in zip(panels, rows, strict=True):
+        label = f"force {axis}"
+        time_panel(whole, result, columns, label, unit="N")
+        whole.set_title(_FORCE_DIRECTION[axis])
+        time_panel(last, result, columns, label, unit="N", rows=close_up(result), mean=True,
+                   milliseconds=True)  # fmt: skip
+        legend(last, 2)
+    return figure
+
+
+@styled
+def seat_velocities(result: Result) -> Figure:
+    """Housing velocities at the bearing seats [mm/s]: whole run and the last mesh periods.
+
+    Raises:
+        ParameterError: the system records none.
+    """
+    rows = _rows(result, "seat_velocity", "xyz", "seat velocities")
+    figure = new_figure(headline(result, "Housing velocities at the seats"), len(rows), 2)
+    panels = figure.subplots(len(rows), 2, squeeze=False, width_ratios=(1.0, 1.25))
+    for (whole, last), (axis, columns) in zip(panels, rows, strict=True):
+        label = f"velocity {axis}"
+        time_panel(whole, result, columns, label, factor=_MM, unit="mm/s")
+        whole.set_title(DIRECTION[axis])
+        time_panel(last, result, columns, label, factor=_MM, unit="mm/s", rows=close_up(result),
+                   milliseconds=True)  # fmt: skip
+    figure_legend(figure, panels[0][0])
+    return figure
+
+
+@styled
+def spectra(result: Result) -> Figure:
+    """Amplitude spectra 0 to 3 kHz of bearing forces [N] and seat velocities [mm/s].
+
+    Mesh orders are marked when the speed is steady.
+
+    Raises:
+        ParameterError: the system records neither.
+    """
+    shown = []
+    for channel, axes, what, factor, unit in (
+        ("bearing_force", "yz", "bearing force", 1.0, "N"),
+        ("seat_velocity", "xyz", "seat velocity", _MM, "mm/s"),
+    ):
+        found = [(axis, by_half(result, channel, axis)) for axis in axes]
+        row = [(f"{what} {axis}", columns, factor, unit) for axis, columns in found if columns]
+        shown += [row] if row else []
+    if not shown:
+        raise ParameterError(f"system '{result.info.system}' records no bearing forces")
+    if len(shown[0]) == 2 and (mesh := _mesh_columns(result)):
+        shown[0].append(("mesh force", mesh, 1.0, "N"))
+    part, frequency = steady_part(result), run_mesh_frequency(result)
+    what = f"Amplitude spectra, {part.begin:.3g} to {part.end:.3g} s"
+    what += f", $f_m$ = {frequency:.1f} Hz" if frequency else ""
+    width = max(map(len, shown))
+    figure = new_figure(headline(result, what), len(shown), width, 14.0)
+    panels = figure.subplots(len(shown), width, squeeze=False)
+    for axes_row, row in zip(panels, shown, strict=True):
+        for axes in axes_row[len(row) :]:
+            axes.set_visible(False)
+        for axes, (label, columns, factor, unit) in zip(axes_row, row, strict=False):
+            spectrum_panel(axes, result, columns, label, factor=factor, unit=unit)
+            if label == "mesh force":
+                axes.legend(loc="upper right")
+    figure_legend(figure, panels[-1][0])
+    return figure
+
+
+def _mesh_columns(result: Result) -> dict[str, str]:
+    mesh = instance(result, "gear_mesh")
+    columns = {side: f"{mesh}.mesh_{side}.force" for side in ("left", "right")}
+    return {side: column for side, column in columns.items() if column in result.data}
+
+
+@styled
+def torques(result: Result) -> Figure:
+    """Torques [N m] and speeds [r/min] on the pinion's and on the wheel's side.
+
+    Raises:
+        ParameterError: the system records no torque.
+    """
+    mesh = instance(result, "gear_mesh")
+    sides = {}
+    for gear, coupling, motor in (
+        ("pinion", "drive_coupling", "drive_motor"),
+        ("wheel", "load_coupling", "load_motor"),
+    ):
+        torque = {coupling: f"{coupling}.torque", motor: f"{motor}.torque"}
+        speed = {gear: f"{mesh}.{gear}.w", motor: f"{motor}.flange.w"}
+        sides[gear] = [
+            {n.replace("_", " "): c for n, c in names.items() if c in result.data}
+            for names in (torque, speed)
+        ]
+    if not any(torque for torque, _ in sides.values()):
+        raise ParameterError(f"system '{result.info.system}' records no torque")
+    figure = new_figure(headline(result, "Torques and speeds"), 2, 2)
+    panels = figure.subplots(2, 2, sharex=True)
+    for column, (gear, (torque, speed)) in enumerate(sides.items()):
+        time_panel(panels[0][column], result, torque, "torque", unit="N m")
+        time_panel(panels[1][column], result, speed, "speed", factor=_R_MIN, unit="r/min")
+        panels[0][column].set_title(f"{gear} side")
+        for axes in panels[:, column]:
+            if axes.lines:
+                legend(axes, 2)
+            else:
+                axes.set_visible(False)
+    return figure
+
+
+PICTURES: dict[str, Callable[[Result], Figure]] = {
+    "bearing_forces": bearing_forces,
+    "seat_velocities": seat_velocities,
+    "spectra": spectra,
+    "torques": torques,
+}
+
+
+def write_pictures(result: Result, folder: Path) -> list[Path]:
+    """Write the overview and the standard pictures as PNG; those without columns are left out.
+
+    Args:
+        result: of a run.
+        folder: existing folder.
+
+    Raises:
+        HerringboneError: a file cannot be written.
+    """
+    files = []
+    for name, draw in {"overview": overview, **PICTURES}.items():
+        try:
+            figure = draw(result)
+        except ParameterError:
+            continue
+        file = folder / f"{name}.png"
+        try:
+            FigureCanvasAgg(figure).print_png(file)
+        except OSError as error:
+            raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
+        files.append(file)
+    return files
