@@ -9,6 +9,8 @@ from herringbone.core.errors import ResourceError
 
 PACKAGE = Path(__file__).resolve().parents[1]
 CACHE_VARIABLE = "HERRINGBONE_CACHE"
+_COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
+"""Packages whose sources decide what is compiled and packed."""
 
 
 def _clone() -> Path | None:
@@ -38,9 +40,9 @@ def systems_folder() -> Path:
 
 @cache
 def content_hash() -> str:
-    """Hash of the package's sources and resources; a change of any of them changes it."""
+    """Hash of the sources and resources that decide what is compiled and packed."""
     digest = hashlib.sha256()
-    for root in (PACKAGE, _data("fmus")):
+    for root in (*(PACKAGE / name for name in _COMPUTING), _data("fmus")):
         for file in sorted(root.rglob("*")):
             if file.suffix in {".py", ".csv", ".c", ".h"} and file.is_file():
                 digest.update(file.relative_to(root).as_posix().encode())

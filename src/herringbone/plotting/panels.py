@@ -21,6 +21,13 @@ _CLOSE_UP_SHARE = 0.05
 _MOST_MARKS = 9
 
 
+def headline(result: Result, what: str) -> str:
+    """Title of a picture: what it shows, of which run."""
+    info = result.info
+    scene = f", scene {info.scene}" if info.scene else ""
+    return f"{what}: {info.system}{scene}"
+
+
 def half_name(half: str) -> str:
     """`pinion_left` -> `pinion left`."""
     return half.replace("_", " ")

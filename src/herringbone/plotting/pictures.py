@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 
 from herringbone.analysis.operating_point import by_half, instance, run_mesh_frequency, steady_part
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.plotting.columns import overview_columns
 from herringbone.plotting.overview import overview
-from herringbone.plotting.panels import close_up, spectrum_panel, time_panel
+from herringbone.plotting.panels import close_up, headline, spectrum_panel, time_panel
 from herringbone.plotting.style import DPI, figure_legend, legend, new_figure, styled
 from herringbone.result import Result
 
@@ -19,13 +18,6 @@ DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
 _FORCE_DIRECTION = {"y": "y (line of action)", "z": "z (axial)"}
 _MM = 1e3
 _R_MIN = 30.0 / math.pi
-
-
-def headline(result: Result, what: str) -> str:
-    """Title of a picture: what it shows, of which run."""
-    info = result.info
-    scene = f", scene {info.scene}" if info.scene else ""
-    return f"{what}: {info.system}{scene}"
 
 
 def _rows(
