@@ -52,12 +52,14 @@ class Prepared:
         degree: interface degree that each part is to be set to.
         order: degree of extrapolation.
         notes: downgrades, and what they cost.
+        starter: plan for the first `order` macro steps, if the scheme needs history.
     """
 
     plan: Plan
     degree: tuple[int, ...]
     order: int
     notes: tuple[str, ...]
+    starter: Plan | None = None
 
     def run(
         self,
@@ -70,7 +72,11 @@ class Prepared:
         every: int,
     ) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
-        return run_stages(self.plan, history, self.order, t0, h, start, count, records, every)
+        if self.starter is not None and start < self.order:
+            plan, count = self.starter, min(count, self.order - start)
+        else:
+            plan = self.plan
+        return run_stages(plan, history, self.order, t0, h, start, count, records, every)
 
 
 def prepare_stages(

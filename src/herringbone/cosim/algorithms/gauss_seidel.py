@@ -6,14 +6,18 @@ forces are then interpolated for the body. Each part steps once a macro step; th
 are those at the partly extrapolated motion. Never is one side's position held against the other
 side's newer one.
 
+The first steps, without history to extrapolate from, are Jacobi steps: a held angle of a turning
+shaft would be a false torque.
+
 Order q: degree of extrapolation and interpolation.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
+from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.network import Network
 
 
@@ -60,4 +64,5 @@ class GaussSeidel(Algorithm):
             stages.append([body])
             done.add(body)
         stages += [[element] for element in waiting]
-        return prepare_stages(network, stages, self.order)
+        prepared = prepare_stages(network, stages, self.order)
+        return replace(prepared, starter=Jacobi(self.order).prepare(network).plan)
