@@ -1,1 +1,32 @@
-"""FMI co-simulation components for herringbone gearboxes."""
+"""FMI co-simulation components for herringbone gearboxes, and a fast master.
+
+    import herringbone as hb
+    result = hb.run("test_rig", t_end=0.2)
+    result.plot()
+
+Units are SI. Names are loaded when they are used, so that the import is quick.
+"""
+
+from importlib import import_module
+from importlib.metadata import version
+
+__version__ = version("herringbone")
+
+_WHERE = {
+    "run": "herringbone.api",
+    "Jacobi": "herringbone.cosim.algorithms",
+    "GaussSeidel": "herringbone.cosim.algorithms",
+    "HerringboneError": "herringbone.core",
+    "OutcomeKind": "herringbone.core",
+    "Result": "herringbone.result",
+    "Scene": "herringbone.scenes",
+    "System": "herringbone.cosim.system",
+}
+
+__all__ = ["GaussSeidel", "HerringboneError", "Jacobi", "OutcomeKind", "Result", "Scene", "System", "run"]  # noqa: F822
+
+
+def __getattr__(name: str) -> object:
+    if name in _WHERE:
+        return getattr(import_module(_WHERE[name]), name)
+    raise AttributeError(f"module 'herringbone' has no attribute '{name}'")

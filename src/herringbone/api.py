@@ -82,7 +82,7 @@ def run(
         replace_parts: FMU files by instance name.
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
-        progress: called with the simulated time [s] reached.
+        progress: called with the simulated time reached and its end [s].
 
     Returns:
         The result; a run that ends early is an outcome of it, not an exception.

@@ -106,7 +106,7 @@ class Twin:
         times: np.ndarray,
         columns: Sequence[str],
         tolerance: float = TOLERANCE,
-        progress: Callable[[float], None] | None = None,
+        progress: Callable[[float, float], None] | None = None,
     ) -> np.ndarray:
         """Outputs (times, columns) of the solution from the start values.
 
@@ -114,7 +114,7 @@ class Twin:
             times: ascending, from 0 [s].
             columns: `instance.variable`.
             tolerance: relative tolerance.
-            progress: called with the time reached [s].
+            progress: called with the time reached and the end [s].
 
         Raises:
             HerringboneError: the solver gives up.
@@ -138,7 +138,7 @@ class Twin:
         rows: np.ndarray,
         states: np.ndarray,
         tolerance: float,
-        progress: Callable[[float], None] | None,
+        progress: Callable[[float, float], None] | None,
     ) -> np.ndarray:
         """Solve between two breakpoints; fills the states at the wanted rows."""
         dx = np.empty_like(x)
@@ -161,7 +161,7 @@ class Twin:
                 states[:, rows[position:end]] = solver.dense_output()(inside)
                 position = end
             if progress:
-                progress(solver.t)
+                progress(solver.t, float(times[-1]))
         return solver.y
 
 

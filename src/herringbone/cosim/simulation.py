@@ -20,7 +20,8 @@ from herringbone.cosim.system import System
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag; a chunk never takes twice as long."""
 
-Progress = Callable[[float], None]
+Progress = Callable[[float, float], None]
+"""Called with the simulated time reached and its end [s]."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ def simulate(
         parts: participants, in the order of the system's parts.
         algorithm: coupling algorithm.
         grid: communication and record points.
-        progress: called with the simulated time [s] reached.
+        progress: called with the simulated time reached and its end [s].
 
     Raises:
         StructureError: the connections are wrong.
@@ -166,7 +167,7 @@ class _Run:
                 rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
-                    progress(done * self.grid.step)
+                    progress(done * self.grid.step, self.grid.count * self.grid.step)
         wall = time.perf_counter() - begin
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)

@@ -1,0 +1,198 @@
+"""Command line: list, build, check, run, export."""
+
+import argparse
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from tqdm import tqdm
+
+import herringbone
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+
+EXIT_CODES = {
+    OutcomeKind.COMPLETED: 0,
+    OutcomeKind.DIVERGED: 1,
+    OutcomeKind.PART_FAILED: 1,
+    OutcomeKind.INTERRUPTED: 130,
+}
+BAD_INPUT = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    options = _parser().parse_args(arguments)
+    try:
+        return options.command(options)
+    except HerringboneError as error:
+        _say(f"herringbone: {error}")
+        if options.debug:
+            traceback.print_exc()
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        _say("herringbone: interrupted")
+        return EXIT_CODES[OutcomeKind.INTERRUPTED]
+
+
+def _say(text: str) -> None:
+    sys.stderr.write(text + "\n")
+
+
+def _show(text: str) -> None:
+    sys.stdout.write(text + "\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="herringbone", description="FMI co-simulation of herringbone gearboxes"
+    )
+    parser.add_argument("--version", action="version", version=herringbone.__version__)
+    parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def add(name: str, command: Callable, text: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=text, description=text)
+        sub.set_defaults(command=command)
+        return sub
+
+    sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
+    sub.add_argument("name", nargs="?", help="component whose variables are shown")
+    sub = add("build", _build, "build the Python FMUs")
+    sub.add_argument("component", nargs="*", help="components; all if none is given")
+    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+    sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
+    sub.add_argument("fmu", type=Path)
+    _run_options(add("run", _run, "run a system"))
+    sub = add("export", _export, "export a system as flat .ssp that other masters load")
+    sub.add_argument("system")
+    sub.add_argument("--scene")
+    sub.add_argument("--step", type=float, default=2e-6, help="communication step size in s")
+    sub.add_argument("--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE")
+    sub.add_argument("-o", "--output", type=Path, help="file; SYSTEM.ssp if not given")
+    return parser
+
+
+def _run_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+    sub.add_argument("--algorithm", help="NAME or NAME:key=value,..., e.g. jacobi:order=2")
+    sub.add_argument("--step", type=float, help="communication step size in s")
+    sub.add_argument("--t-end", type=float, help="duration in s")
+    sub.add_argument("--record-step", type=float, help="time between records in s")
+    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
+    sub.add_argument("--fmu", default="python", help="python (default) or in-process")
+    sub.add_argument("--replace", action="append", default=[], metavar="INSTANCE=FILE.fmu")
+    sub.add_argument("--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE")
+    sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
+    sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
+    sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _assignments(items: Sequence[str], option: str) -> dict[str, str]:
+    found = {}
+    for item in items:
+        name, equals, value = item.partition("=")
+        if not equals or not name or not value:
+            raise ParameterError(f"{option} {item}: it must be NAME=VALUE")
+        found[name] = value
+    return found
+
+
+def _values(items: Sequence[str]) -> dict[str, float | str]:
+    """Numbers where they read as numbers, text otherwise."""
+    found: dict[str, float | str] = {}
+    for name, text in _assignments(items, "--set").items():
+        try:
+            found[name] = float(text)
+        except ValueError:
+            found[name] = text
+    return found
+
+
+def _run(options: argparse.Namespace) -> int:
+    from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.report import summary_text, write_report  # noqa: PLC0415
+
+    optional = {
+        name: value
+        for name in ("scene", "algorithm", "step", "t_end", "record_step", "start")
+        if (value := getattr(options, name)) is not None
+    }
+    with _Bar() as bar:
+        result = api.run(
+            options.system,
+            **optional,
+            fmu=options.fmu,
+            replace_parts=_assignments(options.replace, "--replace"),
+            values=_values(options.set),
+            reference=options.reference,
+            progress=bar.show,
+        )
+    name = Path(options.system).stem
+    folder = options.output or Path("results") / f"{name}-{result.info.scene}"
+    result = write_report(result, folder, parquet=options.parquet)
+    _show(result.to_json() if options.json else summary_text(result))
+    if result.outcome.message:
+        _say(f"herringbone: {result.outcome.kind.value}: {result.outcome.message}")
+    return EXIT_CODES[result.outcome.kind]
+
+
+class _Bar:
+    """Progress bar of simulated milliseconds, on a terminal only."""
+
+    def __enter__(self) -> "_Bar":
+        self._bar: tqdm | None = None
+        return self
+
+    def show(self, reached: float, t_end: float) -> None:
+        """Move the bar to a simulated time [s]."""
+        if self._bar is None:
+            self._bar = tqdm(
+                total=round(1e3 * t_end, 3),
+                unit="ms",
+                disable=None,
+                bar_format="{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]",
+            )
+        self._bar.update(1e3 * reached - self._bar.n)
+
+    def __exit__(self, *exception: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _list(options: argparse.Namespace) -> int:
+    from herringbone.listing import describe_component, overview  # noqa: PLC0415
+
+    _show(describe_component(options.name) if options.name else overview())
+    return 0
+
+
+def _build(options: argparse.Namespace) -> int:
+    from herringbone.export import build_fmus  # noqa: PLC0415
+
+    for file in build_fmus(options.component, options.output):
+        _show(str(file))
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    from herringbone.fmi.check import check_fmu  # noqa: PLC0415
+
+    problems = check_fmu(options.fmu)
+    for problem in problems:
+        _show(problem)
+    _show(f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems")
+    return 1 if problems else 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    from herringbone.export import export_ssp  # noqa: PLC0415
+
+    file = options.output or Path(f"{Path(options.system).name}.ssp")
+    export_ssp(
+        options.system, file, scene=options.scene, step=options.step, values=_values(options.set)
+    )
+    _show(str(file))
+    return 0
