@@ -79,6 +79,7 @@ class Instance:
         if not self._stale_resources:
             return
         files = {name: self._resource(name, text) for name, text in self.texts.items()}
+        self.block[self.component.declaration.first_table :] = 0.0
         try:
             self.component.load(self.block, files)
         except ResourceError as error:
