@@ -1,0 +1,44 @@
+"""Build the FMUs of components into the cache of generated artefacts."""
+
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from herringbone.components.registry import COMPONENTS, component
+from herringbone.core import FmuError
+from herringbone.core.paths import cache_folder
+
+
+def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
+    """Build FMUs with pythonfmu, or take those that these sources gave before.
+
+    Args:
+        names: components; all if not given.
+
+    Returns:
+        Path of the FMU by component.
+
+    Raises:
+        StructureError: there is no component of that name.
+        FmuError: pythonfmu failed.
+    """
+    folder = cache_folder("fmus")
+    names = list(COMPONENTS if names is None else names)
+    fmus = {component(name).name: folder / f"{name}.fmu" for name in names}
+    missing = [name for name, fmu in fmus.items() if not fmu.is_file()]
+    if missing:
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            _pack(missing, Path(scratch))
+            for name in missing:
+                (Path(scratch) / f"{name}.fmu").replace(fmus[name])
+    return fmus
+
+
+def _pack(names: list[str], folder: Path) -> None:
+    command = [sys.executable, "-m", "herringbone.fmi.pack", str(folder), *names]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode:
+        lines = run.stderr.strip().splitlines() or [f"exit code {run.returncode}"]
+        raise FmuError(f"pythonfmu could not build {', '.join(names)}: {lines[-1]}")

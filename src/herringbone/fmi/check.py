@@ -1,0 +1,111 @@
+"""Check any FMI 2.0 co-simulation FMU: file, XML, a default run, state and reset."""
+
+import math
+from pathlib import Path
+
+from fmpy.fmi1 import FMICallException
+from fmpy.model_description import ModelDescription
+from fmpy.validation import validate_fmu
+
+from herringbone.core import FmuError
+from herringbone.cosim.fmu_file import read_fmu
+from herringbone.fmi.host import Host
+
+_STEPS = 10
+_STEP_SIZE = 1e-3
+
+
+def check_fmu(path: Path) -> list[str]:
+    """Check an FMU; it is executed, so check only what you would also run.
+
+    Args:
+        path: the FMU.
+
+    Returns:
+        Problems, one line each; empty if none was found.
+    """
+    try:
+        description = read_fmu(path)
+    except FmuError as error:
+        return [str(error)]
+    problems = validate_fmu(str(path)) + _without_unit(description)
+    for check in (_default_run, _state_round_trip, _reset):
+        try:
+            problems += check(path, description)
+        except (FmuError, FMICallException) as error:
+            problems.append(f"{path}: {check.__name__.strip('_').replace('_', ' ')}: {error}")
+    return problems
+
+
+def _without_unit(description: ModelDescription) -> list[str]:
+    reals = [v for v in description.modelVariables if v.type == "Real"]
+    return [
+        f"{v.name}: a Real without unit"
+        for v in reals
+        if not (v.unit or (v.declaredType and v.declaredType.unit))
+    ]
+
+
+def _step_size(description: ModelDescription) -> float:
+    experiment = description.defaultExperiment
+    return float(experiment.stepSize) if experiment and experiment.stepSize else _STEP_SIZE
+
+
+def _outputs(description: ModelDescription) -> list[str]:
+    variables = description.modelVariables
+    return [v.name for v in variables if v.causality == "output" and v.type == "Real"]
+
+
+def _advance(host: Host, first: int) -> list[float]:
+    h = _step_size(host.model)
+    for n in range(first, first + _STEPS):
+        host.step(n * h, h)
+    return host.values(*_outputs(host.model))
+
+
+def _default_run(path: Path, description: ModelDescription) -> list[str]:
+    with Host(path.stem, path) as host:
+        host.initialise()
+        values = _advance(host, 0)
+    names = _outputs(description)
+    bad = [f"{n} = {v}" for n, v in zip(names, values, strict=True) if not math.isfinite(v)]
+    return [f"default run: {text} after {_STEPS} steps" for text in bad]
+
+
+def _state_round_trip(path: Path, description: ModelDescription) -> list[str]:
+    if not description.coSimulation.canGetAndSetFMUstate:
+        return []
+    with Host(path.stem, path) as host:
+        host.initialise()
+        _advance(host, 0)
+        saved = host.slave.getFMUstate()
+        before = _advance(host, _STEPS)
+        if description.coSimulation.canSerializeFMUstate:
+            serialised = host.slave.serializeFMUstate(saved)
+            host.slave.freeFMUstate(saved)
+            saved = host.slave.deSerializeFMUstate(serialised)
+        host.slave.setFMUstate(saved)
+        after = _advance(host, _STEPS)
+        host.slave.freeFMUstate(saved)
+    return _differences(description, before, after, "a repeated step after setFMUstate")
+
+
+def _reset(path: Path, description: ModelDescription) -> list[str]:
+    with Host(path.stem, path) as host:
+        host.initialise()
+        before = _advance(host, 0)
+        host.slave.reset()
+        host.initialise()
+        after = _advance(host, 0)
+    return _differences(description, before, after, "a run after fmi2Reset")
+
+
+def _differences(
+    description: ModelDescription, before: list[float], after: list[float], what: str
+) -> list[str]:
+    names = _outputs(description)
+    return [
+        f"{what} gives {name} = {second:.17g} instead of {first:.17g}"
+        for name, first, second in zip(names, before, after, strict=True)
+        if first != second
+    ]

@@ -1,0 +1,73 @@
+"""Golden results: a short run of each component's FMU.
+
+`python -m herringbone.fmi.golden` renews them. Every input is a sine of its own frequency and
+phase; the amplitude goes by the unit.
+"""
+
+import math
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import Component
+from herringbone.core.paths import component_folder
+from herringbone.fmi.build import build_python_fmus
+from herringbone.fmi.host import Host
+
+STEP_SIZE: Final = 2e-5
+STEPS: Final = 100
+STEPS_PER_ROW: Final = 5
+_AMPLITUDES: Final = {
+    "N": 1e3, "N.m": 50.0, "m": 1e-6, "m/s": 1e-2, "rad": 1e-3, "rad/s": 10.0,
+}  # fmt: skip
+
+
+def golden_file(name: str) -> Path:
+    """Where the golden result of a component lies."""
+    return component_folder(name) / "golden.csv"
+
+
+def columns(component: Component) -> list[str]:
+    """Time and all outputs, without their nodes."""
+    return ["time", *(v.name for v in component.declaration.outputs)]
+
+
+def inputs(component: Component, time: float) -> dict[str, float]:
+    """Values of all inputs at `time` [s]."""
+    return {
+        v.name: _AMPLITUDES[v.unit] * math.sin(2.0 * math.pi * (300.0 + 70.0 * i) * time + i)
+        for i, v in enumerate(component.declaration.inputs)
+    }
+
+
+def golden_run(component: Component, fmu: Path) -> np.ndarray:
+    """Run an FMU of the component.
+
+    Returns:
+        Rows of `columns(component)`, every STEPS_PER_ROW steps of STEP_SIZE [s].
+    """
+    names = columns(component)[1:]
+    with Host(component.name, fmu) as host:
+        host.initialise(inputs(component, 0.0))
+        rows = [[0.0, *host.values(*names)]]
+        for n in range(STEPS):
+            host.set_values(inputs(component, n * STEP_SIZE))
+            host.step(n * STEP_SIZE, STEP_SIZE)
+            if (n + 1) % STEPS_PER_ROW == 0:
+                rows.append([(n + 1) * STEP_SIZE, *host.values(*names)])
+    return np.array(rows)
+
+
+def write_golden() -> None:
+    """Write the golden results of all components into their folders."""
+    for name, fmu in build_python_fmus().items():
+        component = COMPONENTS[name]
+        header = ",".join(columns(component))
+        rows = golden_run(component, fmu)
+        np.savetxt(golden_file(name), rows, "%.13g", ",", header=header, comments="")
+
+
+if __name__ == "__main__":
+    write_golden()

@@ -1,0 +1,46 @@
+"""The FMI variables of a component, by value reference.
+
+The value reference of a real is its index in the block, that of a String lies above the block.
+"""
+
+from dataclasses import replace
+
+from herringbone.core import Declaration, Text, Variable
+from herringbone.core.declaration import node_name
+from herringbone.core.variable import NODES, Causality, Variability
+
+
+def reals(declaration: Declaration) -> dict[int, Variable]:
+    """The real variables by ascending value reference; the nodes of a signal are variables too."""
+    index = declaration.index
+    variables = {}
+    for variable in declaration.variables:
+        variables[index[variable.name]] = variable
+        if variable.nodes:
+            for node in range(1, NODES + 1):
+                name = node_name(variable.name, node)
+                text = f"{variable.description}; node {node} of the macro step"
+                variables[index[name]] = replace(variable, name=name, description=text)
+    return dict(sorted(variables.items()))
+
+
+def texts(declaration: Declaration) -> dict[int, Text]:
+    """The String parameters by value reference."""
+    return dict(enumerate(declaration.texts, declaration.size))
+
+
+def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
+    """The inputs on which an output depends directly, each followed by its nodes."""
+    names = []
+    for name in variable.feedthrough:
+        names += [name, *(node_name(name, node) for node in range(1, NODES + 1))]
+    return [name for name in names if name in declaration.index]
+
+
+def settable(variable: Variable, *, initialised: bool) -> bool:
+    """True if FMI allows that the environment sets the variable."""
+    if variable.causality is Causality.INPUT:
+        return True
+    if initialised:
+        return variable.variability is Variability.TUNABLE
+    return variable.state or variable.causality is Causality.PARAMETER

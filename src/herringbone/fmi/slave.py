@@ -1,0 +1,248 @@
+"""Base class of the Python FMUs: FMI 2.0 calls on one instance of a component."""
+
+import hashlib
+import math
+from enum import IntEnum
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from pythonfmu.enums import Fmi2Status
+
+from herringbone.components.registry import component
+from herringbone.core import FmuError, Instance
+from herringbone.core.instance import check_value
+from herringbone.core.paths import content_hash
+from herringbone.core.variable import Causality
+from herringbone.fmi import interface, model_description, state
+from herringbone.fmi.guarded_slave import GuardedSlave
+from herringbone.fmi.state import FmuState
+
+
+class _Phase(IntEnum):
+    INSTANTIATED = 0
+    INITIALISATION = 1
+    STEPPING = 2
+
+
+class ComponentSlave(GuardedSlave):
+    """One instance of the component that has the name of the class.
+
+    The script of an FMU derives from it and binds `do_step` to `advance` and `terminate` to `end`.
+    """
+
+    log_categories = model_description.LOG_CATEGORIES
+
+    def __init__(self, **kwargs: object) -> None:
+        super().__init__(**kwargs)
+        self._component = component(type(self).__name__)
+        declaration = self._component.declaration
+        folder = Path(self.resources) if self.resources else None
+        self._instance = Instance(self._component, self.instance_name, folder)
+        block = self._instance.block
+        self._values = memoryview(block)
+        self._saved = memoryview(block[: declaration.first_table]).cast("B")
+        self._first_parameter = declaration.mutable_size * block.itemsize
+        self._reals = interface.reals(declaration)
+        self._texts = interface.texts(declaration)
+        self._references = frozenset(self._reals)
+        self._inputs = frozenset(
+            reference for reference, v in self._reals.items() if v.causality is Causality.INPUT
+        )
+        self._owner = f"{self._component.name} {content_hash()}"
+        self._tables = ""
+        self._phase = _Phase.INSTANTIATED
+        self._outdated = False
+        self._check_sources()
+
+    def _check_sources(self) -> None:
+        """Warn if the FMU was built from other sources than the package that computes it."""
+        script = Path(self.resources or "", "slavemodule.txt")
+        built = script.read_text().strip().rpartition("_")[2] if script.is_file() else ""
+        if built and built != content_hash():
+            self._say(
+                f"{self.instance_name}: this FMU was built from sources {built}, but the installed "
+                f"package herringbone has {content_hash()}; build the FMU again",
+                Fmi2Status.warning,
+            )
+
+    def to_xml(self, model_options: object = None) -> Element:
+        """modelDescription.xml, made from the declaration."""
+        del model_options
+        return model_description.model_description(self._component)
+
+    def setup_experiment(
+        self, start_time: float, stop_time: float | None, tolerance: float | None
+    ) -> None:
+        """Take the start time [s]."""
+        del stop_time, tolerance
+        self._time = start_time
+
+    def enter_initialization_mode(self) -> None:
+        """From now on, until `exit_initialization_mode`, outputs follow inputs and parameters."""
+        self._phase = _Phase.INITIALISATION
+        self._outdated = True
+
+    def exit_initialization_mode(self) -> None:
+        """Check parameters, read resources, compute states and outputs.
+
+        Raises:
+            FmuError: there was an error since the instantiation.
+        """
+        if not self._failure:
+            self._attempt(self._initialise)
+        if self._failure:
+            self._raise()
+        self._phase = _Phase.STEPPING
+        self._outdated = False
+
+    def _initialise(self) -> None:
+        self._read_resources()
+        self._instance.initialise(self._time)
+
+    def _read_resources(self) -> None:
+        if not self._tables:
+            self._instance.load_resources()
+            tables = self._instance.block[self._component.declaration.first_table :]
+            self._tables = hashlib.sha256(tables.tobytes()).hexdigest()[:16]
+
+    def _refresh(self) -> None:
+        """Compute states and outputs in initialisation mode."""
+        self._outdated = False
+        self._read_resources()
+        self._component.start(self._instance.block)
+        self._component.kernels.out(self._instance.block, self._time)
+
+    def advance(self, time: float, step_size: float) -> bool:
+        """Step from `time` to `time + step_size` [s]; False discards the step."""
+        self._time = time
+        if not self._failure:
+            self._attempt(self._step, time, step_size)
+        if self._failure:
+            return False
+        self._time = time + step_size
+        return True
+
+    def _step(self, time: float, step_size: float) -> None:
+        if self._phase is not _Phase.STEPPING:
+            self._fail(f"{self.instance_name}: doStep before the end of initialisation")
+        elif not 0.0 <= step_size < math.inf:
+            self._fail(f"{self.instance_name}: step size {step_size} s; it must be 0 or positive")
+        elif self._instance.step(time, step_size):
+            name, value = self._instance.first_not_finite() or ("result", math.nan)
+            unit = next((f" {v.unit}" for v in self._reals.values() if v.name == name), "")
+            self._fail(
+                f"{self.instance_name}.{name} = {value}{unit} after a step of {step_size:g} s; "
+                "reduce the communication step size, or check the inputs"
+            )
+
+    def end(self) -> None:
+        """Nothing is left to do at fmi2Terminate."""
+
+    def get_real(self, vrs: list[int]) -> list[float]:
+        """Values of real variables, in their units."""
+        if self._outdated:
+            self._attempt(self._refresh)
+        values = self._values
+        if self._references.issuperset(vrs):
+            return [values[vr] for vr in vrs]
+        self._unknown("Real", vrs, self._references)
+        return [values[vr] if vr in self._references else math.nan for vr in vrs]
+
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        """Set inputs, parameters and, until initialisation ends, states."""
+        if self._inputs.issuperset(vrs) and math.isfinite(sum(values)):
+            target = self._values
+            for vr, value in zip(vrs, values, strict=True):
+                target[vr] = value
+        else:
+            for vr, value in zip(vrs, values, strict=True):
+                self._attempt(self._set_checked, vr, value)
+        self._outdated = self._phase is _Phase.INITIALISATION
+
+    def _set_checked(self, vr: int, value: float) -> None:
+        if vr not in self._references:
+            self._unknown("Real", [vr])
+            return
+        variable = self._reals[vr]
+        check_value(self.instance_name, variable, value)
+        if interface.settable(variable, initialised=self._phase is _Phase.STEPPING):
+            self._values[vr] = value
+        else:
+            self._fail(
+                f"{self.instance_name}.{variable.name} = {value:g} {variable.unit}: "
+                f"a {variable.variability} {variable.causality} cannot be set now"
+            )
+
+    def get_string(self, vrs: list[int]) -> list[str]:
+        """Resource file names."""
+        if self._texts.keys() >= set(vrs):
+            return [self._instance.texts[self._texts[vr].name] for vr in vrs]
+        return super().get_string(vrs)
+
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        """Name resource files; they are read when an output is first needed."""
+        for vr, value in zip(vrs, values, strict=True):
+            if vr not in self._texts:
+                self._unknown("String", [vr])
+            elif self._phase is _Phase.STEPPING:
+                name = self._texts[vr].name
+                self._fail(f"{self.instance_name}.{name} = '{value}': it cannot be set now")
+            else:
+                self._instance.set(self._texts[vr].name, value)
+                self._tables = ""
+        self._outdated = self._phase is _Phase.INITIALISATION
+
+    def _get_fmu_state(self) -> FmuState:
+        texts = dict(self._instance.texts)
+        data = self._saved.tobytes()
+        return FmuState(self._owner, data, texts, self._tables, int(self._phase), self._time)
+
+    def _set_fmu_state(self, saved: FmuState | None) -> None:
+        """Restore a state.
+
+        Raises:
+            FmuError: it belongs to another component, version or resource.
+        """
+        self._failure = ""
+        self._attempt(self._restore, saved)
+        if self._failure:
+            self._raise()
+
+    def _restore(self, saved: FmuState | None) -> None:
+        if saved is None or saved.owner != self._owner or len(saved.data) != self._saved.nbytes:
+            raise FmuError(
+                f"{self.instance_name}: the FMU state belongs to "
+                f"'{saved.owner if saved else 'something else'}', not to '{self._owner}'; "
+                "restore states of the same component and version only"
+            )
+        if saved.tables != self._tables:
+            self._restore_resources(saved)
+        if saved.data[self._first_parameter :] != self._saved[self._first_parameter :]:
+            self._instance.work[:] = 0.0
+        self._saved[:] = saved.data
+        self._phase = _Phase(saved.phase)
+        self._time = saved.time
+        self._outdated = self._phase is _Phase.INITIALISATION
+
+    def _restore_resources(self, saved: FmuState) -> None:
+        """Read the state's resources if none are read yet; otherwise they must be the same."""
+        if not (saved.tables and self._tables):
+            for name, text in saved.texts.items():
+                self._instance.set(name, text)
+            self._tables = ""
+            if saved.tables:
+                self._read_resources()
+        if saved.tables != self._tables:
+            files = ", ".join(f"{name} = '{text}'" for name, text in saved.texts.items())
+            raise FmuError(
+                f"{self.instance_name}: the FMU state was saved over other contents of {files}; "
+                "restore it over the same resource files"
+            )
+
+    @staticmethod
+    def _fmu_state_to_bytes(saved: FmuState | None) -> bytes:
+        return state.to_bytes(saved) if saved else b""
+
+    @staticmethod
+    def _fmu_state_from_bytes(serialised: bytes) -> FmuState | None:
+        return state.from_bytes(serialised)

@@ -1,0 +1,87 @@
+"""Building, packing and checking FMUs."""
+
+import zipfile
+
+import pytest
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import FmuError, StructureError
+from herringbone.core.paths import component_folder, content_hash, resources_folder
+from herringbone.fmi import build, build_python_fmus, check_fmu
+from herringbone.fmi.state import FmuState, from_bytes, to_bytes
+
+
+def test_two_builds_are_identical(python_fmus, tmp_path):
+    build._pack(list(COMPONENTS), tmp_path)
+    for name, fmu in python_fmus.items():
+        assert (tmp_path / f"{name}.fmu").read_bytes() == fmu.read_bytes()
+
+
+def test_a_build_is_used_again(python_fmus, monkeypatch):
+    monkeypatch.setattr(build, "_pack", lambda *_: pytest.fail("built again"))
+    assert build_python_fmus(["drive_motor"]) == {"drive_motor": python_fmus["drive_motor"]}
+
+
+def test_unknown_component():
+    with pytest.raises(StructureError, match="there is no component 'gearbox'"):
+        build_python_fmus(["gearbox"])
+
+
+def test_failure_of_pythonfmu_names_component_and_cause(tmp_path):
+    with pytest.raises(FmuError, match=r"pythonfmu could not build nothing: .*nothing.py"):
+        build._pack(["nothing"], tmp_path)
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_content_of_the_file(name, python_fmus):
+    with zipfile.ZipFile(python_fmus[name]) as archive:
+        names = archive.namelist()
+        module = archive.read("resources/slavemodule.txt").decode()
+        script = archive.read(f"resources/{module}.py").decode()
+        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        for file in resources_folder(name).glob("*.csv"):
+            assert archive.read(f"resources/{file.name}") == file.read_bytes()
+    assert names == sorted(names)
+    assert module == f"herringbone_{name}_{content_hash()}"
+    assert script == (component_folder(name) / f"{name}.py").read_text()
+    assert f"binaries/linux64/{name}.so" in names
+    assert f"binaries/win64/{name}.dll" in names
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_scripts_are_thin_and_have_two_methods(name):
+    script = (component_folder(name) / f"{name}.py").read_text()
+    assert script.count("    def ") >= 2
+    assert script.count("import") == 1
+    assert len(script.splitlines()) < 20
+
+
+def test_check_reports_files_that_are_no_fmu(tmp_path):
+    (tmp_path / "text.fmu").write_text("text")
+    assert "is not an FMU" in check_fmu(tmp_path / "text.fmu")[0]
+    assert "there is no file" in check_fmu(tmp_path / "none.fmu")[0]
+
+
+def test_check_reports_a_real_without_unit_and_an_invalid_structure(python_fmus, tmp_path):
+    damaged = tmp_path / "damaged.fmu"
+    with (
+        zipfile.ZipFile(python_fmus["shaft_coupling"]) as source,
+        zipfile.ZipFile(damaged, "w") as copy,
+    ):
+        for entry in source.namelist():
+            data = source.read(entry)
+            if entry == "modelDescription.xml":
+                start, _, rest = data.partition(b"<InitialUnknowns>")
+                _, _, end = rest.partition(b"</InitialUnknowns>")
+                data = start.replace(b'unit="N.m"', b"") + end
+            copy.writestr(entry, data)
+    problems = check_fmu(damaged)
+    assert "torque: a Real without unit" in problems
+    assert any("InitialUnknowns does not contain" in p for p in problems)
+
+
+def test_serialised_state():
+    state = FmuState("owner", b"\x00\n\xff", {"table": "ä.csv"}, "1f", 2, 0.1)
+    assert from_bytes(to_bytes(state)) == state
+    for wrong in (b"", b"{}", b"[1]\n", b"\xff\n", b'{"owner": "x"}\n'):
+        assert from_bytes(wrong) is None
