@@ -134,7 +134,7 @@ def _out(b: np.ndarray, t: float) -> None:
 
 @kernel
 def _update_propagators(b: np.ndarray, w: np.ndarray, h: float) -> None:
-    if w[0] == h:
+    if h > 0.0 and w[0] == h:  # 0: no propagators yet
         return
     scratch = w[_SCRATCH:_POLYNOMIALS]
     for i in range(int(b[_COUNT])):
