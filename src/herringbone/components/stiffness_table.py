@@ -34,7 +34,9 @@ def _side(columns: dict[str, np.ndarray], side: str, file: Path) -> tuple[np.nda
     load, phase, stiffness = (columns[name][rows] for name in _UNITS)
     loads, phases = np.unique(load), np.unique(phase)
     where = f"{file}, side {side}"
-    if loads.size < 2 or phases.size < 4 or loads.size * phases.size != load.size:
+    points = len(set(zip(load.tolist(), phase.tolist(), strict=True)))
+    full = points == load.size == loads.size * phases.size
+    if loads.size < 2 or phases.size < 4 or not full:
         raise ResourceError(
             f"{where}: {load.size} rows are no full grid of {loads.size} loads x {phases.size} "
             "phases; give every load at every phase (at least 2 x 4)"
