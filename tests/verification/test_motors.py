@@ -1,0 +1,160 @@
+"""Motors: analytic responses in the linear regime, limits, anti-windup, power."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from herringbone.components.drive_motor import DRIVE_MOTOR
+from herringbone.components.load_motor import LOAD_MOTOR
+from herringbone.core import Component, Instance
+
+
+def motor(component: Component, **values: float) -> Instance:
+    instance = Instance(component, "motor")
+    for name, value in values.items():
+        instance.set(name.replace("__", "."), value)
+    instance.initialise()
+    return instance
+
+
+def affine(a: np.ndarray, b: np.ndarray, x: np.ndarray, t: float) -> np.ndarray:
+    """x(t) of x' = a x + b."""
+    n = len(x)
+    m = np.zeros((n + 1, n + 1))
+    m[:n, :n], m[:n, n] = a, b
+    return (expm(m * t) @ np.append(x, 1.0))[:n]
+
+
+DRIVE_STATES = ("angle", "speed", "integral", "speed_reference")
+
+
+@pytest.mark.parametrize("t", [1e-4, 5e-3, 0.05, 0.5])
+def test_linear_response_of_the_drive_motor(t):
+    """Small enough for no limit: a PI loop with a first-order set point."""
+    values = {"speed_setpoint": 8.0, "flange__tau": -20.0, "speed": 1.0, "integral": 0.02}
+    drive = motor(DRIVE_MOTOR, **values)
+    inertia, k_p, k_i, lag = 0.08, 30.0, 600.0, 1e-3
+    a = np.array([
+        [0, 1, 0, 0],
+        [0, -k_p / inertia, k_i / inertia, k_p / inertia],
+        [0, -1, 0, 1],
+        [0, 0, 0, -1 / lag],
+    ])  # fmt: skip
+    b = np.array([0, -20.0 / inertia, 0, 8.0 / lag])
+    expected = affine(a, b, np.array([0.0, 1.0, 0.02, 0.0]), t)
+    assert drive.step(0.0, t) == 0
+    found = [drive[name] for name in DRIVE_STATES]
+    # Runge-Kutta: (h / lag)**4 / 120 = 5e-8 of the fastest part, h = 5e-5 s.
+    np.testing.assert_allclose(found, expected, atol=2e-7 * 8.0)
+
+
+def test_drive_motor_holds_the_set_point_against_a_load():
+    drive = motor(DRIVE_MOTOR, speed_setpoint=100.0, flange__tau=-200.0)
+    drive.step(0.0, 2.0)
+    # Slowest pole: K_i / K_p = 20 / s: exp(-40).
+    assert drive["flange.w"] == pytest.approx(100.0, rel=1e-9)
+    assert drive["torque"] == pytest.approx(200.0, rel=1e-9)
+    assert drive["integral"] == pytest.approx(200.0 / 600.0, rel=1e-9)
+    assert drive["flange.a"] == pytest.approx(0.0, abs=1e-4)
+    assert drive["electrical_power"] == pytest.approx(200.0 * 100.0 / 0.93, rel=1e-8)
+
+
+def test_power_when_braking():
+    drive = motor(DRIVE_MOTOR, speed_setpoint=100.0, flange__tau=200.0)
+    drive.step(0.0, 2.0)
+    assert drive["electrical_power"] == pytest.approx(-200.0 * 100.0 * 0.93, rel=1e-8)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_set_point_ramp(sign):
+    drive = motor(DRIVE_MOTOR, speed_setpoint=sign * 200.0, maximum_acceleration=500.0)
+    drive.step(0.0, 0.1)
+    assert drive["speed_reference"] == pytest.approx(sign * 50.0, rel=1e-12)
+    drive.step(0.1, 0.4)
+    # The last 0.5 rad/s (500 rad/s2 * 1 ms) is a decay that starts at 0.399 s.
+    expected = 200.0 - 0.5 * math.exp(-101.0)
+    assert drive["speed_reference"] == pytest.approx(sign * expected, rel=1e-9)
+
+
+def saturated(setpoint: float) -> tuple[float, float, float]:
+    """Largest torque, integral and overshoot of a run-up on the torque limit."""
+    drive = motor(
+        DRIVE_MOTOR,
+        inertia=0.5,
+        torque_limit=100.0,
+        speed_setpoint=setpoint,
+        speed_reference=setpoint,
+    )
+    torque = integral = speed = 0.0
+    for n in range(int(setpoint / 200.0 * 1000) + 500):  # 200 rad/s2 at the limit
+        drive.step(n * 1e-3, 1e-3)
+        torque = max(torque, abs(drive["torque"]))
+        integral = max(integral, abs(drive["integral"]))
+        speed = max(speed, drive["speed"])
+    assert drive["speed"] == pytest.approx(setpoint, rel=1e-3)
+    return torque, integral, speed - setpoint
+
+
+def test_torque_limit_and_anti_windup():
+    """With back-calculation x' = (T - K_i x) / K_p always: |x| <= limit / K_i, however long."""
+    short, long = saturated(200.0), saturated(1000.0)
+    for torque, integral, _ in (short, long):
+        assert torque == pytest.approx(100.0, rel=1e-15)
+        assert integral <= 100.0 / 600.0 * (1 + 1e-12)
+    # The limit lasts 1 s and 5 s, 20 and 100 time constants K_p / K_i: the same overshoot.
+    assert long[2] == pytest.approx(short[2], rel=1e-6)
+    assert long[2] < 0.02 * 200.0
+
+
+@pytest.mark.parametrize("t", [1e-3, 0.02, 0.5])
+def test_linear_response_of_the_load_motor(t):
+    values = {"inertia": 2.0, "viscous_friction": 3.0, "torque_time_constant": 5e-3}
+    load = motor(
+        LOAD_MOTOR,
+        **values,
+        speed=50.0,
+        braking_torque=100.0,
+        flange__tau=400.0,
+        torque_setpoint=600.0,
+    )
+    a = np.array([[0, 1, 0], [0, -1.5, -0.5], [0, 0, -200.0]])
+    expected = affine(a, np.array([0, 200.0, 120000.0]), np.array([0.0, 50.0, 100.0]), t)
+    assert load.step(0.0, t) == 0
+    found = [load[n] for n in ("angle", "speed", "braking_torque")]
+    # Runge-Kutta: (5e-5 * 200)**4 / 120 = 8e-11.
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    assert load["braking_torque"] == pytest.approx(600.0 - 500.0 * math.exp(-200.0 * t), rel=1e-9)
+    assert (load["flange.phi"], load["flange.w"]) == (load["angle"], load["speed"])
+    acceleration = (400.0 - load["torque"] - 3.0 * load["speed"]) / 2.0
+    assert load["flange.a"] == pytest.approx(acceleration, rel=1e-14)
+
+
+@pytest.mark.parametrize("speed", [-80.0, 0.0, 80.0])
+@pytest.mark.parametrize("torque", [-600.0, 600.0])
+@pytest.mark.parametrize("efficiency", [0.5, 0.93, 1.0])
+def test_recovered_and_lost_power_are_the_mechanical_power(speed, torque, efficiency):
+    load = motor(
+        LOAD_MOTOR, speed=speed, braking_torque=torque, viscous_friction=2.0, efficiency=efficiency
+    )
+    mechanical = torque * speed + 2.0 * speed**2
+    assert load["recovered_power"] + load["loss_power"] == pytest.approx(mechanical, rel=1e-13)
+    assert load["loss_power"] >= 2.0 * speed**2 - 1e-9  # friction, and never a gain
+    if torque * speed > 0:
+        assert load["recovered_power"] == pytest.approx(efficiency * torque * speed, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("component", "setpoint"), [(DRIVE_MOTOR, "speed_setpoint"), (LOAD_MOTOR, "torque_setpoint")]
+)
+def test_ramp_inside_a_step(component, setpoint):
+    """A first-order lag under a ramp r t: r (t - T (1 - exp(-t / T))), at every node."""
+    lag, rate, h = (1e-3, 100.0, 4e-3) if component is DRIVE_MOTOR else (5e-3, 1e3, 0.02)
+    instance = motor(component)
+    instance.set("interface_degree", 1)
+    instance.set(f"{setpoint}.node1", rate * h)
+    instance.step(0.0, h)
+    expected = rate * (h - lag * (1 - math.exp(-h / lag)))
+    name = "speed_reference" if component is DRIVE_MOTOR else "braking_torque"
+    assert instance[name] == pytest.approx(expected, rel=1e-7)  # Runge-Kutta, see above
