@@ -1,1 +1,11 @@
-"""Lies here so that pytest puts this folder on the path: tests import `support`."""
+"""Fixtures that several test files share."""
+
+import pytest
+
+from herringbone.fmi import build_python_fmus
+
+
+@pytest.fixture(scope="session")
+def python_fmus():
+    """Path of the Python FMU by component."""
+    return build_python_fmus()
