@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TIME = "time"
+_CSV_ROWS = 4096
 
 
 @dataclass(frozen=True)
@@ -102,12 +103,14 @@ class Result:
         return plot_columns(self, *patterns) if patterns else overview(self)
 
     def to_csv(self, file: Path) -> None:
-        """Write the table: a `#` line with units, a header row, full precision."""
+        """Write the table: a `#` line with units, a header row, rows that read back bit by bit."""
         with file.open("w", encoding="utf-8", newline="") as stream:
             units = ", ".join(f"{name} {self.units[name] or '1'}" for name in self.data.columns)
             stream.write(f"# units: {units}\n")
             csv.writer(stream, lineterminator="\n").writerow(self.data.columns)
-            self.data.to_csv(stream, index=False, header=False, lineterminator="\n")
+            for first in range(0, len(self.data), _CSV_ROWS):
+                rows = self.data.iloc[first : first + _CSV_ROWS].to_numpy(dtype=float).tolist()
+                stream.write("".join([",".join(map(repr, row)) + "\n" for row in rows]))
 
     def to_parquet(self, file: Path) -> None:
         """Write the table as Parquet; needs the extra `tables`.
