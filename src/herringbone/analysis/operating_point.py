@@ -10,7 +10,7 @@ import numpy as np
 from herringbone.analysis.spectra import mesh_frequency
 from herringbone.components.ports import HALVES
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import ParameterError
+from herringbone.core import OutcomeKind, ParameterError
 from herringbone.result import TIME, Result
 
 SETTLING_SHARE = 0.2
@@ -79,9 +79,9 @@ def steady_part(result: Result) -> SteadyPart:
     if count < 2:
         begin = float(time[0]) if count else 0.0
         return SteadyPart(slice(0, count), begin, begin, 0.0, steady=False)
-    first, steady = int(SETTLING_SHARE * count), True
+    first, steady = int(SETTLING_SHARE * count), result.outcome.kind is not OutcomeKind.DIVERGED
     speed = signal(result, "gear_mesh", "pinion.w")
-    if speed is not None:
+    if speed is not None and steady:
         outside = np.flatnonzero(np.abs(speed - speed[-1]) > SPEED_BAND * abs(speed[-1]))
         settled = int(outside[-1]) + 1 if outside.size else 0
         steady = settled <= (1.0 - _SHORTEST_SHARE) * count
@@ -141,6 +141,13 @@ def shaft_torques(result: Result) -> dict[str, str]:
     """Columns of the coupling torques by gear: pinion (drive side) and wheel (load side)."""
     columns = {"pinion": "drive_coupling.torque", "wheel": "load_coupling.torque"}
     return {gear: column for gear, column in columns.items() if column in result.data}
+
+
+def mesh_forces(result: Result) -> dict[str, str]:
+    """Columns of the normal forces of the meshes by side: left and right."""
+    mesh = instance(result, "gear_mesh")
+    columns = {side: f"{mesh}.mesh_{side}.force" for side in ("left", "right")}
+    return {side: column for side, column in columns.items() if column in result.data}
 
 
 def power_balance(result: Result) -> PowerBalance | None:

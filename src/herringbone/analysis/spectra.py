@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import next_fast_len, rfft
-from scipy.signal import find_peaks
-from scipy.signal.windows import hann
 
 from herringbone.core import ParameterError
 
@@ -71,7 +69,7 @@ def amplitude_spectrum(signal: np.ndarray, sample_step: float, padding: int = 1)
         raise ParameterError(f"{count} samples make no spectrum; it takes {FEWEST_SAMPLES} or more")
     if not (math.isfinite(sample_step) and sample_step > 0.0):
         raise ParameterError(f"sample_step = {sample_step:g} s: it must be positive and finite")
-    window = hann(count, sym=False)
+    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(count) / count)
     weight = window / window.sum()
     mean = weight @ signal
     length = next_fast_len(padding * count, real=True) if padding > 1 else count
@@ -110,7 +108,8 @@ def spectral_lines(
     """
     spectrum = amplitude_spectrum(signal, sample_step)
     amplitude = spectrum.amplitude
-    peaks, _ = find_peaks(amplitude)
+    inner = amplitude[1:-1]
+    peaks = 1 + np.flatnonzero((inner > amplitude[:-2]) & (inner >= amplitude[2:]))
     peaks = peaks[spectrum.frequency[peaks] <= highest]
     largest = peaks[np.argsort(-amplitude[peaks], kind="stable")][:count]
     lines = [_interpolated(amplitude, int(k), spectrum.resolution) for k in largest]
