@@ -1,5 +1,6 @@
 """Panels of the pictures: signals over time, and spectra with mesh orders."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -8,17 +9,19 @@ from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
-from herringbone.plotting.style import HALF_STYLE, MARKER_COLOUR, draw_line
+from herringbone.core import OutcomeKind
+from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result import TIME, Result
 
 SHOWN_PERIODS = 6
 """Mesh periods that a close-up shows."""
 HIGHEST = 3000.0
 """End of the spectra [Hz]."""
-DECADES = 4.0
+DECADES = 3.5
 """Range of amplitudes in a spectrum."""
 _CLOSE_UP_SHARE = 0.05
 _MOST_MARKS = 9
+_PADDING = 2
 
 
 def headline(result: Result, what: str) -> str:
@@ -29,17 +32,19 @@ def headline(result: Result, what: str) -> str:
 
 
 def half_name(half: str) -> str:
-    """`pinion_left` -> `pinion left`."""
-    return half.replace("_", " ")
+    """`pinion_left` -> `pinion left`; other names stay."""
+    return half.replace("_", " ") if half in HALF_STYLE else half
 
 
 def close_up(result: Result) -> slice:
     """Rows of the last few mesh periods, or of the last 5 % of the run if there is no mesh."""
     time = result.data[TIME].to_numpy()
+    if time.size < 2:
+        return slice(0, time.size)
     frequency = run_mesh_frequency(result)
-    span = time[-1] - time[0]
+    span = float(time[-1] - time[0])
     length = SHOWN_PERIODS / frequency if frequency else _CLOSE_UP_SHARE * span
-    return slice(int(np.searchsorted(time, time[-1] - min(length, span))), time.size)
+    return slice(int(np.searchsorted(time, time[0] + span - min(length, span))), time.size)
 
 
 def time_panel(
@@ -52,34 +57,48 @@ def time_panel(
     unit: str = "",
     rows: slice | None = None,
     mean: bool = False,
-    milliseconds: bool = False,
 ) -> None:
-    """Signals over time.
+    """Signals over time; a part of the run is shown in ms.
 
     Args:
         axes: to draw in.
         result: of a run.
         columns: column by legend entry or gear half.
         label: of the ordinate, without unit.
-        factor, unit: of the ordinate; `factor` multiplies the SI value.
+        factor: multiplies the SI value.
+        unit: of the ordinate.
         rows: part of the table that is shown, all if not given.
         mean: show the signal without its mean over the steady part, and the mean in the legend.
-        milliseconds: abscissa in ms.
     """
-    rows = rows or slice(None)
-    part = steady_part(result).rows
-    time = result.data[TIME].to_numpy()[rows] * (1e3 if milliseconds else 1.0)
-    for name, column in columns.items():
-        values = result.data[column].to_numpy() * factor
-        entry = half_name(name)
-        if mean:
-            average = float(values[part].mean())
-            values = values - average
-            entry += f" (mean {average:.4g} {unit})"
-        draw_line(axes, time, values[rows], label=entry, **HALF_STYLE.get(name, {}))
     axes.set_ylabel(f"{label}{', AC' if mean else ''} [{unit}]")
-    axes.set_xlabel(f"time [{'ms' if milliseconds else 's'}]")
+    axes.set_xlabel("time [s]" if rows is None else "time [ms]")
+    if result.data.empty:
+        return
+    shown = slice(None) if rows is None else rows
+    time = result.data[TIME].to_numpy()[shown] * (1.0 if rows is None else 1e3)
+    values = result.data[list(columns.values())].to_numpy() * factor
+    entries = [half_name(name) for name in columns]
+    if mean:
+        steady = values[steady_part(result).rows]
+        average = steady.mean(axis=0)
+        values = values - average
+        spread = np.ptp(steady, axis=0)
+        entries = [
+            f"{entry}, mean {rounded(m, max(abs(m), s))} {unit}"
+            for entry, m, s in zip(entries, average, spread, strict=True)
+        ]
+    depth = depths(values[shown])
+    for i, name in enumerate(columns):
+        style = HALF_STYLE.get(name, {"linestyle": "--" if i >= len(COLOURS) else "-"})
+        draw_line(axes, time, values[shown, i], label=entries[i], zorder=depth[i], **style)
     axes.margins(x=0.0)
+
+
+def rounded(value: float, scale: float) -> str:
+    """A value with the decimals that make four digits of `scale`."""
+    decimals = max(0, 3 - math.floor(math.log10(scale))) if 0.0 < scale < math.inf else 0
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def spectrum_panel(
@@ -98,24 +117,26 @@ def spectrum_panel(
         result: of a run.
         columns: column by legend entry or gear half.
         label: of the ordinate, without unit.
-        factor, unit: of the ordinate; `factor` multiplies the SI value.
+        factor: multiplies the SI value.
+        unit: of the ordinate.
     """
     part = steady_part(result)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel(f"{label} [{unit}]")
-    count = part.rows.stop - part.rows.start
-    if count < FEWEST_SAMPLES:
-        axes.text(0.5, 0.5, "too few records for a spectrum", ha="center", transform=axes.transAxes)
+    diverged = result.outcome.kind is OutcomeKind.DIVERGED
+    if diverged or part.rows.stop - part.rows.start < FEWEST_SAMPLES:
+        why = "the run diverged" if diverged else "too few records"
+        axes.text(0.5, 0.5, f"no spectrum: {why}", ha="center", transform=axes.transAxes)
         return
     signals = result.data[list(columns.values())].to_numpy()[part.rows] * factor
-    spectrum = amplitude_spectrum(signals, part.sample_step, padding=4)
+    spectrum = amplitude_spectrum(signals, part.sample_step, padding=_PADDING)
     highest = min(HIGHEST, float(spectrum.frequency[-1]))
     shown = spectrum.frequency <= highest
     frequency, amplitude = spectrum.frequency[shown], spectrum.amplitude[shown]
     top = float(amplitude.max())
     for i, name in enumerate(columns):
         height = np.maximum(amplitude[:, i], top * 10.0 ** -(DECADES + 1.0))
-        axes.plot(frequency, height, label=half_name(name), **HALF_STYLE.get(name, {}))
+        draw_line(axes, frequency, height, label=half_name(name), **HALF_STYLE.get(name, {}))
     if top > 0.0:
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-DECADES, top * 1.6)

@@ -7,11 +7,17 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from herringbone.analysis.operating_point import by_half, instance, run_mesh_frequency, steady_part
+from herringbone.analysis.operating_point import (
+    by_half,
+    instance,
+    mesh_forces,
+    run_mesh_frequency,
+    steady_part,
+)
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import close_up, headline, spectrum_panel, time_panel
-from herringbone.plotting.style import DPI, figure_legend, legend, new_figure, styled
+from herringbone.plotting.style import figure_legend, legend, new_figure, styled
 from herringbone.result import Result
 
 DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
@@ -20,9 +26,7 @@ _MM = 1e3
 _R_MIN = 30.0 / math.pi
 
 
-def _rows(
-    result: Result, channel: str, axes: str, what: str
-) -> list[tuple[str, dict[str, str]]]:
+def _rows(result: Result, channel: str, axes: str, what: str) -> list[tuple[str, dict[str, str]]]:
     found = [(axis, by_half(result, channel, axis)) for axis in axes]
     rows = [(axis, columns) for axis, columns in found if columns]
     if not rows:
@@ -44,8 +48,7 @@ def bearing_forces(result: Result) -> Figure:
         label = f"force {axis}"
         time_panel(whole, result, columns, label, unit="N")
         whole.set_title(_FORCE_DIRECTION[axis])
-        time_panel(last, result, columns, label, unit="N", rows=close_up(result), mean=True,
-                   milliseconds=True)  # fmt: skip
+        time_panel(last, result, columns, label, unit="N", rows=close_up(result), mean=True)
         legend(last, 2)
     return figure
 
@@ -64,9 +67,8 @@ def seat_velocities(result: Result) -> Figure:
         label = f"velocity {axis}"
         time_panel(whole, result, columns, label, factor=_MM, unit="mm/s")
         whole.set_title(DIRECTION[axis])
-        time_panel(last, result, columns, label, factor=_MM, unit="mm/s", rows=close_up(result),
-                   milliseconds=True)  # fmt: skip
-    figure_legend(figure, panels[0][0])
+        time_panel(last, result, columns, label, factor=_MM, unit="mm/s", rows=close_up(result))
+    figure_legend(figure, panels[0][1])
     return figure
 
 
@@ -89,13 +91,13 @@ def spectra(result: Result) -> Figure:
         shown += [row] if row else []
     if not shown:
         raise ParameterError(f"system '{result.info.system}' records no bearing forces")
-    if len(shown[0]) == 2 and (mesh := _mesh_columns(result)):
+    if len(shown[0]) == 2 and (mesh := mesh_forces(result)):
         shown[0].append(("mesh force", mesh, 1.0, "N"))
     part, frequency = steady_part(result), run_mesh_frequency(result)
     what = f"Amplitude spectra, {part.begin:.3g} to {part.end:.3g} s"
     what += f", $f_m$ = {frequency:.1f} Hz" if frequency else ""
     width = max(map(len, shown))
-    figure = new_figure(headline(result, what), len(shown), width, 14.0)
+    figure = new_figure(headline(result, what), len(shown), width, width=14.5)
     panels = figure.subplots(len(shown), width, squeeze=False)
     for axes_row, row in zip(panels, shown, strict=True):
         for axes in axes_row[len(row) :]:
@@ -103,15 +105,9 @@ def spectra(result: Result) -> Figure:
         for axes, (label, columns, factor, unit) in zip(axes_row, row, strict=False):
             spectrum_panel(axes, result, columns, label, factor=factor, unit=unit)
             if label == "mesh force":
-                axes.legend(loc="upper right")
+                legend(axes, 2, lift=0.07)
     figure_legend(figure, panels[-1][0])
     return figure
-
-
-def _mesh_columns(result: Result) -> dict[str, str]:
-    mesh = instance(result, "gear_mesh")
-    columns = {side: f"{mesh}.mesh_{side}.force" for side in ("left", "right")}
-    return {side: column for side, column in columns.items() if column in result.data}
 
 
 @styled
@@ -142,10 +138,9 @@ def torques(result: Result) -> Figure:
         time_panel(panels[1][column], result, speed, "speed", factor=_R_MIN, unit="r/min")
         panels[0][column].set_title(f"{gear} side")
         for axes in panels[:, column]:
-            if axes.lines:
-                legend(axes, 2)
-            else:
-                axes.set_visible(False)
+            axes.set_visible(bool(axes.lines))
+            legend(axes, 2)
+        panels[0][column].set_xlabel("")
     return figure
 
 
@@ -160,6 +155,8 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
 def write_pictures(result: Result, folder: Path) -> list[Path]:
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
+    A run of less than two records has no pictures.
+
     Args:
         result: of a run.
         folder: existing folder.
@@ -167,7 +164,9 @@ def write_pictures(result: Result, folder: Path) -> list[Path]:
     Raises:
         HerringboneError: a file cannot be written.
     """
-    files = []
+    files: list[Path] = []
+    if len(result.data) < 2:
+        return files
     for name, draw in {"overview": overview, **PICTURES}.items():
         try:
             figure = draw(result)

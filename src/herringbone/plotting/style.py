@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 DPI = 110
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
 HALF_STYLE: dict[str, dict[str, Any]] = {  # right halves dashed: they often cover the left ones
     "pinion_left": {"color": "#0072B2"},
     "pinion_right": {"color": "#56B4E9", "linestyle": (0, (4, 2))},
@@ -46,19 +46,18 @@ _RC = {
     "figure.dpi": DPI,
     "figure.titlesize": 11.0,
 }
-_PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {  # largest first; the factor multiplies SI
-    "m": ((1.0, "m"), (1e3, "mm"), (1e6, "µm")),
-    "m/s": ((1.0, "m/s"), (1e3, "mm/s"), (1e6, "µm/s")),
-    "m/s2": ((1.0, "m/s²"),),
-    "rad": ((1.0, "rad"), (1e3, "mrad"), (1e6, "µrad")),
-    "rad/s": ((1.0, "rad/s"), (1e3, "mrad/s")),
-    "rad/s2": ((1.0, "rad/s²"),),
-    "N": ((1e-3, "kN"), (1.0, "N")),
-    "N.m": ((1.0, "N m"),),
-    "W": ((1e-3, "kW"), (1.0, "W")),
+_SCALES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which peak, factor, unit
+    "m": ((0.5, 1.0, "m"), (5e-4, 1e3, "mm"), (0.0, 1e6, "µm")),
+    "m/s": ((0.5, 1.0, "m/s"), (0.0, 1e3, "mm/s")),
+    "m/s2": ((0.0, 1.0, "m/s²"),),
+    "rad": ((0.05, 1.0, "rad"), (5e-5, 1e3, "mrad"), (0.0, 1e6, "µrad")),
+    "rad/s2": ((0.0, 1.0, "rad/s²"),),
+    "N": ((2e4, 1e-3, "kN"), (0.0, 1.0, "N")),
+    "N.m": ((0.0, 1.0, "N m"),),
+    "W": ((2e4, 1e-3, "kW"), (0.0, 1.0, "W")),
 }
 _POINTS = 1600
-_SMALLEST = 0.5
+_LARGEST = 1e30  # a diverged run is drawn up to here
 
 P = ParamSpec("P")
 
@@ -68,7 +67,7 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def inside(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with mpl.rc_context(_RC):
+        with mpl.rc_context(_RC), np.errstate(over="ignore", invalid="ignore"):
             return draw(*args, **kwargs)
 
     return inside
@@ -76,37 +75,39 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
 def scaled_unit(unit: str, peak: float) -> tuple[float, str]:
     """Factor and unit in which values up to `peak` (SI) are easy to read."""
-    choices = _PREFIXES.get(unit, ((1.0, unit.replace(".", " ") if unit else "1"),))
-    if not peak > 0.0:
-        return next((c for c in choices if c[0] == 1.0), choices[0])
-    return next((c for c in choices if peak * c[0] >= _SMALLEST), choices[-1])
+    scales = _SCALES.get(unit, ((0.0, 1.0, unit.replace(".", " ") or "1"),))
+    return next(((factor, name) for least, factor, name in scales if peak >= least), scales[-1][1:])
 
 
-def new_figure(title: str, rows: int, columns: int = 1, width: float = 12.0) -> Figure:
-    """An empty figure with a title, sized for so many panels; panels are added by the caller."""
-    height = 0.7 + (2.9 if rows > 1 else 4.0) * rows
+def new_figure(
+    title: str, rows: int, columns: int = 1, *, width: float = 12.5, gap: float = 0.95
+) -> Figure:
+    """An empty figure with a title for so many panels, `gap` [inch] apart; the caller adds them."""
+    height = 1.2 + (2.5 if rows > 1 else 3.5) * rows + 0.7 * (rows - 1)
     figure = Figure(figsize=(width, height))
     figure.suptitle(title, x=0.01, y=1.0 - 0.1 / height, ha="left", va="top", fontweight="bold")
+    panel = (width - 1.1 - gap * (columns - 1)) / columns
     figure.subplots_adjust(
-        left=0.75 / width,
+        left=0.9 / width,
         right=1.0 - 0.2 / width,
         bottom=0.5 / height,
         top=1.0 - 0.75 / height,
-        hspace=0.42 if rows > 1 else None,
-        wspace=0.22 if columns > 1 else None,
+        hspace=0.36,
+        wspace=gap / panel,
     )
     return figure
 
 
 def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, **how: Any) -> None:  # noqa: ANN401
     """Draw a signal; a long one as its envelope, which looks the same and is much faster."""
-    axes.plot(*envelope(x, y), **how)
+    xs, ys = envelope(x, np.clip(y, -_LARGEST, _LARGEST))
+    axes.plot(xs, ys, **(how if xs is x else how | {"linestyle": "-"}))
 
 
 def envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Smallest and largest value of each piece of a long signal, in their order of time."""
     piece = x.size // _POINTS
-    if piece < 4:
+    if piece < 3:
         return x, y
     count = x.size // piece
     pieces = y[: count * piece].reshape(count, piece)
@@ -116,11 +117,19 @@ def envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return x[index], y[index]
 
 
-def legend(axes: Axes, columns: int = 1) -> None:
+def depths(values: np.ndarray) -> np.ndarray:
+    """Drawing order of signals (n, m): the smaller its range, the more in front."""
+    rank = np.argsort(np.argsort(-np.ptp(values, axis=0))) if values.size else 0.0
+    return 2.0 + np.broadcast_to(rank, values.shape[1]) / max(values.shape[1], 1)
+
+
+def legend(axes: Axes, columns: int = 1, lift: float = 0.0) -> None:
     """Legend above a panel, right of its title, so that it covers no data."""
+    if not axes.lines:
+        return
     axes.legend(
         loc="lower right",
-        bbox_to_anchor=(1.01, 0.995),
+        bbox_to_anchor=(1.01, 0.995 + lift),
         ncols=columns,
         borderaxespad=0.0,
         handlelength=1.6,
@@ -132,10 +141,12 @@ def legend(axes: Axes, columns: int = 1) -> None:
 
 def legend_beside(axes: Axes) -> None:
     """Legend right of a panel, for long names."""
-    axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0)
+    if axes.lines:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0)
 
 
 def figure_legend(figure: Figure, axes: Axes) -> None:
     """One legend for panels with the same signals, in the figure's title line."""
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper right", ncols=len(labels), borderaxespad=0.3)
+    if handles:
+        figure.legend(handles, labels, loc="upper right", ncols=len(labels), borderaxespad=0.3)

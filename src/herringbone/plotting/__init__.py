@@ -1,0 +1,26 @@
+"""Pictures of results; the only package that imports matplotlib.
+
+Every function returns a `matplotlib.figure.Figure`: save it with `figure.savefig(file)`.
+"""
+
+from herringbone.plotting.columns import plot_columns
+from herringbone.plotting.overview import overview
+from herringbone.plotting.pictures import (
+    PICTURES,
+    bearing_forces,
+    seat_velocities,
+    spectra,
+    torques,
+    write_pictures,
+)
+
+__all__ = [
+    "PICTURES",
+    "bearing_forces",
+    "overview",
+    "plot_columns",
+    "seat_velocities",
+    "spectra",
+    "torques",
+    "write_pictures",
+]

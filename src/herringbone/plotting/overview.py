@@ -1,0 +1,89 @@
+"""One picture that shows whether a run is sound: torque and speed, forces, velocities, spectrum."""
+
+import math
+from collections.abc import Callable
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from herringbone.analysis.operating_point import by_half, instance, mesh_forces, shaft_torques
+from herringbone.plotting.columns import generic_overview
+from herringbone.plotting.panels import close_up, headline, spectrum_panel, time_panel
+from herringbone.plotting.style import COLOURS, draw_line, legend, new_figure, styled
+from herringbone.result import TIME, Result
+
+_R_MIN = 30.0 / math.pi
+Panel = Callable[[Axes], None]
+
+
+def overview(result: Result) -> Figure:
+    """Torque and speed, bearing forces, seat velocities and the spectrum of the bearing forces.
+
+    Panels for which the system records nothing are left out; a system that records none of them
+    gets its first columns by unit.
+    """
+    panels = _panels(result)
+    return _draw(result, panels) if panels else generic_overview(result)
+
+
+def _panels(result: Result) -> dict[str, Panel]:
+    found: dict[str, Panel] = {}
+    if shaft_torques(result):
+        found["Torque and speed"] = lambda axes: _torque_and_speed(axes, result)
+    elif mesh := mesh_forces(result):
+        found["Mesh forces"] = lambda axes: time_panel(
+            axes, result, mesh, "normal force", unit="N", rows=close_up(result), mean=True
+        )
+    forces = by_half(result, "bearing_force", "y")
+    velocities = by_half(result, "seat_velocity", "y")
+    if forces:
+        found["Bearing forces y"] = lambda axes: time_panel(
+            axes, result, forces, "force", unit="N", rows=close_up(result), mean=True
+        )
+    if velocities:
+        found["Seat velocities y"] = lambda axes: time_panel(
+            axes, result, velocities, "velocity", factor=1e3, unit="mm/s", rows=close_up(result)
+        )
+    if forces:
+        found["Spectrum of bearing forces y"] = lambda axes: spectrum_panel(
+            axes, result, forces, "amplitude", unit="N"
+        )
+    return found
+
+
+@styled
+def _draw(result: Result, panels: dict[str, Panel]) -> Figure:
+    rows = -(-len(panels) // 2)
+    figure = new_figure(headline(result, "Overview"), rows, 2, width=14.0, gap=1.4)
+    grid = figure.subplots(rows, 2, squeeze=False)
+    for axes in grid.flat[len(panels) :]:
+        axes.set_visible(False)
+    for axes, (title, draw) in zip(grid.flat, panels.items(), strict=False):
+        draw(axes)
+        axes.set_title(title, pad=14.0 if title.startswith("Spectrum") else None)
+        if title.startswith(("Bearing", "Mesh")):
+            legend(axes, 2)
+        elif title.startswith("Seat"):
+            legend(axes, 4)
+    return figure
+
+
+def _torque_and_speed(axes: Axes, result: Result) -> None:
+    """Torques [N m] on the left axis, pinion speed [r/min] on the right one."""
+    names = {f"{gear} torque": column for gear, column in shaft_torques(result).items()}
+    time_panel(axes, result, names, "torque", unit="N m")
+    legend(axes, 2)
+    speed = f"{instance(result, 'gear_mesh')}.pinion.w"
+    if speed not in result.data:
+        return
+    right = axes.twinx()
+    time = result.data[TIME].to_numpy()
+    draw_line(right, time, result.data[speed].to_numpy() * _R_MIN, color=COLOURS[2])
+    right.set_ylabel("pinion speed [r/min]", color=COLOURS[2])
+    right.tick_params(axis="y", colors=COLOURS[2])
+    right.spines["right"].set_visible(True)
+    right.grid(visible=False)
+    right.margins(x=0.0)
+    for side in (axes, right):
+        low, high = side.get_ylim()
+        side.set_ylim(min(low, 0.0), max(high, 0.0) * 1.05)
