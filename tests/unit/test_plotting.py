@@ -73,7 +73,8 @@ def test_spectra_mark_the_mesh_orders(rig):
 
 def test_spectra_of_a_run_up_have_no_orders(rig):
     data = rig.data.assign(**{"gear_mesh.pinion.w": rig.data["time"] * 500.0})
-    assert not panels(spectra(replace(rig, data=data)))[0].texts
+    (text,) = panels(spectra(replace(rig, data=data)))[0].texts
+    assert text.get_text() == "speed not steady: no mesh orders"
 
 
 def test_torques_in_newton_metre_and_speeds_in_revolutions(rig):
@@ -144,6 +145,8 @@ def test_diverged_runs_can_be_drawn(rig, tmp_path):
     data = rig.data.mul(growth, axis=0).assign(time=rig.data["time"])
     diverged = replace(rig, data=data, outcome=Outcome(OutcomeKind.DIVERGED, 0.2))
     assert len(write_pictures(diverged, tmp_path)) == 5
+    last = panels(bearing_forces(diverged))[1]
+    assert (last.get_yscale(), last.get_ylabel()) == ("symlog", "force y [N]")
 
 
 def test_drawing_leaves_no_state_and_needs_no_pyplot(rig):

@@ -13,7 +13,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import next_fast_len, rfft
 
 from herringbone.core import ParameterError
 
@@ -72,9 +71,9 @@ def amplitude_spectrum(signal: np.ndarray, sample_step: float, padding: int = 1)
     window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(count) / count)
     weight = window / window.sum()
     mean = weight @ signal
-    length = next_fast_len(padding * count, real=True) if padding > 1 else count
+    length = padding * count
     windowed = ((signal - mean).T * weight).T
-    amplitude = 2.0 * np.abs(rfft(windowed, length, axis=0))
+    amplitude = 2.0 * np.abs(np.fft.rfft(windowed, length, axis=0))
     amplitude[0] = 0.0
     frequency = np.arange(amplitude.shape[0]) / (length * sample_step)
     return Spectrum(frequency, amplitude, mean, 1.0 / (count * sample_step))

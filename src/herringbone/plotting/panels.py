@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.operating_point import run_mesh_frequency, steady_part
@@ -22,6 +23,7 @@ DECADES = 3.5
 _CLOSE_UP_SHARE = 0.05
 _MOST_MARKS = 9
 _PADDING = 2
+_LARGE = 1e6
 
 
 def headline(result: Result, what: str) -> str:
@@ -70,7 +72,8 @@ def time_panel(
         rows: part of the table that is shown, all if not given.
         mean: show the signal without its mean over the steady part, and the mean in the legend.
     """
-    axes.set_ylabel(f"{label}{', AC' if mean else ''} [{unit}]")
+    diverged = result.outcome.kind is OutcomeKind.DIVERGED
+    axes.set_ylabel(f"{label}{', AC' if mean and not diverged else ''} [{unit}]")
     axes.set_xlabel("time [s]" if rows is None else "time [ms]")
     if result.data.empty:
         return
@@ -78,8 +81,9 @@ def time_panel(
     time = result.data[TIME].to_numpy()[shown] * (1.0 if rows is None else 1e3)
     values = result.data[list(columns.values())].to_numpy() * factor
     entries = [half_name(name) for name in columns]
-    if mean:
-        steady = values[steady_part(result).rows]
+    if mean and not diverged:
+        part = steady_part(result)
+        steady = values[part.rows if part.steady else shown]
         average = steady.mean(axis=0)
         values = values - average
         spread = np.ptp(steady, axis=0)
@@ -92,10 +96,17 @@ def time_panel(
         style = HALF_STYLE.get(name, {"linestyle": "--" if i >= len(COLOURS) else "-"})
         draw_line(axes, time, values[shown, i], label=entries[i], zorder=depth[i], **style)
     axes.margins(x=0.0)
+    if diverged:
+        typical = float(np.median(np.abs(values[shown])))
+        axes.set_yscale("symlog", linthresh=min(max(10.0 * typical, 1e-9), 1e20), linscale=2.0)
+        axes.yaxis.set_major_locator(SymmetricalLogLocator(axes.yaxis.get_transform()))
+        axes.locator_params(axis="y", numticks=7)
 
 
 def rounded(value: float, scale: float) -> str:
     """A value with the decimals that make four digits of `scale`."""
+    if scale >= _LARGE:
+        return f"{value:.4g}"
     decimals = max(0, 3 - math.floor(math.log10(scale))) if 0.0 < scale < math.inf else 0
     text = f"{round(value, decimals) + 0.0:.{decimals}f}"
     return text.replace("-", "\N{MINUS SIGN}")
@@ -141,6 +152,9 @@ def spectrum_panel(
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-DECADES, top * 1.6)
     axes.set_xlim(0.0, highest)
+    if not part.steady:
+        axes.text(1.0, 1.0, "speed not steady: no mesh orders", ha="right", va="bottom",
+                  transform=axes.transAxes, fontsize=8, color=MARKER_COLOUR)  # fmt: skip
     _mark_orders(axes, run_mesh_frequency(result), highest)
 
 

@@ -12,6 +12,7 @@ from typing import Any, ParamSpec
 
 import matplotlib as mpl
 import numpy as np
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -24,7 +25,7 @@ HALF_STYLE: dict[str, dict[str, Any]] = {  # right halves dashed: they often cov
     "wheel_right": {"color": "#E69F00", "linestyle": (0, (4, 2))},
 }
 MARKER_COLOUR = "#666666"
-_RC = {
+_RC: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
@@ -34,7 +35,7 @@ _RC = {
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
-    "axes.prop_cycle": mpl.cycler(color=COLOURS),
+    "axes.prop_cycle": cycler(color=COLOURS),
     "axes.formatter.useoffset": False,
     "grid.color": "#E3E3E3",
     "grid.linewidth": 0.7,
@@ -101,7 +102,9 @@ def new_figure(
 def draw_line(axes: Axes, x: np.ndarray, y: np.ndarray, **how: Any) -> None:  # noqa: ANN401
     """Draw a signal; a long one as its envelope, which looks the same and is much faster."""
     xs, ys = envelope(x, np.clip(y, -_LARGEST, _LARGEST))
-    axes.plot(xs, ys, **(how if xs is x else how | {"linestyle": "-"}))
+    if xs is not x:
+        how["linestyle"] = "-"
+    axes.plot(xs, ys, **how)
 
 
 def envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
