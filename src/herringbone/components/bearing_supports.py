@@ -10,7 +10,7 @@ seat motion projected on n, each half has
 and the same along z with the axial stiffness, without n. The same vector carries motion in and
 force out, so that no power is created. With a radial clearance c, gap(d) = d - max(-c/2, min(d, c/2))
 and the damping acts only on the loaded part (g = 0 inside the clearance, 1 without clearance, rising
-over a tenth of the clearance).
+over a tenth of the clearance); a bearing with clearance never pulls.
 
 A master that steps all FMUs in parallel sees this element one macro step h late; gear and seat then
 are stable only for h < 4/3 zeta / w with the local w, zeta (here about 3e-6 s). A master
@@ -150,8 +150,11 @@ def _radial(b: np.ndarray, gear: int, d: float, rate: float) -> float:
     """Radial bearing force [N] at relative displacement d [m] and its rate [m/s]."""
     play = 0.5 * b[_CLEARANCE[gear]]
     loaded = d - max(-play, min(d, play))
-    g = 1.0 if play == 0.0 else min(1.0, abs(loaded) / (0.2 * play))
-    return b[_K_R[gear]] * loaded + b[_C_R[gear]] * g * rate
+    if play == 0.0:
+        return b[_K_R[gear]] * d + b[_C_R[gear]] * rate
+    g = min(1.0, abs(loaded) / (0.2 * play))
+    force = b[_K_R[gear]] * loaded + b[_C_R[gear]] * g * rate
+    return max(0.0, force) if loaded > 0.0 else min(0.0, force)
 
 
 @kernel

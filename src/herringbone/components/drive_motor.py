@@ -35,9 +35,9 @@ _d = Declaration(
         parameter("integral_gain", "N.m/rad", "K_i", 600.0, minimum=0),
         parameter("torque_limit", "N.m", "largest torque", 1000.0, minimum=0),
         parameter("maximum_acceleration", "rad/s2", "of the set point", 1e4, minimum=1e-6),
-        parameter("ramp_time_constant", "s", "of the set point", 1e-3, minimum=1e-6),
+        parameter("ramp_time_constant", "s", "of the set point", 1e-3, minimum=1e-4),
         parameter("efficiency", "1", "electrical to mechanical", 0.93, minimum=0.01, maximum=1),
-        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-3),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4),
     ],
     work=steppers.body_work(4, 2),
 )

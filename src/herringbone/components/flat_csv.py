@@ -49,7 +49,7 @@ def read_flat_csv(
         ResourceError: not readable, wrong unit, missing column, or a value that is no finite number.
     """
     try:
-        lines = file.read_text(encoding="utf-8").splitlines()
+        lines = file.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise ResourceError(f"cannot read {file}: {error}") from error
     units = _units(lines[0] if lines else "", file)
@@ -58,6 +58,8 @@ def read_flat_csv(
     if len(rows) < 2:
         raise ResourceError(f"{file}: it has no rows")
     header = [name.strip() for name in rows[0][1]]
+    if twice := sorted({name for name in header if header.count(name) > 1}):
+        raise ResourceError(f"{file}: column {', '.join(twice)} stands twice")
     missing = [name for name in (*texts, *numbers) if name not in header]
     if missing:
         raise ResourceError(f"{file}: column {', '.join(missing)} is missing; it has {header}")

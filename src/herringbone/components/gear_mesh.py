@@ -28,7 +28,7 @@ period. It is never inside the stiffness table.
 This is the corrected form of the thesis' mesh damping, whose base radii are swapped; g rises
 smoothly from 0 to 1 over `damping_transition`, so that no force jumps at contact. The phase p counts
 mesh periods of the pinion's left half; the right half is ahead by `stagger`. An optional meshing
-impact adds a raised-cosine pulse at the start of each mesh period, inside N.
+impact adds a raised-cosine pulse at the start of each mesh period, inside N, on the drive side.
 
 **Equations of motion** (virtual work; left pair 1-3, right pair 2-4; f, tau are the inputs):
 
@@ -36,7 +36,8 @@ impact adds a raised-cosine pulse at the start of each mesh period, inside N.
     m z1'' = f_z1 - k_z (z1 - z2) - c_z (z1' - z2') - s sin(beta_b) N_L - restraint
     I theta1'' = share tau + k_t (theta2 - theta1) + c_t (theta2' - theta1') - rb1 cos(beta_b) N_L
 
-`restraint` holds the pinion axially against ground (0: it floats). States are the angle of body 1,
+`restraint` holds the pinion axially against ground, at the mean of its halves (0: it floats), and
+`pinion_axial_drag` damps each half. States are the angle of body 1,
 the twists theta2 - theta1 and theta4 - theta3, and rb1 theta1 - rb2 theta3 ("approach"), so that
 precision does not decay with the number of revolutions. A flange moves with the mean of its two
 halves, weighted by their torque shares: otherwise power would be created.
@@ -159,7 +160,7 @@ def _results() -> list[Variable]:
         *meshes,
         output("transmission_error", "m", "mean of the halves' rb1 theta_pinion - rb2 theta_wheel"),
         output("axial_offset", "m", "eps_z: apex of the pinion against that of the wheel"),
-        local("time_outside_table", "s", "time that a loaded mesh spent outside its table"),
+        local("time_outside_table", "s", "time with a mesh loaded outside its table, drive side"),
     ]
 
 
@@ -207,7 +208,7 @@ def _mesh_parameters() -> list[Variable]:
         p("pinion_axial_drag", "N.s/m", "axial drag of each pinion half against ground", 50.0,
           minimum=0),
         p("drag_torque", "N.m", "drag torque on the pinion", 0.0, minimum=0),
-        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4),
+        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=3e-5),
     ]  # fmt: skip
 
 
@@ -321,13 +322,13 @@ def _normal_force(
     depth = deflection if deflection > 0.0 else coast
     phase = _phase(b, side, cos_b, sin_b)
     force, tangent = force_law.force_and_tangent(b, _TABLE[side], phase, depth)
-    if b[_IMPACT] > 0.0:
-        into = (phase - math.floor(phase)) / b[_IMPACT_DURATION]
-        if into < 1.0:
-            force += 0.5 * b[_IMPACT] * (1.0 - cosine(_TWO_PI * into))
     mass = 1.0 / (b[_RB[0]] ** 2 / b[_INERTIAS[0]] + b[_RB[1]] ** 2 / b[_INERTIAS[1]])
     g = min(1.0, depth / b[_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
+    if b[_IMPACT] > 0.0 and s > 0.0:
+        into = (phase - math.floor(phase)) / b[_IMPACT_DURATION]
+        if into < 1.0:
+            force += 0.5 * b[_IMPACT] * g * (1.0 - cosine(_TWO_PI * into))
     damping = 2.0 * b[_ZETA] * math.sqrt(tangent * mass)
     return s * max(0.0, force + s * damping * g * rate)
 

@@ -28,10 +28,9 @@ _keep_alive: list[object] = []
 
 @cache
 def part_variables(component: str) -> Mapping[str, PartVariable]:
-    """The variables of a component as a master sees them, nodes and Strings included."""
+    """The variables of a component as a master sees them, by ascending value reference."""
     declaration = COMPONENTS[component].declaration
-    found = {text.name: PartVariable(text.name, -1, "parameter", is_real=False)
-             for text in declaration.texts}  # fmt: skip
+    found = {}
     for variable in declaration.variables:
         names = [variable.name]
         if variable.nodes:
@@ -47,7 +46,10 @@ def part_variables(component: str) -> Mapping[str, PartVariable]:
                 if variable.causality is Causality.OUTPUT
                 else None,
             )
-    return found
+    for k, text in enumerate(declaration.texts):
+        reference = declaration.size + k
+        found[text.name] = PartVariable(text.name, reference, "parameter", is_real=False)
+    return dict(sorted(found.items(), key=lambda item: item[1].reference))
 
 
 def unit_dimension(unit: str) -> tuple:

@@ -32,9 +32,9 @@ _d = Declaration(
         output("loss_power", "W", "generator and friction losses"),
         parameter("inertia", "kg.m2", "rotor inertia", 2.0, minimum=1e-9),
         parameter("viscous_friction", "N.m.s/rad", "rotor friction", 0.0, minimum=0),
-        parameter("torque_time_constant", "s", "of the torque control", 5e-3, minimum=1e-6),
+        parameter("torque_time_constant", "s", "of the torque control", 5e-3, minimum=1e-4),
         parameter("efficiency", "1", "mechanical to electrical", 0.93, minimum=0.01, maximum=1),
-        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-3),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4),
     ],
     work=steppers.body_work(3, 2),
 )

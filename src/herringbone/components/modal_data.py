@@ -47,6 +47,8 @@ def read_modes(
             f"{shapes} has {values.shape[0]} modes, {modes} has {frequency_hz.size}"
         )
     rows = {key: i for i, key in enumerate(zip(table["point"], table["dof"], strict=True))}
+    if len(rows) < len(table["point"]):
+        raise ResourceError(f"{shapes}: a point and dof stand twice")
     missing = [f"{point} {dof}" for point, dof in dofs if (point, dof) not in rows]
     if missing:
         raise ResourceError(f"{shapes}: rows are missing for {', '.join(missing)}")

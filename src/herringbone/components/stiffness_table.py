@@ -9,6 +9,7 @@ from herringbone.core import ResourceError
 from herringbone.kernels.force_law import LOADS, PHASES
 
 _UNITS = {"load": ("N",), "phase": ("1",), "stiffness": ("N/m",)}
+_SIDES = ("left", "right")
 _PERIODIC = 1e-6
 
 
@@ -26,7 +27,9 @@ def read_stiffness_table(file: Path) -> tuple[tuple[np.ndarray, np.ndarray], ...
             periodic, stiffness not positive, or force not rising with deflection.
     """
     columns, _ = read_flat_csv(file, ("side",), _UNITS)
-    return tuple(_side(columns, side, file) for side in ("left", "right"))
+    if unknown := sorted(set(columns["side"]) - set(_SIDES)):
+        raise ResourceError(f"{file}: side '{unknown[0]}' is none of {', '.join(_SIDES)}")
+    return tuple(_side(columns, side, file) for side in _SIDES)
 
 
 def _side(columns: dict[str, np.ndarray], side: str, file: Path) -> tuple[np.ndarray, np.ndarray]:

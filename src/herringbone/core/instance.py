@@ -9,7 +9,7 @@ from herringbone.core.component import Component
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.errors import ParameterError, ResourceError
 from herringbone.core.paths import resources_folder
-from herringbone.core.variable import Causality, Variable
+from herringbone.core.variable import NODES, Causality, Variable
 
 
 class Instance:
@@ -62,7 +62,7 @@ class Instance:
                 self._stale_resources = True
             return
         index = self._known(name)
-        if isinstance(value, str | bool):
+        if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
             raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a number")
         if index >= self.component.declaration.mutable_size:
             check_value(self.name, self.component.declaration.variable(name), float(value))
@@ -108,6 +108,9 @@ class Instance:
         self.load_resources()
         self.component.start(self.block)
         self.component.kernels.out(self.block, time)
+        first, count = declaration.first_output, len(declaration.node_outputs)
+        signals = self.block[first : first + count * (NODES + 1)].reshape(count, NODES + 1)
+        signals[:, 1:] = signals[:, :1]
 
     def step(self, time: float, step_size: float) -> int:
         """Advance the block; 0 is success."""

@@ -2,6 +2,7 @@
 
 import atexit
 import ctypes
+import itertools
 import math
 import shutil
 from collections.abc import Sequence
@@ -59,6 +60,28 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     return found
 
 
+_keys = itertools.count(1)
+_logs: dict[int, list[str]] = {}
+"""Messages by part; fmpy's logger proxy keeps one logger for the process."""
+
+
+@fmi2CallbackLoggerTYPE
+def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+    if status > 0 and message and environment in _logs:
+        _logs[environment].append(message.decode("utf-8", "replace").strip())
+
+
+def _callbacks(key: int) -> fmi2CallbackFunctions:
+    """Callbacks of one part; fmpy's proxy formats the logger's arguments."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = _log
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks.componentEnvironment = ctypes.c_void_p(key)
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
 class FmuPart:
     """An instantiated FMU 2.0 for co-simulation.
 
@@ -75,46 +98,33 @@ class FmuPart:
         self.model = read_fmu(file)
         self.variables = read_variables(self.model)
         self._types = {v.name: v.type for v in self.model.modelVariables}
-        self._log: list[str] = []
+        self._key = next(_keys)
+        self._log = _logs[self._key] = []
         self._folder = extract_fmu(file)
-        self._callbacks = self._make_callbacks()
+        self._callbacks = _callbacks(self._key)
         try:
-            self._slave = FMU2Slave(
+            self.slave = FMU2Slave(
                 guid=self.model.guid,
                 unzipDirectory=str(self._folder),
                 modelIdentifier=self.model.coSimulation.modelIdentifier,
                 instanceName=name,
             )
-            self._slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+            self.slave.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:  # fmpy raises bare Exception; loading raises OSError
             shutil.rmtree(self._folder, ignore_errors=True)
             said = "; ".join([str(error), *self.messages()])
             raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
-        _finalize_at_exit(self._slave.dll)
-
-    def _make_callbacks(self) -> fmi2CallbackFunctions:
-        """Callbacks whose logger keeps messages; fmpy's proxy formats their arguments."""
-
-        def log(_environment: int, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
-            if status > 0 and message:
-                self._log.append(message.decode("utf-8", "replace").strip())
-
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(log)
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        addLoggerProxy(ctypes.byref(callbacks))
-        return callbacks
+        _finalize_at_exit(self.slave.dll)
 
     @property
     def addresses(self) -> Addresses:
         """Addresses of the FMU's functions."""
 
         def address(name: str) -> int:
-            return ctypes.cast(getattr(self._slave.dll, name), ctypes.c_void_p).value or 0
+            return ctypes.cast(getattr(self.slave.dll, name), ctypes.c_void_p).value or 0
 
         functions = (address(f"fmi2{name}") for name in ("SetReal", "GetReal", "DoStep"))
-        return Addresses(int(self._slave.component), *functions)
+        return Addresses(int(self.slave.component), *functions)
 
     def set(self, name: str, value: float | str) -> None:
         """Set a variable before or during initialisation.
@@ -133,11 +143,11 @@ class FmuPart:
         if not isinstance(value, str) and not math.isfinite(value):
             raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
         setter = {
-            "Real": self._slave.setReal,
-            "Integer": self._slave.setInteger,
-            "Enumeration": self._slave.setInteger,
-            "Boolean": self._slave.setBoolean,
-            "String": self._slave.setString,
+            "Real": self.slave.setReal,
+            "Integer": self.slave.setInteger,
+            "Enumeration": self.slave.setInteger,
+            "Boolean": self.slave.setBoolean,
+            "String": self.slave.setString,
         }[kind]
         converted = value if kind in {"Real", "String"} else int(value)
         try:
@@ -151,22 +161,22 @@ class FmuPart:
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables; raises FmuError."""
         try:
-            return self._slave.getReal([self.variables[name].reference for name in names])
+            return self.slave.getReal([self.variables[name].reference for name in names])
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name}: reading {', '.join(names)}", error)) from error
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""
         try:
-            self._slave.setupExperiment(startTime=start_time, stopTime=stop_time)
-            self._slave.enterInitializationMode()
+            self.slave.setupExperiment(startTime=start_time, stopTime=stop_time)
+            self.slave.enterInitializationMode()
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""
         try:
-            self._slave.exitInitializationMode()
+            self.slave.exitInitializationMode()
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 
@@ -178,7 +188,8 @@ class FmuPart:
 
     def close(self) -> None:
         """Free the instance and remove the extracted files."""
-        self._slave.freeInstance()
+        self.slave.freeInstance()
+        _logs.pop(self._key, None)
         shutil.rmtree(self._folder, ignore_errors=True)
 
 

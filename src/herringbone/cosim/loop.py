@@ -72,41 +72,59 @@ def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) 
 
 
 @kernel
-def get_outputs(plan: Plan, history: np.ndarray, p: int) -> int:
-    """Get all connected outputs of a part into row 0 of the history; FMI status."""
+def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, row: int) -> int:
+    """Get all connected outputs of a part into row 0 of the history; FMI status.
+
+    With row >= 0 all recorded outputs are read into that row of the records, and the connected
+    ones, which are among them, are copied: one call to the part in both cases.
+    """
     first, end = plan.output_first[p], plan.output_first[p + 1]
-    if first == end:
-        return 0
-    return exchange_reals(
-        plan.get_real[p],
-        plan.component[p],
-        plan.output_reference.ctypes.data + _REFERENCE * first,
-        end - first,
-        history.ctypes.data + _REAL * first,
-    )
+    if row < 0:
+        if first == end:
+            return 0
+        return exchange_reals(
+            plan.get_real[p],
+            plan.component[p],
+            plan.output_reference.ctypes.data + _REFERENCE * first,
+            end - first,
+            history.ctypes.data + _REAL * first,
+        )
+    at, count = plan.record_first[p], plan.record_first[p + 1] - plan.record_first[p]
+    status = 0
+    if count > 0:
+        status = exchange_reals(
+            plan.get_real[p],
+            plan.component[p],
+            plan.record_reference.ctypes.data + _REFERENCE * at,
+            count,
+            records.ctypes.data + _REAL * (row * records.shape[1] + at),
+        )
+    for i in range(first, end):
+        history[0, i] = records[row, plan.output_record[i]]
+    return status
 
 
 @kernel
-def record(plan: Plan, row: np.ndarray) -> int:
-    """Get the recorded outputs of all parts; FMI status."""
+def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> int:
+    """Get the outputs of all parts, recorded in a row; FMI status."""
     for p in range(plan.component.size):
-        first, end = plan.record_first[p], plan.record_first[p + 1]
-        if end > first:
-            status = exchange_reals(
-                plan.get_real[p],
-                plan.component[p],
-                plan.record_reference.ctypes.data + _REFERENCE * first,
-                end - first,
-                row.ctypes.data + _REAL * first,
-            )
-            if status > _LAST_GOOD:
-                return status
+        status = get_outputs(plan, history, p, records, row)
+        if status > _LAST_GOOD:
+            return status
     return 0
 
 
 @kernel
 def step_stage(
-    plan: Plan, history: np.ndarray, stage: int, order: int, known: int, t: float, h: float
+    plan: Plan,
+    history: np.ndarray,
+    stage: int,
+    order: int,
+    known: int,
+    t: float,
+    h: float,
+    records: np.ndarray,
+    row: int,
 ) -> int:
     """Step the parts of one stage over the macro step; -1, or the part that failed."""
     first, end = plan.stage_first[stage], plan.stage_first[stage + 1]
@@ -118,7 +136,7 @@ def step_stage(
         if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
             return p
     for k in range(first, end):
-        if get_outputs(plan, history, plan.stage_part[k]) > _LAST_GOOD:
+        if get_outputs(plan, history, plan.stage_part[k], records, row) > _LAST_GOOD:
             return plan.stage_part[k]
     return -1
 
@@ -164,13 +182,13 @@ def run_stages(
         for row in range(history.shape[0] - 1, 0, -1):
             for i in range(history.shape[1]):
                 history[row, i] = history[row - 1, i]
+        row = (n + 1) // every if (n + 1) % every == 0 else -1
         for stage in range(plan.stage_first.size - 1):
-            failed = step_stage(plan, history, stage, order, n + 1, t0 + n * h, h)
+            t = t0 + n * h
+            failed = step_stage(plan, history, stage, order, n + 1, t, h, records, row)
             if failed >= 0:
                 return PART_FAILED, n, failed
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-        if (n + 1) % every == 0 and record(plan, records[(n + 1) // every]) > _LAST_GOOD:
-            return PART_FAILED, n + 1, -1
     return DONE, start + count, -1

@@ -36,6 +36,8 @@ class Plan(NamedTuple):
     set_value: np.ndarray
     output_first: np.ndarray
     output_reference: np.ndarray
+    output_record: np.ndarray
+    """Column of the records in which a connected output stands."""
     record_first: np.ndarray
     record_reference: np.ndarray
     stage_first: np.ndarray
@@ -91,6 +93,7 @@ def build_plan(
         for p, part in enumerate(parts)
     ]
     records = record_names(network)
+    record_first = _offsets([len(r) for r in records])
     addresses = np.array([part.addresses for part in parts], dtype=np.int64)
     set_first = _offsets([len(r) for r in set_references])
     return Plan(
@@ -115,7 +118,11 @@ def build_plan(
         output_reference=_references(
             [[part.variables[n].reference for n in outputs[p]] for p, part in enumerate(parts)]
         ),
-        record_first=_offsets([len(r) for r in records]),
+        output_record=np.array(
+            [record_first[p] + records[p].index(n) for p, names in enumerate(outputs) for n in names],
+            dtype=np.int64,
+        ),
+        record_first=record_first,
         record_reference=_references(
             [[part.variables[n].reference for n in records[p]] for p, part in enumerate(parts)]
         ),

@@ -12,7 +12,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, Prepared
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.loop import DONE, NOT_FINITE, record
+from herringbone.cosim.loop import DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
 from herringbone.cosim.plan import HISTORY, record_names
 from herringbone.cosim.system import System
@@ -153,8 +153,8 @@ class _Run:
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
-        record(self.prepared.plan, self.records[0])
-        self._read_outputs()
+        get_all(self.prepared.plan, self.history, self.records, 0)
+        self.history[1:] = self.history[0]
         done, status, culprit, chunk = 0, DONE, -1, 1
         begin = time.perf_counter()
         with InterruptFlag() as flag:
@@ -171,19 +171,6 @@ class _Run:
         wall = time.perf_counter() - begin
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
-
-    def _read_outputs(self) -> None:
-        """Start of the signal history: the outputs after initialisation."""
-        plan = self.prepared.plan
-        for p, part in enumerate(self.network.parts):
-            by_reference = {
-                v.reference: n
-                for n, v in part.variables.items()
-                if v.causality == "output" and v.is_real
-            }
-            first, end = plan.output_first[p], plan.output_first[p + 1]
-            names = [by_reference[r] for r in plan.output_reference[first:end]]
-            self.history[:, first:end] = part.get(names)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
         reached = done * self.grid.step

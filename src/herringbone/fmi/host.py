@@ -5,7 +5,6 @@ from types import TracebackType
 from typing import Self
 
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave
 
 from herringbone.core import FmuError
 from herringbone.cosim.fmu_part import FmuPart
@@ -24,11 +23,6 @@ class Host(FmuPart):
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-    @property
-    def slave(self) -> FMU2Slave:
-        """The FMI functions, unchecked; they raise FMICallException."""
-        return self._slave
 
     def set_values(self, values: Mapping[str, float | str]) -> None:
         """Set variables by name; raises ParameterError."""
@@ -56,6 +50,6 @@ class Host(FmuPart):
             FmuError: the step was discarded or failed; the message holds what the FMU logged.
         """
         try:
-            self._slave.doStep(time, step_size)
+            self.slave.doStep(time, step_size)
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not step", error)) from error

@@ -17,7 +17,7 @@ Rhs = Callable[[np.ndarray, float, np.ndarray], None]
 Out = Callable[[np.ndarray, float], None]
 
 NOT_FINITE = 1
-"""Status of a step whose states or outputs are NaN or infinite."""
+"""Status of a step whose states (an element's or source's outputs) are NaN or infinite."""
 
 
 def body_work(state_count: int, input_count: int) -> int:
