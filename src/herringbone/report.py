@@ -51,12 +51,13 @@ def summary_text(result: Result) -> str:
     return "\n".join([*lines, *(["", *tail] if tail else [])]) + "\n"
 
 
-def write_report(result: Result, folder: Path) -> Result:
+def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Result:
     """Write results.csv, pictures, summary.txt and summary.json into a folder, made if needed.
 
     Args:
         result: of a run.
         folder: where the files go; files of the same names are replaced.
+        parquet: write results.parquet as well.
 
     Returns:
         The result with `files` filled in.
@@ -66,12 +67,16 @@ def write_report(result: Result, folder: Path) -> Result:
     """
     from herringbone.plotting import write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
-    table, text, summary = (folder / n for n in ("results.csv", "summary.txt", "summary.json"))
+    text, summary = folder / "summary.txt", folder / "summary.json"
+    tables = [folder / "results.csv"]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        result.to_csv(table)
+        result.to_csv(tables[0])
+        if parquet:
+            tables.append(folder / "results.parquet")
+            result.to_parquet(tables[1])
         pictures = write_pictures(result, folder)
-        result = replace(result, files=tuple(map(str, (table, text, summary, *pictures))))
+        result = replace(result, files=tuple(map(str, (*tables, text, summary, *pictures))))
         text.write_text(summary_text(result), encoding="utf-8")
         content = result.summary() | {"parameters": dict(result.info.parameters)}
         summary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
