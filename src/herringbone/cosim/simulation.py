@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core import Outcome, OutcomeKind, ParameterError
-from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, Prepared
 from herringbone.cosim.interrupt import InterruptFlag
@@ -118,14 +118,29 @@ def simulate(
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
-    _initialise(network, grid.step * grid.count)
+    _initialise(network, prepared.degree, grid.step * grid.count)
     return _Run(network, prepared, grid).go(progress)
 
 
-def _initialise(network: Network, t_end: float) -> None:
+def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:
+    """Give the nodes of inputs that nothing feeds the input's own start value."""
+    for p, (part, degree) in enumerate(zip(network.parts, degrees, strict=True)):
+        fed = {c.input for c in network.inputs(p)}
+        for name, variable in part.variables.items():
+            if variable.causality != "input" or name in fed:
+                continue
+            nodes = [node_name(name, i) for i in range(1, degree + 1)]
+            if nodes and nodes[-1] in part.variables:
+                value = part.get([name])[0]
+                for node in nodes:
+                    part.set(node, value)
+
+
+def _initialise(network: Network, degrees: Sequence[int], t_end: float) -> None:
     parts = network.parts
     for part in parts:
         part.enter_initialization(0.0, t_end)
+    _hold_unconnected_inputs(network, degrees)
     for target in (*network.elements, *network.bodies):
         for c in network.inputs(target):
             value = parts[c.source].get([c.output])[0]
