@@ -124,6 +124,13 @@ def _pairs(
                 fed.add(f"{b.name}.{target}")
                 yield (a, source), (b, target)
     if not fed:
+        given = [one.variables[f"{one_name}.{suffix}"] for suffix in one_suffixes]
+        outputs = [v for v in given if v.causality == "output"]
+        if outputs and all(v.dependencies for v in outputs):
+            raise StructureError(
+                f"connection '{first}' - '{second}': both give force and want motion (element to "
+                "element); put a body (with inertia) between them"
+            )
         raise StructureError(
             f"connection '{first}' - '{second}': both give motion and want force (body to body); "
             "insert a shaft_coupling or another compliant element between them"

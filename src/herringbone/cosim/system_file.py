@@ -26,8 +26,20 @@ from herringbone.core.paths import systems_folder
 from herringbone.cosim.system import PartSpec, System
 
 FILE_NAME = "system.toml"
-_KEYS = {"name", "description", "connections", "parts", "ports", "channels"}
+_KEYS: dict[str, type] = {
+    "name": str, "description": str, "connections": list, "parts": dict, "ports": dict,
+    "channels": dict,
+}  # fmt: skip
+_TYPE_NAMES = {str: "a text", list: "a list", dict: "a table"}
 _KINDS = ("component", "fmu", "system")
+
+
+VALUE_HINT = 'it takes a number or a text; quote a name that has dots: "a.b" = 1.0'
+
+
+def is_value(value: object) -> bool:
+    """True if a variable can be set to this value from TOML (Booleans: for foreign FMUs)."""
+    return isinstance(value, float | int | str)
 
 
 def find_system(reference: str | Path) -> Path:
@@ -69,9 +81,15 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
         raise StructureError(f"system '{reference}' contains itself")
     file = folder / FILE_NAME
     data = read_toml(file)
-    unknown = set(data) - _KEYS
+    unknown = set(data) - set(_KEYS)
     if unknown:
         raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
+    for key, kind in _KEYS.items():
+        _check_type(data.get(key, kind()), kind, key, file)
+    for name, path in data.get("ports", {}).items():
+        _check_type(path, str, f"port '{name}'", file)
+    for name, patterns in data.get("channels", {}).items():
+        _check_type(patterns, list, f"channel '{name}'", file)
     parts: list[PartSpec] = []
     nested: dict[str, System] = {}
     for name, table in data.get("parts", {}).items():
@@ -84,7 +102,13 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     return _assemble(data, file, parts, nested)
 
 
+def _check_type(value: object, kind: type, what: str, file: Path) -> None:
+    if not isinstance(value, kind):
+        raise StructureError(f"{file}: {what} = {value!r}: it takes {_TYPE_NAMES[kind]}")
+
+
 def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> PartSpec | None:
+    _check_type(table, dict, f"part '{name}'", file)
     kinds = [kind for kind in _KINDS if kind in table]
     unknown = set(table) - {*_KINDS, "set"}
     if len(kinds) != 1 or unknown:
@@ -92,9 +116,14 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
             f"{file}, part '{name}': give exactly one of {', '.join(_KINDS)}, and 'set'"
             + (f"; unknown: {', '.join(sorted(unknown))}" if unknown else "")
         )
+    _check_type(table[kinds[0]], str, f"part '{name}': {kinds[0]}", file)
+    values = table.get("set", {})
+    _check_type(values, dict, f"part '{name}': set", file)
+    for variable, value in values.items():
+        if not is_value(value):
+            raise StructureError(f"{file}: {name}.{variable} = {value!r}: {VALUE_HINT}")
     if kinds[0] == "system":
         return None
-    values = table.get("set", {})
     if kinds[0] == "fmu":
         return PartSpec(name, fmu=(folder / table["fmu"]).resolve(), values=values)
     return PartSpec(name, component=table["component"], values=values)
@@ -127,7 +156,8 @@ def _assemble(
         connections += inner.connections
         channels |= inner.channels
     for pair in data.get("connections", []):
-        if len(pair) != 2 or not all(isinstance(path, str) for path in pair):
+        texts = isinstance(pair, list) and all(isinstance(path, str) for path in pair)
+        if not texts or len(pair) != 2:
             raise StructureError(f"{file}: a connection is a pair of paths, not {pair!r}")
         connections.append((resolve(pair[0]), resolve(pair[1])))
     channels |= {name: tuple(p) for name, p in data.get("channels", {}).items()}

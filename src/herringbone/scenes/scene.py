@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError
-from herringbone.cosim.system_file import read_toml
+from herringbone.cosim.system_file import VALUE_HINT, is_value, read_toml
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -75,6 +75,7 @@ def read_scene(file: Path) -> Scene:
         raise ParameterError(
             f"{file}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(known))}"
         )
+    _check_tables(data, file)
     numbers = {key: _positive(data[key], key, file) for key in _NUMBERS & set(data)}
     start = data.get("start", Start.EQUILIBRIUM.value)
     if start not in list(Start):
@@ -87,6 +88,20 @@ def read_scene(file: Path) -> Scene:
         start_offset=data.get("start_offset", {}),
         **numbers,
     )
+
+
+def _check_tables(data: Mapping[str, Any], file: Path) -> None:
+    if not isinstance(data.get("description", ""), str):
+        raise ParameterError(f"{file}: description = {data['description']!r}: it takes a text")
+    for key in _TABLES & set(data):
+        if not isinstance(data[key], dict):
+            raise ParameterError(f"{file}: {key} = {data[key]!r}: it takes a table")
+        for path, value in data[key].items():
+            if not is_value(value):
+                raise ParameterError(f"{file}: {path} = {value!r}: {VALUE_HINT}")
+    for path, value in data.get("start_offset", {}).items():
+        if isinstance(value, bool | str) or not math.isfinite(value):
+            raise ParameterError(f"{file}: {path} = {value!r}: it takes a finite number")
 
 
 def _positive(value: Any, key: str, file: Path) -> float:  # noqa: ANN401 (anything from TOML)

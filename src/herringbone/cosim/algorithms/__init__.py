@@ -28,6 +28,8 @@ def parse_algorithm(text: str) -> Algorithm:
         key, _, value = item.partition("=")
         if key not in types:
             raise ParameterError(f"{name} has no option '{key}'; it has: {', '.join(types)}")
+        if key in values:
+            raise ParameterError(f"{name}: option '{key}' is given twice")
         try:
             values[key] = types[key](value)
         except ValueError:
