@@ -1,0 +1,328 @@
+"""Participants for tests, in plain Python behind C addresses: the algorithms know no component.
+
+`Mass` is a free body, propagated exactly for any polynomial force; `SpringDamper` is massless. Two
+masses and a spring-damper are the linear test problem, whose solution `two_mass_exact` gives.
+"""
+
+import ctypes
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import expm
+
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.registry import component
+from herringbone.core import Instance, ParameterError
+from herringbone.core.part import Addresses, PartVariable
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.simulation import Recording, make_grid, simulate
+from herringbone.cosim.system import PartSpec, System
+
+OK, ERROR = 0, 3
+NODES = 4
+DEGREE = "interface_degree"
+
+_REALS = ctypes.POINTER(ctypes.c_double)
+_REFERENCES = ctypes.POINTER(ctypes.c_uint32)
+_EXCHANGE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, _REFERENCES, ctypes.c_size_t, _REALS)
+_DO_STEP = ctypes.CFUNCTYPE(
+    ctypes.c_int32, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int32
+)
+
+UNIT = {"s": "m", "v": "m/s", "f": "N"}
+
+
+@dataclass
+class FakePart:
+    """Only a name and variables, for tests of structure."""
+
+    name: str
+    variables: dict[str, PartVariable] = field(default_factory=dict)
+
+    def real(self, name, causality, unit="1", dependencies=None, **more):
+        """Add a variable; outputs depend on nothing unless told."""
+        if causality == "output" and dependencies is None:
+            dependencies = frozenset()
+        self.variables[name] = PartVariable(
+            name, len(self.variables), causality, unit,
+            dependencies=dependencies, **more,
+        )  # fmt: skip
+        return self
+
+
+class CallbackPart:
+    """A participant whose FMI functions are Python functions on the list `memory`.
+
+    Args:
+        name: instance name.
+        inputs, outputs: names; outputs depend directly on the inputs if `feedthrough`.
+        nodes: the inputs are polynomial signals.
+        start: start values by name.
+    """
+
+    feedthrough = False
+
+    def __init__(self, name, inputs, outputs, *, nodes=True, start=None):
+        self.name, self.inputs, self.outputs = name, tuple(inputs), tuple(outputs)
+        self.variables: dict[str, PartVariable] = {}
+        self.memory: list[float] = []
+        for output in self.outputs:
+            dependencies = frozenset(self.inputs if self.feedthrough else ())
+            self._add(output, "output", dependencies)
+        for input_ in self.inputs:
+            self._add(input_, "input")
+            for node in range(1, NODES + 1) if nodes else ():
+                self._add(f"{input_}.node{node}", "input")
+        if nodes:
+            self._add(DEGREE, "parameter")
+        for key, value in (start or {}).items():
+            self.set(key, value)
+        self.steps = 0
+        self.closed = False
+        self._functions = (
+            _EXCHANGE(self._set_real), _EXCHANGE(self._get_real), _DO_STEP(self._do_step)
+        )  # fmt: skip
+
+    def _add(self, name, causality, dependencies=None):
+        unit = UNIT.get(name.split(".")[1]) if "." in name else "1"
+        self.variables[name] = PartVariable(
+            name, len(self.memory), causality, unit, dependencies=dependencies
+        )
+        self.memory.append(0.0)
+
+    def __getitem__(self, name):
+        return self.memory[self.variables[name].reference]
+
+    def __setitem__(self, name, value):
+        self.memory[self.variables[name].reference] = value
+
+    def nodal(self, name):
+        """Values of an input at the live nodes of the macro step."""
+        degree = int(self[DEGREE]) if DEGREE in self.variables else 0
+        return [self[name], *(self[f"{name}.node{i}"] for i in range(1, degree + 1))]
+
+    # -- what a compiled loop calls -------------------------------------------------------------
+    def _set_real(self, _component, references, count, values):
+        for i in range(count):
+            self.memory[references[i]] = values[i]
+        return OK
+
+    def _get_real(self, _component, references, count, values):
+        for i in range(count):
+            values[i] = self.memory[references[i]]
+        return OK
+
+    def _do_step(self, _component, t, h, _no_rollback):
+        self.steps += 1
+        return self.step(t, h)
+
+    def step(self, t, h):
+        """Advance, write the outputs; FMI status."""
+        raise NotImplementedError
+
+    def out(self):
+        """Write the outputs of the start."""
+
+    # -- the Part protocol ----------------------------------------------------------------------
+    @property
+    def addresses(self):
+        """Addresses of the callbacks; they ignore the component pointer."""
+        return Addresses(1, *(ctypes.cast(f, ctypes.c_void_p).value for f in self._functions))
+
+    def set(self, name, value):
+        """Set a variable."""
+        if name not in self.variables:
+            raise ParameterError(f"{self.name} has no variable '{name}'")
+        self[name] = float(value)
+
+    def get(self, names):
+        """Values; in initialisation they belong to the inputs just set."""
+        if self.steps == 0:
+            self.out()
+        return [self[name] for name in names]
+
+    def enter_initialization(self, start_time, stop_time):
+        """Compute the outputs of the start."""
+        self.out()
+
+    def exit_initialization(self):
+        """Compute the outputs of the start."""
+        self.out()
+
+    def messages(self):
+        """Nothing is logged."""
+        return []
+
+    def close(self):
+        """Remember that it was called."""
+        self.closed = True
+
+
+class Mass(CallbackPart):
+    """A free mass: s' = v, m v' = f, solved exactly for a polynomial force.
+
+    f is the sum of `flange.f` and `load.f`.
+
+    Args:
+        name: instance name.
+        mass: [kg].
+        position, velocity: at the start [m, m/s].
+        nodes: the force is a polynomial signal.
+        misbehave: called with (part, t) after every step; may spoil it and return a status.
+    """
+
+    def __init__(self, name, mass, position=0.0, velocity=0.0, *, nodes=True, misbehave=None):
+        inputs, outputs = ["flange.f", "load.f"], ["flange.s", "flange.v"]
+        super().__init__(name, inputs, outputs, nodes=nodes)
+        self.mass, self.misbehave = mass, misbehave
+        self["flange.s"], self["flange.v"] = position, velocity
+
+    def step(self, t, h):
+        force = np.add(self.nodal("flange.f"), self.nodal("load.f"))
+        places = np.linspace(0.0, 1.0, len(force)) if len(force) > 1 else np.zeros(1)
+        a = np.linalg.solve(np.vander(places, increasing=True), force)
+        j = np.arange(len(force))
+        self["flange.s"] += h * self["flange.v"]
+        self["flange.s"] += h * h / self.mass * float((a / ((j + 1) * (j + 2))).sum())
+        self["flange.v"] += h / self.mass * float((a / (j + 1)).sum())
+        return self.misbehave(self, t + h) or OK if self.misbehave else OK
+
+
+class SpringDamper(CallbackPart):
+    """Massless spring-damper between flanges a and b; forces act on the bodies."""
+
+    feedthrough = True
+
+    def __init__(self, name, stiffness, damping):
+        motion = [f"{side}.{q}" for side in "ab" for q in "sv"]
+        super().__init__(name, motion, ["a.f", "b.f"])
+        self.stiffness, self.damping = stiffness, damping
+
+    def out(self):
+        s = self["a.s"] - self["b.s"]
+        v = self["a.v"] - self["b.v"]
+        self["b.f"] = self.stiffness * s + self.damping * v
+        self["a.f"] = -self["b.f"]
+
+    def step(self, t, h):
+        self.out()
+        return OK
+
+
+@dataclass(frozen=True)
+class TwoMass:
+    """Two free masses and a spring-damper of frequency w [rad/s] and damping ratio zeta.
+
+    The start is at rest with the spring stretched, so that the force has no rate at first and a
+    start without history costs nothing.
+    """
+
+    w: float = 1.0
+    zeta: float = 0.0
+    mass: tuple[float, float] = (1.0, 3.0)
+    start: tuple[float, float] = (1.0, -0.2)
+
+    @property
+    def reduced(self):
+        """Reduced mass [kg]."""
+        return self.mass[0] * self.mass[1] / sum(self.mass)
+
+    @property
+    def stiffness(self):
+        """Of the spring [N/m]."""
+        return self.reduced * self.w**2
+
+    @property
+    def damping(self):
+        """Of the damper [N s/m]."""
+        return 2.0 * self.zeta * self.reduced * self.w
+
+    def parts(self, *, nodes=True, **more):
+        """New participants; `more` are options of the left mass."""
+        return [
+            Mass("left", self.mass[0], self.start[0], nodes=nodes, **more),
+            Mass("right", self.mass[1], self.start[1], nodes=nodes),
+            SpringDamper("spring", self.stiffness, self.damping),
+        ]
+
+    def exact(self, times):
+        """Positions and velocities (n, 4): s, v of the left, s, v of the right mass."""
+        (m1, m2), k, c = self.mass, self.stiffness, self.damping
+        a = np.array(
+            [
+                [0.0, 1.0, 0.0, 0.0],
+                [-k / m1, -c / m1, k / m1, c / m1],
+                [0.0, 0.0, 0.0, 1.0],
+                [k / m2, c / m2, -k / m2, -c / m2],
+            ]
+        )
+        x0 = np.array([self.start[0], 0.0, self.start[1], 0.0])
+        return np.array([expm(a * t) @ x0 for t in times])
+
+    def run(self, algorithm: Algorithm, h: float, t_end: float, **more) -> Recording:
+        """Run with new participants, recording every step."""
+        return simulate(TWO_MASS_SYSTEM, self.parts(**more), algorithm, make_grid(t_end, h, h))
+
+
+TWO_MASS_SYSTEM = System(
+    "two_mass",
+    "",
+    tuple(PartSpec(name) for name in ("left", "right", "spring")),
+    (("left.flange", "spring.a"), ("right.flange", "spring.b")),
+)
+MOTION = ("left.flange.s", "left.flange.v", "right.flange.s", "right.flange.v")
+
+
+def columns(recording: Recording, names: Sequence[str]) -> np.ndarray:
+    """Recorded values (n, len(names))."""
+    return recording.values[:, [recording.names.index(name) for name in names]]
+
+
+def slope(steps: Sequence[float], errors: Sequence[float]) -> float:
+    """Least-squares slope of log error over log step."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def open_in_process(system: System) -> list[InProcessPart]:
+    """All parts of a system of components, in-process, values set."""
+    parts = []
+    for spec in system.parts:
+        part = InProcessPart(Instance(component(spec.component), spec.name))
+        for name, value in spec.values.items():
+            part.set(name, value)
+        parts.append(part)
+    return parts
+
+
+def run_in_process(system: System, algorithm: Algorithm, h: float, t_end: float, record=None):
+    """Run a system of components in-process."""
+    return simulate(system, open_in_process(system), algorithm, make_grid(t_end, h, record or h))
+
+
+def fail_at(when, status=ERROR):
+    """Misbehaviour: refuse the step that ends at `when`."""
+    return lambda part, t: status if t > when - 1e-9 else OK
+
+
+def spoil_at(when, value=math.nan):
+    """Misbehaviour: a velocity that is not finite from `when` on."""
+
+    def spoil(part, t):
+        if t > when - 1e-9:
+            part["flange.v"] = value
+        return OK
+
+    return spoil
+
+
+def dawdle(seconds):
+    """Misbehaviour: sleep in every step."""
+
+    def sleep(part, t):
+        time.sleep(seconds)
+        return OK
+
+    return sleep
