@@ -116,7 +116,7 @@ def _headline(result: Result) -> Iterator[str]:
 
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
-    micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_step.items())
+    micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
     yield _line("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
     yield _line("Steps", f"communication {_time(info.communication_step)}, "
                 f"record {_time(info.record_step)}")  # fmt: skip

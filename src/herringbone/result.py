@@ -26,7 +26,8 @@ class RunInfo:
     Attributes:
         system, scene, model: names; `model` is the list of components by instance.
         t_end: end that was asked for [s].
-        communication_step, record_step, micro_step: [s]; micro_step by instance.
+        communication_step, record_step: [s].
+        micro_steps: longest internal step by instance [s].
         algorithm: as on the command line.
         fmu: "python" or "in-process".
         macro_steps, passes, rollbacks, wall_s: cost of the loop.
@@ -40,7 +41,7 @@ class RunInfo:
     t_end: float
     communication_step: float
     record_step: float
-    micro_step: Mapping[str, float]
+    micro_steps: Mapping[str, float]
     algorithm: str
     fmu: str
     macro_steps: int
@@ -136,6 +137,8 @@ class Result:
             **{k: v for k, v in info.items() if k not in {"system", "scene", "model", "t_end"}},
             "results": list(self.files),
         }
+        if self.info.micro_steps:
+            found["micro_step"] = min(self.info.micro_steps.values())
         if self.outcome.message:
             found |= {"message": self.outcome.message, "culprit": self.outcome.culprit}
         if self.error is not None:
