@@ -171,14 +171,13 @@ class _Run:
         get_all(self.prepared.plan, self.history, self.records, 0)
         self.history[1:] = self.history[0]
         done, status, culprit, chunk = 0, DONE, -1, 1
+        self._advance(0, 0)  # compiles the loop, or loads it from the cache
         begin = time.perf_counter()
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
                 before, started = done, time.perf_counter()
                 count = min(chunk, self.grid.count - done)
-                status, done, culprit = self.prepared.run(
-                    self.history, 0.0, self.grid.step, done, count, self.records, self.grid.every
-                )
+                status, done, culprit = self._advance(done, count)
                 rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
@@ -186,6 +185,11 @@ class _Run:
         wall = time.perf_counter() - begin
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
+
+    def _advance(self, start: int, count: int) -> tuple[int, int, int]:
+        return self.prepared.run(
+            self.history, 0.0, self.grid.step, start, count, self.records, self.grid.every
+        )
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
         reached = done * self.grid.step
