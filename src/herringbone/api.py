@@ -17,12 +17,14 @@ from herringbone.core.part import Part
 from herringbone.cosim.algorithms import Algorithm, Jacobi, parse_algorithm
 from herringbone.cosim.fmu_part import FmuPart
 from herringbone.cosim.simulation import Progress, Recording, make_grid, simulate
+from herringbone.cosim.ssp_format import is_ssp
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.fmi.build import build_python_fmus
 from herringbone.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
+from herringbone.ssp_import import load_ssp, ssp_scene
 from herringbone.start import started
 
 FmuKind = Literal["python", "in-process"]
@@ -32,22 +34,28 @@ DEFAULT_STEP = 1e-5
 
 
 def load_system(reference: str | Path) -> tuple[System, Path]:
-    """A system by name, folder or .ssp file, and the folder in which its scenes lie.
+    """A system by name, folder or .ssp file, and the folder (or .ssp file) that has its scenes.
 
     Raises:
         StructureError: it cannot be found or read.
     """
+    if is_ssp(Path(reference)):
+        return load_ssp(Path(reference)), Path(reference)
     return read_system(reference), find_system(reference)
 
 
 def load_scene(folder: Path, scene: str | Scene | None) -> Scene:
     """A scene by name or file; the system's default scene, or plain defaults if it has none.
 
+    An .ssp file has start values and a stop time in place of scenes.
+
     Raises:
         ParameterError: there is no such scene.
     """
     if isinstance(scene, Scene):
         return scene
+    if scene is None and is_ssp(folder):
+        return ssp_scene(folder)
     if scene is None and not (folder / "scenes" / f"{DEFAULT_SCENE}.toml").is_file():
         return Scene("default")
     return read_scene(find_scene(folder, scene or DEFAULT_SCENE))

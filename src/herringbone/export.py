@@ -1,0 +1,78 @@
+"""Exporting a system with the start values of a scene, for other masters."""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from herringbone.api import DEFAULT_STEP, load_scene, load_system
+from herringbone.components.registry import component
+from herringbone.core import ParameterError, ResourceError
+from herringbone.cosim.simulation import make_grid
+from herringbone.cosim.ssp_write import write_ssp
+from herringbone.cosim.system import System
+from herringbone.fmi.build import build_python_fmus
+from herringbone.scenes import Scene
+from herringbone.start import started
+
+_log = logging.getLogger(__name__)
+
+
+def export_ssp(
+    system: str | Path,
+    file: str | Path,
+    *,
+    scene: str | Scene | None = None,
+    step: float = DEFAULT_STEP,
+    values: Mapping[str, float | str] | None = None,
+) -> Path:
+    """Write a system as an .ssp file: structure, FMUs, and start values of a scene.
+
+    Masters that step all FMUs in parallel give elements one communication step of delay: see
+    `Jacobi(order=0, schedule="parallel")` for their step limit.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, or .ssp file.
+        file: the .ssp file to write.
+        scene: name or file of a scene; the system's default if not given.
+        step: communication step size [s]; shortened so that a whole number makes the end time.
+        values: variables to set, by `instance.variable`.
+
+    Returns:
+        The file.
+
+    Raises:
+        HerringboneError: system, scene or values are wrong, or the file cannot be written.
+    """
+    file = Path(file)
+    if file.suffix != ".ssp":
+        raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
+    structure, folder = load_system(system)
+    chosen = load_scene(folder, scene)
+    chosen = replace(chosen, values={**chosen.values, **(values or {})})
+    structure, notes = started(structure, chosen)
+    for note in notes:
+        _log.warning(note)
+    _check_texts(structure)
+    step = make_grid(chosen.t_end, step, step).step
+    fmus = build_python_fmus(sorted({str(p.component) for p in structure.parts if not p.foreign}))
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)
+    except OSError as error:
+        raise ResourceError(f"cannot write {file}: {error.strerror}") from error
+    return file
+
+
+def _check_texts(system: System) -> None:
+    """Resources must lie in the FMUs: a file of this machine is not there on another one."""
+    for part in system.parts:
+        if part.foreign:
+            continue
+        for text in component(str(part.component)).declaration.texts:
+            value = part.values.get(text.name, text.start)
+            if Path(str(value)).is_absolute():
+                raise ParameterError(
+                    f"{part.name}.{text.name} = '{value}': an .ssp file must not depend on files "
+                    "outside it; put the file into the component's resources folder"
+                )
