@@ -1,11 +1,12 @@
-"""Exporting a system with the start values of a scene, for other masters."""
+"""FMUs and systems as files for other masters."""
 
 import logging
-from collections.abc import Mapping
+import shutil
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from herringbone.api import DEFAULT_STEP, load_scene, load_system
+from herringbone.api import load_scene, load_system
 from herringbone.components.registry import component
 from herringbone.core import ParameterError, ResourceError
 from herringbone.cosim.simulation import make_grid
@@ -15,7 +16,33 @@ from herringbone.fmi.build import build_python_fmus
 from herringbone.scenes import Scene
 from herringbone.start import started
 
+PARALLEL_STEP = 2e-6
+"""Communication step size [s] at which the test rig is stable in masters that step all FMUs
+in parallel on held inputs; the limit is about 3e-6 s."""
 _log = logging.getLogger(__name__)
+
+
+def build_fmus(components: Iterable[str] = (), folder: Path | None = None) -> list[Path]:
+    """Build Python FMUs.
+
+    Args:
+        components: names; all components if none is given.
+        folder: where they are copied to; if not given they stay in the cache.
+
+    Returns:
+        The FMU files.
+
+    Raises:
+        HerringboneError: there is no component of that name, or a file cannot be written.
+    """
+    files = list(build_python_fmus(list(components) or None).values())
+    if folder is None:
+        return files
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return [Path(shutil.copyfile(file, folder / file.name)) for file in files]
+    except OSError as error:
+        raise ResourceError(f"cannot write to {folder}: {error.strerror}") from error
 
 
 def export_ssp(
@@ -23,13 +50,14 @@ def export_ssp(
     file: str | Path,
     *,
     scene: str | Scene | None = None,
-    step: float = DEFAULT_STEP,
+    step: float = PARALLEL_STEP,
     values: Mapping[str, float | str] | None = None,
 ) -> Path:
     """Write a system as an .ssp file: structure, FMUs, and start values of a scene.
 
     Masters that step all FMUs in parallel give elements one communication step of delay: see
-    `Jacobi(order=0, schedule="parallel")` for their step limit.
+    `Jacobi(order=0, schedule="parallel")` for their step limit. libcosim sets start values of
+    states only if it gets the folder of the unpacked file (OspSystemStructure.xml).
 
     Args:
         system: name of a shipped system, folder with system.toml, or .ssp file.
