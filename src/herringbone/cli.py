@@ -2,9 +2,11 @@
 
 import argparse
 import sys
+import tempfile
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from tqdm import tqdm
 
@@ -18,6 +20,7 @@ EXIT_CODES = {
     OutcomeKind.INTERRUPTED: 130,
 }
 BAD_INPUT = 2
+_SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -43,8 +46,16 @@ def _show(text: str) -> None:
     sys.stdout.write(text + "\n")
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong, and end with the exit code of bad input."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; see '{self.prog} --help'\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="herringbone", description="FMI co-simulation of herringbone gearboxes"
     )
     parser.add_argument("--version", action="version", version=herringbone.__version__)
@@ -68,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("system")
     sub.add_argument("--scene")
     sub.add_argument("--step", type=float, default=2e-6, help="communication step size in s")
-    sub.add_argument("--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE")
+    sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("-o", "--output", type=Path, help="file; SYSTEM.ssp if not given")
     return parser
 
@@ -82,20 +93,20 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     sub.add_argument("--fmu", default="python", help="python (default) or in-process")
-    sub.add_argument("--replace", action="append", default=[], metavar="INSTANCE=FILE.fmu")
-    sub.add_argument("--set", action="append", default=[], metavar="INSTANCE.VARIABLE=VALUE")
+    sub.add_argument("--replace", action="append", default=[], metavar=_REPLACE)
+    sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def _assignments(items: Sequence[str], option: str) -> dict[str, str]:
+def _assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
     found = {}
     for item in items:
         name, equals, value = item.partition("=")
         if not equals or not name or not value:
-            raise ParameterError(f"{option} {item}: it must be NAME=VALUE")
+            raise ParameterError(f"{option} {item}: it must be {form}")
         found[name] = value
     return found
 
@@ -103,7 +114,7 @@ def _assignments(items: Sequence[str], option: str) -> dict[str, str]:
 def _values(items: Sequence[str]) -> dict[str, float | str]:
     """Numbers where they read as numbers, text otherwise."""
     found: dict[str, float | str] = {}
-    for name, text in _assignments(items, "--set").items():
+    for name, text in _assignments(items, "--set", _SET).items():
         try:
             found[name] = float(text)
         except ValueError:
@@ -111,10 +122,23 @@ def _values(items: Sequence[str]) -> dict[str, float | str]:
     return found
 
 
+def _check_writable(folder: Path) -> None:
+    """Refuse before a run what would fail after it; leaves nothing behind."""
+    there = next(f for f in (folder, *folder.absolute().parents) if f.exists())
+    try:
+        with tempfile.TemporaryDirectory(dir=there):
+            pass
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from error
+
+
 def _run(options: argparse.Namespace) -> int:
     from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.report import summary_text, write_report  # noqa: PLC0415
 
+    _check_writable(options.output or Path("results"))
     optional = {
         name: value
         for name in ("scene", "algorithm", "step", "t_end", "record_step", "start")
@@ -125,7 +149,7 @@ def _run(options: argparse.Namespace) -> int:
             options.system,
             **optional,
             fmu=options.fmu,
-            replace_parts=_assignments(options.replace, "--replace"),
+            replace_parts=_assignments(options.replace, "--replace", _REPLACE),
             values=_values(options.set),
             reference=options.reference,
             progress=bar.show,
