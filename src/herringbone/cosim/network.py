@@ -60,9 +60,13 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
     index = {part.name: i for i, part in enumerate(parts)}
     notes: list[str] = []
     connections: list[Connection] = []
+    unchecked: dict[tuple[str, ...], list[str]] = {}
     for first, second in system.connections:
         for output, input_ in _pairs(first, second, system, parts, index):
-            connections.append(_connection(output, input_, parts, index, notes))
+            connections.append(_connection(output, input_, index, unchecked))
+    for wheres in unchecked.values():
+        more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
+        notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
     _check_single_sources(connections, parts)
     elements = _order_elements(connections, parts, notes)
     targets = {c.target for c in connections}
@@ -162,24 +166,23 @@ def _directed(
 def _connection(
     output: tuple[Part, str],
     input_: tuple[Part, str],
-    parts: Sequence[Part],
     index: Mapping[str, int],
-    notes: list[str],
+    unchecked: dict[tuple[str, ...], list[str]],
 ) -> Connection:
     source, target = (part.variables[name] for part, name in (output, input_))
     where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
     if not source.is_real or not target.is_real:
         raise StructureError(f"connection {where}: only Real variables can be connected")
-    _check_units(source, target, where, notes)
+    if source.unit is None or target.unit is None:
+        between = tuple(sorted((output[0].name, input_[0].name)))
+        unchecked.setdefault(between, []).append(where)
+    else:
+        _check_units(source, target, where)
     return Connection(index[output[0].name], source.name, index[input_[0].name], target.name)
 
 
-def _check_units(
-    source: PartVariable, target: PartVariable, where: str, notes: list[str]
-) -> None:
-    if source.unit is None or target.unit is None:
-        notes.append(f"connection {where}: a unit is not declared, so it was not checked")
-    elif source.unit != target.unit and (
+def _check_units(source: PartVariable, target: PartVariable, where: str) -> None:
+    if source.unit != target.unit and (
         source.dimension is None or source.dimension != target.dimension
     ):
         raise StructureError(
