@@ -156,7 +156,7 @@ class FmuPart:
             raise ParameterError(self._refusal(f"{self.name}.{name} = {value!r}", error)) from error
 
     def _refusal(self, what: str, error: Exception) -> str:
-        return "; ".join([f"{what}: {error}", *self.messages()])
+        return f"{what}: {'; '.join(self.messages()) or error}"
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables; raises FmuError."""
@@ -181,10 +181,13 @@ class FmuPart:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 
     def messages(self) -> list[str]:
-        """Warnings and errors logged since the last call, each once."""
-        found = list(dict.fromkeys(self._log))
+        """Warnings and errors logged since the last call, each on one line and once.
+
+        A message that repeats another one inside it, as the FMU's runtime does, is left out.
+        """
+        found = list(dict.fromkeys(" ".join(message.split()) for message in self._log))
         self._log.clear()
-        return found
+        return [m for m in found if not any(other in m for other in found if other != m)]
 
     def close(self) -> None:
         """Free the instance and remove the extracted files."""
