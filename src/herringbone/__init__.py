@@ -16,6 +16,8 @@ _WHERE = {
     "run": "herringbone.api",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",
+    "FixedPoint": "herringbone.cosim.algorithms",
+    "LI": "herringbone.cosim.algorithms",
     "HerringboneError": "herringbone.core",
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result",
@@ -23,7 +25,7 @@ _WHERE = {
     "System": "herringbone.cosim.system",
 }
 
-__all__ = ["GaussSeidel", "HerringboneError", "Jacobi", "OutcomeKind", "Result", "Scene", "System", "run"]  # noqa: F822
+__all__ = [*sorted(_WHERE)]  # noqa: PLE0604 (the names are those of the table)
 
 
 def __getattr__(name: str) -> object:

@@ -98,9 +98,7 @@ def run(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    structure, folder = (
-        (system, Path.cwd()) if isinstance(system, System) else load_system(system)
-    )
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = _with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
     coupling = coupling or DEFAULT_ALGORITHM
@@ -195,7 +193,7 @@ def _result(
         t_end=scene.t_end,
         communication_step=recording.step,
         record_step=recording.record_step,
-        micro_step={
+        micro_steps={
             name.removesuffix(".micro_step"): value
             for name, value in parameters.items()
             if name.endswith(".micro_step")

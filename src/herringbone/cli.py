@@ -55,9 +55,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="herringbone", description="FMI co-simulation of herringbone gearboxes"
-    )
+    parser = _Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
     parser.add_argument("--version", action="version", version=herringbone.__version__)
     parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -207,7 +205,9 @@ def _check(options: argparse.Namespace) -> int:
     problems = check_fmu(options.fmu)
     for problem in problems:
         _show(problem)
-    _show(f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems")
+    _show(
+        f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
+    )
     return 1 if problems else 0
 
 

@@ -125,7 +125,9 @@ class Twin:
         for t1 in [*self.breakpoints(t_end), t_end]:
             last = t1 == t_end
             inside = (times >= t0) & ((times <= t1) if last else (times < t1))
-            x = self._solve_piece(t0, t1, x, times, np.flatnonzero(inside), states, tolerance, progress)
+            x = self._solve_piece(
+                t0, t1, x, times, np.flatnonzero(inside), states, tolerance, progress
+            )
             t0 = t1
         return self.observe(times, states, columns)
 

@@ -85,9 +85,7 @@ def twin_source(name: str, network: Network, instances: list[Instance], layout: 
     for p, instance in enumerate(instances):
         first, end = layout.state_first[p], layout.state_first[p + 1]
         if end > first:
-            lines.append(
-                f"    {instance.component.name}_rhs({block(p)}, t, dx[{first}:{end}])\n"
-            )
+            lines.append(f"    {instance.component.name}_rhs({block(p)}, t, dx[{first}:{end}])\n")
     lines.append("    return\n")
     lines.append(_OBSERVE)
     return "".join(lines)

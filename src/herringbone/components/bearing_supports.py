@@ -116,7 +116,9 @@ _d = Declaration(
     work=steppers.element_work(_INPUTS),
 )
 
-_SHAFT = tuple(_d.indices(*(f"shaft.{h}.{q}" for h in HALVES)) for q in ("s_y", "v_y", "s_z", "v_z"))
+_SHAFT = tuple(
+    _d.indices(*(f"shaft.{h}.{q}" for h in HALVES)) for q in ("s_y", "v_y", "s_z", "v_z")
+)
 _SEAT = tuple(
     _d.indices(*(f"seat.{h}.{q}" for h in HALVES))
     for q in ("s_x", "v_x", "s_y", "v_y", "s_z", "v_z")

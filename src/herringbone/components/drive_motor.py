@@ -42,9 +42,7 @@ _d = Declaration(
     work=steppers.body_work(4, 2),
 )
 
-_ANGLE, _SPEED, _INTEGRAL, _REFERENCE = _d.indices(
-    "angle", "speed", "integral", "speed_reference"
-)
+_ANGLE, _SPEED, _INTEGRAL, _REFERENCE = _d.indices("angle", "speed", "integral", "speed_reference")
 _TAU, _SETPOINT, _PHI, _W, _A = _d.indices(
     "flange.tau", "speed_setpoint", "flange.phi", "flange.w", "flange.a"
 )

@@ -1,8 +1,8 @@
 """The flat CSV files that FMUs read: one `# units:` line, a header row, then rows.
 
-    # units: load N, phase 1, stiffness N/m
-    side,load,phase,stiffness
-    left,56.306,0.0,8.22e8
+# units: load N, phase 1, stiffness N/m
+side,load,phase,stiffness
+left,56.306,0.0,8.22e8
 """
 
 import csv
@@ -21,7 +21,9 @@ def _units(line: str, file: Path) -> dict[str, str]:
     return dict(item.split(maxsplit=1) for item in text.strip().split(",") if len(item.split()) > 1)
 
 
-def _check_units(found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: Path) -> None:
+def _check_units(
+    found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: Path
+) -> None:
     for column, units in wanted.items():
         unit = found.get(column, "").strip()
         if unit not in units:

@@ -4,6 +4,8 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from functools import cache
 
+import numpy as np
+
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
 from herringbone.core.declaration import Declaration, node_name
@@ -42,9 +44,7 @@ def part_variables(component: str) -> Mapping[str, PartVariable]:
                 variable.causality.value,
                 variable.unit,
                 unit_dimension(variable.unit),
-                frozenset(variable.feedthrough)
-                if variable.causality is Causality.OUTPUT
-                else None,
+                frozenset(variable.feedthrough) if variable.causality is Causality.OUTPUT else None,
             )
     for k, text in enumerate(declaration.texts):
         reference = declaration.size + k
@@ -70,6 +70,7 @@ class InProcessPart:
         self.variables = part_variables(instance.component.name)
         self._start_time: float | None = None
         self._stale = False
+        self._states: list[np.ndarray] = []
 
     @property
     def declaration(self) -> Declaration:
@@ -84,7 +85,17 @@ class InProcessPart:
             fmi_calls.set_real.address,
             fmi_calls.get_real.address,
             _do_step_address(self.instance.component.name),
+            fmi_calls.get_state.address,
+            fmi_calls.set_state.address,
+            fmi_calls.free_state.address,
         )
+
+    def new_state(self) -> int:
+        """Memory for a saved state: number of mutable values, then the values."""
+        count = self.declaration.mutable_size
+        self._states.append(np.zeros(1 + count))
+        self._states[-1][0] = count
+        return self._states[-1].ctypes.data
 
     def set(self, name: str, value: float | str) -> None:
         """Set a variable; raises ParameterError."""

@@ -29,12 +29,8 @@ _d = Declaration(
         input_("flange_a.w", "rad/s", "angular velocity of flange a"),
         input_("flange_b.phi", "rad", "angle of flange b"),
         input_("flange_b.w", "rad/s", "angular velocity of flange b"),
-        output(
-            "flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True
-        ),
-        output(
-            "flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True
-        ),
+        output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
+        output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
         output("torque", "N.m", "torque handed from a to b", feedthrough=_MOTION),
         output("speed", "rad/s", "mean speed", feedthrough=("flange_a.w", "flange_b.w")),
         output("phi_rel", "rad", "twist", feedthrough=("flange_a.phi", "flange_b.phi")),

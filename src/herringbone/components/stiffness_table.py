@@ -68,9 +68,7 @@ def _side(columns: dict[str, np.ndarray], side: str, file: Path) -> tuple[np.nda
     return loads, grid
 
 
-def _one_period(
-    grid: np.ndarray, phases: np.ndarray, where: str
-) -> tuple[np.ndarray, np.ndarray]:
+def _one_period(grid: np.ndarray, phases: np.ndarray, where: str) -> tuple[np.ndarray, np.ndarray]:
     """Drop a repeated end point; check that the phases are i / n."""
     if abs(phases[-1] - 1.0) < 1e-9:
         jump = np.abs(grid[:, -1] / grid[:, 0] - 1.0).max()

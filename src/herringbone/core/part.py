@@ -31,12 +31,23 @@ class PartVariable:
 
 
 class Addresses(NamedTuple):
-    """Addresses of the FMI functions that the compiled loop calls, and of the component."""
+    """Addresses of the FMI functions that the compiled loop calls, and of the component.
+
+    The state functions are 0 if the part cannot save and restore its state.
+    """
 
     component: int
     set_real: int
     get_real: int
     do_step: int
+    get_state: int = 0
+    set_state: int = 0
+    free_state: int = 0
+
+    @property
+    def can_restore(self) -> bool:
+        """True if the state can be saved and restored."""
+        return self.get_state != 0
 
 
 class Part(Protocol):
@@ -48,6 +59,9 @@ class Part(Protocol):
     @property
     def addresses(self) -> Addresses:
         """What the compiled loop calls."""
+
+    def new_state(self) -> int:
+        """Handle that fmi2GetFMUstate is given first: 0, or memory that the part provides."""
 
     def set(self, name: str, value: float | str) -> None:
         """Set a variable; raises ParameterError."""

@@ -80,3 +80,8 @@ def cache_folder(kind: str) -> Path:
             f"set {CACHE_VARIABLE} to a folder that can be written"
         ) from error
     return folder
+
+
+# Taken now, before the modules that it covers are imported: sources that are edited later in this
+# process must not get compiled code cached under their name.
+content_hash()

@@ -47,6 +47,22 @@ def _step(typing_context, address, component, time, step):  # noqa: ANN001, ANN2
     return signature, generate
 
 
+@intrinsic
+def _state(typing_context, address, component, state):  # noqa: ANN001, ANN202
+    signature = types.int32(types.int64, types.int64, types.int64)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        pointer = cgutils.voidptr_t
+        kind = ir.FunctionType(_INT32, [pointer, pointer])
+        target, component, state = arguments
+        return builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [builder.inttoptr(component, pointer), builder.inttoptr(state, pointer)],
+        )
+
+    return signature, generate
+
+
 @kernel
 def exchange_reals(address: int, component: int, references: int, count: int, values: int) -> int:
     """fmi2SetReal or fmi2GetReal at `address`; the others are addresses too. FMI status."""
@@ -57,3 +73,9 @@ def exchange_reals(address: int, component: int, references: int, count: int, va
 def do_step(address: int, component: int, time: float, step: float) -> int:
     """fmi2DoStep at `address`, with noSetFMUStatePriorToCurrentPoint true. FMI status."""
     return _step(address, component, time, step)
+
+
+@kernel
+def state_call(address: int, component: int, state: int) -> int:
+    """fmi2GetFMUstate or fmi2FreeFMUstate (state: address of the handle), fmi2SetFMUstate (handle)."""
+    return _state(address, component, state)

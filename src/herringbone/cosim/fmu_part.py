@@ -32,7 +32,9 @@ def _dimension(model: ModelDescription) -> dict[str, tuple]:
     for unit in model.unitDefinitions:
         base = unit.baseUnit
         if base is not None:
-            exponents = {n: getattr(base, n) for n in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")}
+            exponents = {
+                n: getattr(base, n) for n in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+            }
             powers = tuple(sorted((n, int(e)) for n, e in exponents.items() if e))
             found[unit.name] = (float(base.factor), float(base.offset), powers)
     return found
@@ -42,7 +44,9 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     """Variables of an FMU as a master sees them."""
     dimension = _dimension(model)
     dependencies = {
-        u.variable.name: None if u.dependencies is None else frozenset(d.name for d in u.dependencies)
+        u.variable.name: None
+        if u.dependencies is None
+        else frozenset(d.name for d in u.dependencies)
         for u in model.outputs
     }
     found = {}
@@ -123,8 +127,14 @@ class FmuPart:
         def address(name: str) -> int:
             return ctypes.cast(getattr(self.slave.dll, name), ctypes.c_void_p).value or 0
 
-        functions = (address(f"fmi2{name}") for name in ("SetReal", "GetReal", "DoStep"))
-        return Addresses(int(self.slave.component), *functions)
+        names = ["SetReal", "GetReal", "DoStep"]
+        if self.model.coSimulation.canGetAndSetFMUstate:
+            names += ["GetFMUstate", "SetFMUstate", "FreeFMUstate"]
+        return Addresses(int(self.slave.component), *(address(f"fmi2{name}") for name in names))
+
+    def new_state(self) -> int:
+        """0: the FMU allocates its states."""
+        return 0
 
     def set(self, name: str, value: float | str) -> None:
         """Set a variable before or during initialisation.
@@ -163,7 +173,9 @@ class FmuPart:
         try:
             return self.slave.getReal([self.variables[name].reference for name in names])
         except FMICallException as error:
-            raise FmuError(self._refusal(f"{self.name}: reading {', '.join(names)}", error)) from error
+            raise FmuError(
+                self._refusal(f"{self.name}: reading {', '.join(names)}", error)
+            ) from error
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""

@@ -57,9 +57,7 @@ def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) 
             fresh = plan.input_fresh[i]
             # A held input of an element, or of a body whose source is known, is its newest value.
             place = 1.0 if plan.at_end[p] or (degree == 0 and fresh) else c
-            plan.set_value[at] = signal(
-                history, plan.input_source[i], fresh, order, known, place
-            )
+            plan.set_value[at] = signal(history, plan.input_source[i], fresh, order, known, place)
             at += 1
     first = plan.set_first[p]
     return exchange_reals(

@@ -102,7 +102,9 @@ def build_plan(
         get_real=addresses[:, 2].copy(),
         do_step=addresses[:, 3].copy(),
         degree=np.array(degree, dtype=np.int64),
-        at_end=np.array([p in network.elements and not parallel for p in range(len(parts))], np.int64),
+        at_end=np.array(
+            [p in network.elements and not parallel for p in range(len(parts))], np.int64
+        ),
         input_first=_offsets([len(i) for i in inputs]),
         input_source=np.array(
             [output_first[c.source] + outputs[c.source].index(c.output) for i in inputs for c in i],
@@ -119,7 +121,11 @@ def build_plan(
             [[part.variables[n].reference for n in outputs[p]] for p, part in enumerate(parts)]
         ),
         output_record=np.array(
-            [record_first[p] + records[p].index(n) for p, names in enumerate(outputs) for n in names],
+            [
+                record_first[p] + records[p].index(n)
+                for p, names in enumerate(outputs)
+                for n in names
+            ],
             dtype=np.int64,
         ),
         record_first=record_first,

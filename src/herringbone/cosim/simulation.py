@@ -233,8 +233,10 @@ class _Run:
             self.grid.step,
             record_step,
             done,
-            {part.name: done for part in self.network.parts},
-            0,
+            dict(
+                zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
+            ),
+            self.prepared.rollbacks,
             wall,
             (*self.network.notes, *self.prepared.notes),
         )

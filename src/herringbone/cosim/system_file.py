@@ -1,19 +1,19 @@
 """Reading a system from `system.toml`.
 
-    name = "gearbox"
-    description = "..."
+name = "gearbox"
+description = "..."
 
-    connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
+connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
 
-    [parts.gear_mesh]
-    component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
-    set = { backlash = 1.8e-4 }
+[parts.gear_mesh]
+component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
+set = { backlash = 1.8e-4 }
 
-    [ports]                          # offered to an outer system
-    pinion = "gear_mesh.pinion"
+[ports]                          # offered to an outer system
+pinion = "gear_mesh.pinion"
 
-    [channels]                       # result columns on which errors are measured
-    bearing_force = ["bearing_supports.shaft.*.f_?"]
+[channels]                       # result columns on which errors are measured
+bearing_force = ["bearing_supports.shaft.*.f_?"]
 """
 
 import tomllib

@@ -93,9 +93,7 @@ def _at(u: np.ndarray, k: np.ndarray, m: np.ndarray, count: int, x: float, what:
     while l < count - 1 and x > u[l]:
         l += 1
     width = u[l] - u[l - 1]
-    value, slope = hermite(
-        (x - u[l - 1]) / width, k[l - 1], k[l], m[l - 1] * width, m[l] * width
-    )
+    value, slope = hermite((x - u[l - 1]) / width, k[l - 1], k[l], m[l - 1] * width, m[l] * width)
     return value if what == 0 else slope / width
 
 

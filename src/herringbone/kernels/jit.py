@@ -5,7 +5,9 @@ from contextlib import contextmanager
 from typing import ParamSpec, TypeVar
 
 import numba
+from numba import types
 from numba.core import config
+from numba.extending import intrinsic
 
 from herringbone.core.paths import cache_folder
 
@@ -37,6 +39,18 @@ def kernel(function: Callable[P, T]) -> Callable[P, T]:
 def inner(function: Callable[P, T]) -> Callable[P, T]:
     """Compile a function that is made by a factory; its callers hold the cache."""
     return numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+
+
+@intrinsic
+def reals_at(typing_context, addresses, index):  # noqa: ANN001, ANN201
+    """Pointer to reals whose address stands at `addresses[index]`."""
+    signature = types.CPointer(types.float64)(types.CPointer(types.int64), types.int64)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        address = builder.load(builder.gep(arguments[0], [arguments[1]]))
+        return builder.inttoptr(address, context.get_value_type(signature.return_type))
+
+    return signature, generate
 
 
 def c_function(signature: object, function: Callable[P, T]) -> Callable[P, T]:

@@ -4,12 +4,22 @@ from dataclasses import fields
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.fixed_point import FixedPoint
 from herringbone.cosim.algorithms.gauss_seidel import GaussSeidel
 from herringbone.cosim.algorithms.jacobi import Jacobi
+from herringbone.cosim.algorithms.li import LI
 
-__all__ = ["ALGORITHMS", "Algorithm", "GaussSeidel", "Jacobi", "parse_algorithm"]
+__all__ = [
+    "ALGORITHMS",
+    "LI",
+    "Algorithm",
+    "FixedPoint",
+    "GaussSeidel",
+    "Jacobi",
+    "parse_algorithm",
+]
 
-ALGORITHMS: dict[str, type[Algorithm]] = {a.name: a for a in (Jacobi, GaussSeidel)}
+ALGORITHMS: dict[str, type[Algorithm]] = {a.name: a for a in (Jacobi, GaussSeidel, FixedPoint, LI)}
 
 
 def parse_algorithm(text: str) -> Algorithm:

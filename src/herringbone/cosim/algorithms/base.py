@@ -61,6 +61,15 @@ class Prepared:
     notes: tuple[str, ...]
     starter: Plan | None = None
 
+    def passes(self, macro_steps: int) -> list[int]:
+        """doStep calls of each part."""
+        return [macro_steps] * len(self.degree)
+
+    @property
+    def rollbacks(self) -> int:
+        """State restores: none in these schemes."""
+        return 0
+
     def run(
         self,
         history: np.ndarray,

@@ -1,0 +1,53 @@
+"""Fixed-point iteration with polynomial forces: no Jacobian, but rollback.
+
+The forces are polynomials of degree p inside the macro step h, through their values U at the nodes
+1/p, ..., 1; each sweep replaces U by the forces G(U) that follow from the motions it causes. The
+iteration contracts like (h w)^2 / 6 for a bond of frequency w: unconverged sweeps are stable only
+below about h w = 1.0 (2 sweeps) to 1.75 (3 sweeps of cubic nodes).
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from herringbone.core import ParameterError
+from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
+from herringbone.cosim.network import Network
+
+_MOST = 50
+
+
+@dataclass(frozen=True)
+class FixedPoint(Algorithm):
+    """Fixed-point iteration with polynomial forces.
+
+    Args:
+        degree: of the forces inside a macro step, 1 to 4.
+        sweeps: passes over all parts, at least 2.
+
+    Raises:
+        ParameterError: an option is out of its range.
+    """
+
+    degree: int = 3
+    sweeps: int = 2
+
+    name: ClassVar[str] = "fixed_point"
+    needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
+
+    def __post_init__(self) -> None:
+        if self.degree not in (1, 2, 3, 4):
+            raise ParameterError(f"fixed_point: degree={self.degree}; it must be 1, 2, 3 or 4")
+        if not 2 <= self.sweeps <= _MOST:
+            raise ParameterError(f"fixed_point: sweeps={self.sweeps}; it must be 2 to {_MOST}")
+
+    @property
+    def convergence_order(self) -> int:
+        """That of the polynomial, once the sweeps have converged."""
+        return {1: 2, 2: 4, 3: 4, 4: 6}[self.degree]
+
+    def prepare(self, network: Network) -> PreparedNodes:
+        """Lay out a network for this algorithm."""
+        check_rollback(self.name, network)
+        sweeps = self.sweeps - 1
+        return PreparedNodes(network, self.degree, newton=False, corrections=sweeps, most=sweeps)

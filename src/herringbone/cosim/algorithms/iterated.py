@@ -1,0 +1,245 @@
+"""What `fixed_point` and `li` share: a network laid out for passes with rollback."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.declaration import node_name
+from herringbone.core.part import Part, has_nodes
+from herringbone.cosim.loop import DONE
+from herringbone.cosim.network import Network
+from herringbone.cosim.node_loop import REFRESH, Buffers, NodePlan, run_iterated, sensitivity
+from herringbone.cosim.plan import build_plan
+
+PREDICTION = 2
+"""Degree of the prediction; one correction makes the result nearly independent of it."""
+REST = 1e-6
+"""Residual, relative to the largest signal of the same unit, that asks for more corrections."""
+SLOW = 0.1
+"""Contraction of a correction above which the Jacobian is computed again."""
+PATIENCE = 50
+"""Macro steps between two Jacobians at the least."""
+_CHANGE = 1e-4
+
+
+def _mean_weights(degree: int) -> np.ndarray:
+    """Weights of equidistant nodes for the mean of their polynomial (Newton-Cotes)."""
+    c = np.linspace(0.0, 1.0, degree + 1)
+    powers = np.arange(degree + 1)
+    return np.linalg.solve(np.vander(c, increasing=True).T, 1.0 / (powers + 1.0))
+
+
+def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
+    return all(node_name(name, degree) in part.variables for name in outputs)
+
+
+def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
+    """Degree at which each part takes and gives signals, and what that costs."""
+    found, notes = [], []
+    for p, part in enumerate(network.parts):
+        inputs = [c.input for c in network.inputs(p)]
+        outputs = [c.output for c in network.connections if c.source == p]
+        if has_nodes(part, inputs, degree) and _has_output_nodes(part, outputs, degree):
+            found.append(degree)
+            continue
+        found.append(0)
+        if inputs:
+            notes.append(
+                f"{part.name} has no signal nodes: its inputs are held at their mean over a step and "
+                "its outputs interpolated, which makes the coupling second order in the step"
+            )
+    return found, notes
+
+
+def check_rollback(name: str, network: Network) -> None:
+    """Check that all parts with inputs can restore their state.
+
+    Raises:
+        ParameterError: one cannot.
+    """
+    unable = [
+        part.name
+        for p, part in enumerate(network.parts)
+        if network.inputs(p) and not part.addresses.can_restore
+    ]
+    if unable:
+        raise ParameterError(
+            f"{name} repeats steps, but {', '.join(unable)} cannot save and restore its state; "
+            "use jacobi, gauss_seidel or predict"
+        )
+
+
+class PreparedNodes:
+    """A network laid out for an iterated algorithm.
+
+    Args:
+        network: parts and connections.
+        degree: p.
+        newton: correct with a frozen Jacobian; else plain fixed point.
+        corrections: how many at least.
+        most: how many at most.
+    """
+
+    def __init__(
+        self, network: Network, degree: int, *, newton: bool, corrections: int, most: int
+    ) -> None:
+        self.network, self.newton = network, newton
+        self.corrections, self.most = corrections, most
+        degrees, notes = _degrees(network, degree)
+        self.degree, self.notes = tuple(degrees), tuple(notes)
+        stages = [s for s in (network.sources, network.bodies) if s]
+        stages += [(e,) for e in network.elements]
+        self.plan = build_plan(network, stages, degrees, parallel=False)
+        self._outputs: list[list[str]] = [[] for _ in network.parts]
+        for c in network.connections:
+            if c.output not in self._outputs[c.source]:
+                self._outputs[c.source].append(c.output)
+        self.nodes = self._node_plan(degree)
+        self._buffers: Buffers | None = None
+        self._correction = np.empty((0, 0))
+        self._next_refresh = 0
+        self.jacobians = 0
+
+    def _node_plan(self, degree: int) -> NodePlan:
+        network, parts = self.network, self.network.parts
+        bodies = set(network.bodies)
+        flat = [(p, n) for p, names in enumerate(self._outputs) for n in names]
+        unknown = sorted(
+            {
+                flat.index((c.source, c.output))
+                for c in network.connections
+                if c.target in bodies and c.source not in network.sources
+            }
+        )
+        rows = [
+            [
+                parts[p].variables[node_name(n, node)].reference
+                for node in range(1, degree + 1)
+                for n in names
+            ]
+            if self.degree[p]
+            else []
+            for p, names in enumerate(self._outputs)
+        ]
+        state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
+        return NodePlan(
+            degree,
+            np.array(unknown, dtype=np.int64),
+            np.array(network.bodies, dtype=np.int64),
+            np.array(network.elements, dtype=np.int64),
+            np.array(network.sources, dtype=np.int64),
+            np.concatenate(([0], np.cumsum([len(r) for r in rows]))).astype(np.int64),
+            np.array([r for row in rows for r in row], dtype=np.uint32),
+            _mean_weights(degree),
+            *(state[:, k].copy() for k in range(3)),
+        )
+
+    def passes(self, macro_steps: int) -> list[int]:
+        """doStep calls of each part, those for Jacobians included."""
+        del macro_steps
+        return self._buffers.passes.tolist() if self._buffers else [0] * len(self.degree)
+
+    @property
+    def rollbacks(self) -> int:
+        """State restores."""
+        return int(self._buffers.counts[0]) if self._buffers else 0
+
+    def _make_buffers(self, history: np.ndarray) -> Buffers:
+        p, outputs, unknowns = self.nodes.degree, history.shape[1], self.nodes.unknown.size
+        parts = self.network.parts
+        return Buffers(
+            history,
+            np.zeros((p + 1, outputs)),
+            np.zeros((p, unknowns)),
+            np.zeros((p, unknowns)),
+            np.ones(unknowns),
+            np.zeros(max(1, p) * max(1, outputs)),
+            np.array([part.new_state() for part in parts], dtype=np.int64),
+            np.zeros(len(parts), dtype=np.int64),
+            np.zeros(2, dtype=np.int64),
+            np.zeros(2),
+        )
+
+    def run(
+        self,
+        history: np.ndarray,
+        t0: float,
+        h: float,
+        start: int,
+        count: int,
+        records: np.ndarray,
+        every: int,
+    ) -> tuple[int, int, int]:
+        """Run macro steps; see `loop.run_stages`."""
+        if self._buffers is None:
+            self._buffers = self._make_buffers(history)
+        self._update_scale()
+        if self._correction.size == 0:
+            self._refresh(t0, h, start)
+        done, end, status, culprit = start, start + count, DONE, -1
+        while True:
+            slow = SLOW if done >= self._next_refresh and self.newton else np.inf
+            chunk = end - done if np.isfinite(slow) else min(end, self._next_refresh) - done
+            chunk = end - done if not self.newton else max(chunk, 0)
+            status, done, culprit = run_iterated(
+                self.plan, self.nodes, self._buffers, self._correction, self.corrections, self.most,
+                REST, slow, PREDICTION, t0, h, done, chunk, records, every,
+            )  # fmt: skip
+            if status == REFRESH:
+                self._refresh(t0, h, done)
+                status = DONE
+            if status != DONE or done >= end:
+                return status, done, culprit
+
+    def _update_scale(self) -> None:
+        """Sizes of the unknowns: the largest signal of the same unit so far."""
+        buffers = self._buffers
+        units = [
+            part.variables[n].unit
+            for part, names in zip(self.network.parts, self._outputs, strict=True)
+            for n in names
+        ]
+        now = np.abs(buffers.history[0])
+        for k, i in enumerate(self.nodes.unknown):
+            same = [now[j] for j in self.nodes.unknown if units[j] == units[i]]
+            buffers.scale[k] = max([*same, buffers.scale[k] if self.jacobians else 1e-3])
+
+    def _refresh(self, t0: float, h: float, done: int) -> None:
+        """Correction matrix at the present state.
+
+        Raises:
+            HerringboneError: a part fails, or the Jacobian is singular.
+        """
+        size = self.nodes.degree * self.nodes.unknown.size
+        self._next_refresh = done + PATIENCE
+        self.jacobians += 1
+        if not self.newton:
+            self._correction = np.eye(size)
+            return
+        jacobian = np.zeros((size, size))
+        change = _CHANGE * self._buffers.scale
+        failed = sensitivity(
+            self.plan,
+            self.nodes,
+            self._buffers,
+            jacobian,
+            change,
+            PREDICTION,
+            t0 + done * h,
+            h,
+            done + 1,
+        )
+        if failed >= 0 or not np.isfinite(jacobian).all():
+            name = self.network.parts[failed].name if failed >= 0 else "the coupling"
+            raise HerringboneError(
+                f"the interface Jacobian cannot be computed at {t0 + done * h:g} s: {name} fails; "
+                "use a smaller step"
+            )
+        try:
+            self._correction = np.linalg.inv(np.eye(size) - jacobian)
+        except np.linalg.LinAlgError as error:
+            raise HerringboneError(
+                f"the interface Jacobian is singular at {t0 + done * h:g} s (h = {h:g} s); "
+                "use another step, or fixed_point"
+            ) from error

@@ -1,0 +1,381 @@
+"""Compiled loop of the iterated algorithms: signals at nodes, rollback, one frozen correction.
+
+A macro step of degree p: the unknowns U are the values at c = 1/p ... 1 of all outputs that feed
+bodies. One pass steps the bodies on U, then the elements on the bodies' motions at the nodes, which
+gives G(U). From a prediction, each correction is U += C (G - U), after which all parts are restored
+and step again. C = I is the plain fixed point, C = (I - dG/dU)^-1 one Newton step with a frozen
+Jacobian. After the last pass the parts are at the end of the step, and G - U is what is left over.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.cosim.calls import do_step, exchange_reals, state_call
+from herringbone.cosim.loop import DONE, NOT_FINITE, PART_FAILED, get_outputs, not_finite, signal
+from herringbone.cosim.plan import Plan
+from herringbone.kernels.jit import kernel
+
+REFRESH = 3
+"""Status: the correction no longer contracts; a new Jacobian is wanted."""
+_LAST_GOOD = 1
+_REAL, _REFERENCE = 8, 4
+
+
+class NodePlan(NamedTuple):
+    """What a pass needs beside the plan.
+
+    Attributes:
+        degree: p.
+        unknown: outputs that feed bodies and come from elements or bodies.
+        bodies, elements, sources: parts; elements in the order of their dependence.
+        node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
+            part without them.
+        weights: of the nodes, for the mean of a signal over the step.
+        get_state, set_state, free_state: addresses.
+    """
+
+    degree: int
+    unknown: np.ndarray
+    bodies: np.ndarray
+    elements: np.ndarray
+    sources: np.ndarray
+    node_first: np.ndarray
+    node_reference: np.ndarray
+    weights: np.ndarray
+    get_state: np.ndarray
+    set_state: np.ndarray
+    free_state: np.ndarray
+
+
+class Buffers(NamedTuple):
+    """What the loop writes.
+
+    Attributes:
+        history: values at communication points, newest first.
+        nodes: (p + 1, outputs): values at c = 0, 1/p, ..., 1 of the present macro step.
+        trial: (p, unknowns): U.
+        rest: (p, unknowns): G - U.
+        scale: (unknowns,) sizes by which residuals are measured.
+        values: room for one part's outputs at its nodes.
+        states: handle of each part's saved state.
+        passes: doStep calls by part.
+        counts: rollbacks; iterations.
+        worst: largest residual after the last correction; largest contraction.
+    """
+
+    history: np.ndarray
+    nodes: np.ndarray
+    trial: np.ndarray
+    rest: np.ndarray
+    scale: np.ndarray
+    values: np.ndarray
+    states: np.ndarray
+    passes: np.ndarray
+    counts: np.ndarray
+    worst: np.ndarray
+
+
+@kernel
+def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
+    """Save the state of all parts that can; -1, or the part that refused."""
+    at = buffers.states.ctypes.data
+    for group in (nodes.bodies, nodes.elements, nodes.sources):
+        for p in group:
+            if nodes.get_state[p] == 0:
+                continue
+            if buffers.states[p] != 0:
+                state_call(nodes.free_state[p], plan.component[p], at + 8 * p)
+            if state_call(nodes.get_state[p], plan.component[p], at + 8 * p) > _LAST_GOOD:
+                return p
+    return -1
+
+
+@kernel
+def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int:
+    """Restore the state of bodies and elements, and of sources; -1, or the part that refused."""
+    buffers.counts[0] += 1
+    for group in (nodes.bodies, nodes.elements, nodes.sources):
+        for p in group:
+            is_source = plan.input_first[p] == plan.input_first[p + 1]
+            if nodes.get_state[p] == 0 or (is_source and not sources):
+                continue
+            status = state_call(nodes.set_state[p], plan.component[p], buffers.states[p])
+            if status > _LAST_GOOD:
+                return p
+    return -1
+
+
+@kernel
+def _set_from_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
+    """Set a part's inputs from the nodes: all of them, or one value if the part holds inputs."""
+    first, end = plan.input_first[p], plan.input_first[p + 1]
+    if first == end:
+        return 0
+    at, degree = plan.set_first[p], plan.degree[p]
+    for node in range(degree + 1):
+        for i in range(first, end):
+            source = plan.input_source[i]
+            if degree > 0:
+                value = buffers.nodes[node, source]
+            elif plan.at_end[p]:
+                value = buffers.nodes[nodes.degree, source]
+            else:
+                value = 0.0
+                for k in range(nodes.degree + 1):
+                    value += nodes.weights[k] * buffers.nodes[k, source]
+            plan.set_value[at] = value
+            at += 1
+    first = plan.set_first[p]
+    return exchange_reals(
+        plan.set_real[p],
+        plan.component[p],
+        plan.set_reference.ctypes.data + _REFERENCE * first,
+        at - first,
+        plan.set_value.ctypes.data + _REAL * first,
+    )
+
+
+@kernel
+def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
+    """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value."""
+    first, end = plan.output_first[p], plan.output_first[p + 1]
+    if first == end:
+        return 0
+    degree, at = nodes.degree, nodes.node_first[p]
+    count = nodes.node_first[p + 1] - at
+    if count > 0:
+        status = exchange_reals(
+            plan.get_real[p],
+            plan.component[p],
+            nodes.node_reference.ctypes.data + _REFERENCE * at,
+            count,
+            buffers.values.ctypes.data,
+        )
+        k = 0
+        for node in range(1, degree + 1):
+            for i in range(first, end):
+                buffers.nodes[node, i] = buffers.values[k]
+                k += 1
+        return status
+    status = exchange_reals(
+        plan.get_real[p],
+        plan.component[p],
+        plan.output_reference.ctypes.data + _REFERENCE * first,
+        end - first,
+        buffers.values.ctypes.data,
+    )
+    for i in range(first, end):
+        now, before = buffers.nodes[0, i], buffers.history[1, i]
+        after = buffers.values[i - first]
+        for node in range(1, degree + 1):
+            c = node / degree
+            bend = 0.5 * (after - 2.0 * now + before)
+            buffers.nodes[node, i] = now + c * (0.5 * (after - before) + c * bend)
+    return status
+
+
+@kernel
+def _step_group(
+    plan: Plan, nodes: NodePlan, buffers: Buffers, group: np.ndarray, t: float, h: float
+) -> int:
+    """Set, step and get a group of parts that do not see each other; -1, or who failed."""
+    for p in group:
+        if _set_from_nodes(plan, nodes, buffers, p) > _LAST_GOOD:
+            return p
+    for p in group:
+        buffers.passes[p] += 1
+        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+            return p
+    for p in group:
+        if _get_to_nodes(plan, nodes, buffers, p) > _LAST_GOOD:
+            return p
+    return -1
+
+
+@kernel
+def one_pass(plan: Plan, nodes: NodePlan, buffers: Buffers, t: float, h: float) -> int:
+    """Step bodies and elements on the trial values; writes the residual. -1, or who failed."""
+    for k in range(nodes.degree):
+        for i in range(nodes.unknown.size):
+            buffers.nodes[k + 1, nodes.unknown[i]] = buffers.trial[k, i]
+    failed = _step_group(plan, nodes, buffers, nodes.bodies, t, h)
+    if failed >= 0:
+        return failed
+    for e in range(nodes.elements.size):
+        failed = _step_group(plan, nodes, buffers, nodes.elements[e : e + 1], t, h)
+        if failed >= 0:
+            return failed
+    for k in range(nodes.degree):
+        for i in range(nodes.unknown.size):
+            found = buffers.nodes[k + 1, nodes.unknown[i]]
+            buffers.rest[k, i] = found - buffers.trial[k, i]
+    return -1
+
+
+@kernel
+def begin(
+    plan: Plan, nodes: NodePlan, buffers: Buffers, order: int, known: int, t: float, h: float
+) -> int:
+    """Save, step the sources, predict the unknowns; -1, or who failed."""
+    for row in range(buffers.history.shape[0] - 1, 0, -1):
+        for i in range(buffers.history.shape[1]):
+            buffers.history[row, i] = buffers.history[row - 1, i]
+    for i in range(buffers.history.shape[1]):
+        buffers.nodes[0, i] = buffers.history[1, i]
+    failed = save(plan, nodes, buffers)
+    if failed >= 0:
+        return failed
+    for k in range(nodes.degree):
+        c = (k + 1) / nodes.degree
+        for i in range(nodes.unknown.size):
+            buffers.trial[k, i] = signal(buffers.history, nodes.unknown[i], 0, order, known, c)
+    return _step_group(plan, nodes, buffers, nodes.sources, t, h)
+
+
+@kernel
+def residual(buffers: Buffers) -> float:
+    """Largest residual, in units of the scale; infinite if it is not finite."""
+    largest = 0.0
+    for k in range(buffers.rest.shape[0]):
+        for i in range(buffers.rest.shape[1]):
+            size = abs(buffers.rest[k, i]) / buffers.scale[i]
+            if not (size - size == 0.0):
+                return np.inf
+            largest = max(largest, size)
+    return largest
+
+
+@kernel
+def correct(buffers: Buffers, correction: np.ndarray) -> None:
+    """U += C (G - U)."""
+    count = buffers.scale.size
+    for row in range(correction.shape[0]):
+        total = 0.0
+        for k in range(buffers.rest.shape[0]):
+            for i in range(count):
+                total += correction[row, k * count + i] * buffers.rest[k, i]
+        buffers.trial[row // count, row % count] += total
+
+
+@kernel
+def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
+    """The values at the end of the step become the newest of the history."""
+    for p in range(plan.component.size):
+        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+            buffers.history[0, i] = buffers.nodes[nodes.degree, i]
+
+
+@kernel
+def run_iterated(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    correction: np.ndarray,
+    corrections: int,
+    most: int,
+    tolerance: float,
+    slow: float,
+    order: int,
+    t0: float,
+    h: float,
+    start: int,
+    count: int,
+    records: np.ndarray,
+    every: int,
+) -> tuple[int, int, int]:
+    """Run `count` macro steps.
+
+    Args:
+        correction: C, (unknowns p) squared.
+        corrections: how many at least; most: how many at most.
+        tolerance: residual, in units of the scale, above which there are more corrections.
+        slow: contraction above which a new Jacobian is wanted.
+        order: degree of the prediction.
+
+    Other arguments and the result are those of `loop.run_stages`; status REFRESH ends the chunk
+    after a macro step that is complete.
+    """
+    for n in range(start, start + count):
+        t = t0 + n * h
+        failed = begin(plan, nodes, buffers, order, n + 1, t, h)
+        if failed < 0:
+            failed = one_pass(plan, nodes, buffers, t, h)
+        before = residual(buffers)
+        contraction = 0.0
+        done = 0
+        while failed < 0 and done < most:
+            if done >= corrections and before <= tolerance:
+                break
+            correct(buffers, correction)
+            failed = restore(plan, nodes, buffers, False)
+            if failed < 0:
+                failed = one_pass(plan, nodes, buffers, t, h)
+            after = residual(buffers)
+            if before > tolerance:
+                contraction = max(contraction, after / before)
+            before = after
+            done += 1
+        if failed >= 0:
+            return PART_FAILED, n, failed
+        buffers.counts[1] += done
+        buffers.worst[0] = max(buffers.worst[0], before)
+        buffers.worst[1] = max(buffers.worst[1], contraction)
+        finish(plan, nodes, buffers)
+        culprit = not_finite(plan, buffers.history)
+        if culprit >= 0:
+            return NOT_FINITE, n + 1, culprit
+        if (n + 1) % every == 0:
+            for p in range(plan.component.size):
+                row = (n + 1) // every
+                if get_outputs(plan, buffers.history, p, records, row) > _LAST_GOOD:
+                    return PART_FAILED, n + 1, p
+        if contraction > slow:
+            return REFRESH, n + 1, -1
+    return DONE, start + count, -1
+
+
+@kernel
+def sensitivity(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    jacobian: np.ndarray,
+    change: np.ndarray,
+    order: int,
+    t: float,
+    h: float,
+    known: int,
+) -> int:
+    """dG/dU by forward differences over doStep, (unknowns p) squared; all is restored after.
+
+    Args:
+        jacobian: is written.
+        change: of each unknown.
+
+    Returns:
+        -1, or the part that failed.
+    """
+    saved = buffers.history.copy()
+    failed = begin(plan, nodes, buffers, order, known, t, h)
+    if failed < 0:
+        failed = one_pass(plan, nodes, buffers, t, h)
+    count = nodes.unknown.size
+    base = buffers.rest.copy()
+    for column in range(jacobian.shape[1]):
+        if failed >= 0:
+            break
+        k, i = column // count, column % count
+        failed = restore(plan, nodes, buffers, False)
+        buffers.trial[k, i] += change[i]
+        if failed < 0:
+            failed = one_pass(plan, nodes, buffers, t, h)
+        buffers.trial[k, i] -= change[i]
+        for row in range(jacobian.shape[0]):
+            difference = buffers.rest[row // count, row % count] - base[row // count, row % count]
+            same = 1.0 if row == column else 0.0
+            jacobian[row, column] = difference / change[i] + same
+    if failed < 0:
+        failed = restore(plan, nodes, buffers, True)
+    buffers.history[:] = saved
+    return failed
