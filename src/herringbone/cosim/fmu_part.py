@@ -67,10 +67,15 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
 _keys = itertools.count(1)
 _logs: dict[int, list[str]] = {}
 """Messages by part; fmpy's logger proxy keeps one logger for the process."""
+_FATAL = 4
+_corrupt: set[int] = set()
+"""Parts that reported fmi2Fatal: FMI 2.0 allows no further call, and pythonfmu crashes on one."""
 
 
 @fmi2CallbackLoggerTYPE
 def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+    if status == _FATAL:
+        _corrupt.add(environment)
     if status > 0 and message and environment in _logs:
         _logs[environment].append(message.decode("utf-8", "replace").strip())
 
@@ -170,6 +175,8 @@ class FmuPart:
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables; raises FmuError."""
+        if self._key in _corrupt:
+            raise FmuError(f"{self.name} has failed for good; nothing can be read from it")
         try:
             return self.slave.getReal([self.variables[name].reference for name in names])
         except FMICallException as error:
@@ -202,8 +209,9 @@ class FmuPart:
         return [m for m in found if not any(other in m for other in found if other != m)]
 
     def close(self) -> None:
-        """Free the instance and remove the extracted files."""
-        self.slave.freeInstance()
+        """Free the instance, unless it has failed for good, and remove the extracted files."""
+        if self._key not in _corrupt:
+            self.slave.freeInstance()
         _logs.pop(self._key, None)
         shutil.rmtree(self._folder, ignore_errors=True)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, Prepared
@@ -200,9 +200,9 @@ class _Run:
             return Outcome(kind, reached, message=message)
         part = self.network.parts[culprit]
         said = "; ".join(part.messages())
-        bad = self._not_finite(part)
-        if status == NOT_FINITE or bad:
-            where = f"{part.name}.{bad}" if bad else part.name
+        where = self._not_finite(culprit)
+        if status == NOT_FINITE or where:
+            where = where or part.name
             message = (
                 f"{where} is not finite at {reached:g} s; the coupling or the model is unstable: "
                 f"use a step below {self.grid.step:g} s or an algorithm with a higher limit"
@@ -211,13 +211,22 @@ class _Run:
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
 
-    @staticmethod
-    def _not_finite(part: Part) -> str:
+    def _not_finite(self, culprit: int) -> str:
+        """The first input or output of a part that is not finite, or the output that feeds it."""
+        parts = self.network.parts
+        part = parts[culprit]
         names = [
             n for n, v in part.variables.items() if v.causality in {"output", "input"} and v.is_real
         ]
-        values = part.get(names)
-        return next((n for n, x in zip(names, values, strict=True) if not math.isfinite(x)), "")
+        try:
+            values = part.get(names)
+            bad = next((n for n, x in zip(names, values, strict=True) if not math.isfinite(x)), "")
+            for c in self.network.inputs(culprit):
+                if c.input == bad and not math.isfinite(parts[c.source].get([c.output])[0]):
+                    return f"{parts[c.source].name}.{c.output}"
+        except HerringboneError:
+            return ""
+        return f"{part.name}.{bad}" if bad else ""
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         rows = done // self.grid.every + 1
