@@ -1,0 +1,325 @@
+"""Bad input through the command line: one clear line, a non-zero exit code, results kept."""
+
+import json
+import math
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pandas as pd
+import pytest
+from support import write_table
+
+from herringbone.cli import main
+from herringbone.core.paths import resources_folder
+
+KINDS = ("python", "in-process")
+STRANGER = Path(__file__).parents[1] / "fmus" / "strange_housing.py"
+
+
+@pytest.fixture
+def refused(capsys, tmp_path, monkeypatch):
+    """Run the test rig, or another system, with arguments that must be refused; gives the line."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments, system="test_rig", fmu="in-process"):
+        assert main(["run", str(system), "--t-end", "0.001", "--fmu", fmu, *arguments]) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert len(err.splitlines()) == 1
+        assert err.startswith("herringbone: ")
+        assert not (tmp_path / "results").exists()
+        return err
+
+    return run
+
+
+@pytest.mark.parametrize("fmu", KINDS)
+@pytest.mark.parametrize(
+    ("assignment", "said"),
+    [
+        ("nope.stiffness=1", "system 'test_rig' has no part 'nope'; it has: bench_controller,"),
+        (
+            "gear_mesh.nope=1",
+            "there is no variable 'nope'; 'herringbone list gear_mesh' shows them",
+        ),
+        ("gear_mesh.backlash=wide", "gear_mesh.backlash = 'wide': it takes a number"),
+        ("gear_mesh.backlash=nan", "gear_mesh.backlash = nan m: it must be finite"),
+        ("gear_mesh.pinion.inertia=-1", "gear_mesh.pinion.inertia = -1 kg.m2: it must lie between"),
+        ("gear_mesh.micro_step=0", "gear_mesh.micro_step = 0 s: it must lie between 1e-09 and"),
+        ("gear_mesh.stiffness_table=3", "gear_mesh.stiffness_table = 3.0: it takes a file name"),
+        ("gear_mesh.stiffness_table=/no.csv", "there is no file /no.csv; give an absolute path"),
+        ("bench_controller.cycle=/no.csv", "there is no file /no.csv; give an absolute path"),
+    ],
+)
+def test_parameters(refused, fmu, assignment, said):
+    assert said in refused("--set", assignment, fmu=fmu)
+
+
+def secant(phase, load):
+    """Periodic in the phase, positive, softer under load."""
+    return 8e8 + 5e7 * math.cos(2 * math.pi * phase)
+
+
+def with_end(file):
+    """The table with phase 1, where the stiffness is 1 % off."""
+    lines = file.read_text().splitlines()
+    for side in ("left", "right"):
+        for load in (10.0, 1e5):
+            lines.append(f"{side},{load},1.0,{1.01 * secant(0.0, load)}")
+    file.write_text("\n".join(lines) + "\n")
+
+
+def edited(old, new):
+    return lambda file: file.write_text(file.read_text().replace(old, new))
+
+
+TABLES = {
+    "not periodic": (with_end, "side left: not periodic: stiffness at phase 1 differs"),
+    "NaN": (edited("850000000.0", "nan"), "line 3: stiffness = 'nan' is not a finite number"),
+    "negative": (edited("850000000.0", "-8.5e8"), "stiffness -8.5e+08 N/m at load 10 N, phase 0"),
+    "wrong unit": (edited("N/m", "N/mm"), "column 'stiffness' has unit 'N/mm'"),
+    "no unit": (edited("# units: load N, phase 1, stiffness N/m\n", ""), "the first line must be"),
+    "one row less": (edited("left,10.0,0.0,850000000.0\n", ""), "are no full grid"),
+}
+
+
+@pytest.mark.parametrize("fmu", KINDS)
+@pytest.mark.parametrize("defect", TABLES)
+def test_stiffness_table(refused, tmp_path, fmu, defect):
+    file = write_table(tmp_path / "table.csv", secant)
+    change, said = TABLES[defect]
+    change(file)
+    line = refused("--set", f"gear_mesh.stiffness_table={file}", fmu=fmu)
+    assert said in line
+    assert f"gear_mesh: {file}" in line
+
+
+@pytest.mark.parametrize("fmu", KINDS)
+def test_housing_without_a_seat(refused, tmp_path, fmu):
+    lines = (resources_folder("modal_housing") / "shapes.csv").read_text().splitlines()
+    file = tmp_path / "shapes.csv"
+    file.write_text("\n".join(line for line in lines if "wheel_right" not in line) + "\n")
+    line = refused("--set", f"modal_housing.shapes={file}", fmu=fmu)
+    assert str(file) in line
+    assert "wheel_right" in line
+
+
+SYSTEM = """
+connections = [{}]
+[parts]
+coupling = {{ component = "shaft_coupling" }}
+other = {{ component = "shaft_coupling" }}
+motor = {{ component = "drive_motor" }}
+load = {{ component = "load_motor" }}
+control = {{ component = "bench_controller" }}
+"""
+
+
+@pytest.mark.parametrize("fmu", KINDS)
+@pytest.mark.parametrize(
+    ("connections", "said"),
+    [
+        ('["motor.flange", "coupling.nope"]', "coupling has no variable or port 'nope'"),
+        ('["motor.nope", "coupling.flange_a"]', "motor has no variable or port 'nope'"),
+        ('["nope.flange", "coupling.flange_a"]', "has no part 'nope'; it has: coupling,"),
+        (
+            '["control.torque_setpoint", "motor.speed_setpoint"]',
+            "'control.torque_setpoint' -> 'motor.speed_setpoint': units differ, 'N.m' and 'rad/s'",
+        ),
+        (
+            '["motor.flange", "coupling.flange_a"], ["motor.flange", "other.flange_a"]',
+            "input 'motor.flange.tau' has two sources: 'coupling.flange_a.tau' and "
+            "'other.flange_a.tau'",
+        ),
+        ('["motor.flange", "load.flange"]', "(body to body); insert a shaft_coupling"),
+        ('["coupling.flange_a", "other.flange_a"]', "(element to element); put a body"),
+    ],
+)
+def test_connections(refused, tmp_path, fmu, connections, said):
+    (tmp_path / "system.toml").write_text(SYSTEM.format(connections))
+    assert said in refused("--start", "rest", system=tmp_path, fmu=fmu)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("connections = [", "cannot read"),
+        ("nope = 1", "unknown key nope"),
+        ('[parts.a]\ncomponent = "nope"', "there is no component 'nope'"),
+        ('[parts.a]\nfmu = "no.fmu"', "there is no file"),
+        ('[parts.a]\nsystem = "nope"', "there is no system 'nope'"),
+    ],
+)
+def test_system_file(refused, tmp_path, text, said):
+    (tmp_path / "system.toml").write_text(text)
+    assert said in refused("--start", "rest", system=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ("--step=0", "step = 0 s: it must be positive and finite"),
+        ("--step=-1e-5", "step = -1e-05 s: it must be positive and finite"),
+        ("--step=nan", "step = nan s: it must be positive and finite"),
+        ("--t-end=inf", "t_end = inf s: it must be positive and finite"),
+        ("--t-end=0", "t_end = 0 s: it must be positive and finite"),
+        ("--step=0.1", "t_end = 0.001 s is shorter than one step of 0.1 s"),
+        ("--record-step=nan", "record_step = nan s: it must be positive and finite"),
+        ("--scene=nope", "there is no scene 'nope'; test_rig has: loaded, runup, separation"),
+        ("--algorithm=nope", "there is no algorithm 'nope'; there are: jacobi,"),
+        ("--algorithm=jacobi:nope=1", "jacobi has no option 'nope'; it has: order"),
+        ("--algorithm=jacobi:order=7", "jacobi: order=7; it must be 0, 1 or 2"),
+        ("--algorithm=jacobi:order=two", "jacobi:order=two"),
+        ("--start=nope", "start = 'nope'; it must be one of equilibrium, ramp, rest"),
+        ("--fmu=nope", "fmu = 'nope'; it must be python or in-process"),
+        ("--replace=nope=x.fmu", "has no part 'nope'"),
+        ("--replace=modal_housing=no.fmu", "there is no file no.fmu"),
+    ],
+)
+def test_options(refused, option, said):
+    assert said in refused(option)
+
+
+def test_unknown_system(refused):
+    assert "there is no system 'nope': give one of gearbox, test_rig" in refused(system="nope")
+
+
+XML = (
+    '<?xml version="1.0"?>{before}<fmiModelDescription fmiVersion="{version}" modelName="m" '
+    'guid="0"><CoSimulation modelIdentifier="m"/><ModelVariables/><ModelStructure/>'
+    "</fmiModelDescription>"
+)
+BINARY = f"binaries/{fmpy.platform}/m{fmpy.sharedLibraryExtension}"
+
+
+@pytest.mark.parametrize(
+    ("names", "before", "version", "said"),
+    [
+        ((), "", "2.0", f"has no binary for this platform ({BINARY})"),
+        ((BINARY,), "", "1.0", "is an FMI 1.0 unit; FMI 2.0 for co-simulation is needed"),
+        ((BINARY, "../out"), "", "2.0", "entry '../out' would be written outside its folder"),
+        ((BINARY,), '<!DOCTYPE m [<!ENTITY e "x">]>', "2.0", "declares a DOCTYPE or an entity"),
+        ((BINARY,), "", "2.0", "does not instantiate"),
+    ],
+)
+def test_fmu_files(refused, tmp_path, names, before, version, said):
+    file = tmp_path / "x.fmu"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("modelDescription.xml", XML.format(before=before, version=version))
+        for name in names:
+            archive.writestr(name, b"")
+    line = refused(f"--replace=modal_housing={file}")
+    assert said in line
+    assert str(file) in line
+    assert not (tmp_path.parent / "out").exists()
+
+
+def test_no_zip(refused, tmp_path):
+    file = tmp_path / "x.fmu"
+    file.write_text("not a zip")
+    assert f"{file} is not an FMU" in refused(f"--replace=modal_housing={file}")
+
+
+@pytest.mark.parametrize("folder", ["file", "file/below", "/proc/below"])
+def test_folder_that_cannot_be_written(refused, tmp_path, folder):
+    (tmp_path / "file").touch()
+    line = refused("-o", folder)
+    assert f"cannot write to {folder}: " in line
+    assert "choose another folder with -o" in line
+
+
+def ended_early(folder, capsys, *arguments, outcome, fmu):
+    """A run that ends early: the line, the kept table and the summary."""
+    assert main(["run", "test_rig", "--fmu", fmu, "-o", str(folder), *arguments]) == 1
+    err = capsys.readouterr().err
+    assert len(err.splitlines()) == 1
+    assert err.startswith(f"herringbone: {outcome}: ")
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["outcome"] == outcome
+    table = pd.read_csv(folder / "results.csv", comment="#")
+    assert table.notna().all(axis=None)
+    assert table["time"].iloc[-1] <= summary["t_reached"] < summary["t_end"]
+    return err, table, summary
+
+
+@pytest.mark.parametrize("fmu", KINDS)
+def test_step_beyond_the_limit(tmp_path, capsys, fmu):
+    """Order 2 is unstable at 50 us; the values overflow after about a thousand steps."""
+    options = ("--step", "5e-5", "--algorithm", "jacobi:order=2")
+    line, table, summary = ended_early(tmp_path, capsys, *options, outcome="diverged", fmu=fmu)
+    assert f"{summary['culprit']} is not finite at {summary['t_reached']:g} s" in line
+    assert "use a step below 5e-05 s or an algorithm with a higher limit" in line
+    assert len(table) > 100
+
+
+@pytest.fixture(scope="module")
+def stranger(tmp_path_factory):
+    """Builds hand-written FMUs; changes of the source as (old, new) pairs, class names differ."""
+
+    def build(name="StrangeHousing", *changes):
+        folder = tmp_path_factory.mktemp("fmu")
+        text = STRANGER.read_text().replace("StrangeHousing", name)
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        script = folder / f"{name.lower()}.py"
+        script.write_text(text)
+        command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(script), "-d", str(folder)]
+        subprocess.run(command, check=True, capture_output=True)
+        return folder / f"{name}.fmu"
+
+    return build
+
+
+def test_foreign_housing_runs(tmp_path, capsys, stranger):
+    file = stranger()
+    arguments = ["run", "test_rig", "--t-end", "0.001", "--json", "-o", str(tmp_path)]
+    assert main([*arguments, "--replace", f"modal_housing={file}"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["model"]["modal_housing"] == str(file)
+    notes = [note for note in summary["notes"] if "modal_housing" in note]
+    assert any("the load rises from zero over 0.02 s" in note for note in notes)
+    assert any("and 35 more between these parts: a unit is not declared" in note for note in notes)
+    assert any("declares no output dependencies; taken as a body" in note for note in notes)
+    table = pd.read_csv(tmp_path / "results.csv", comment="#")
+    assert table["modal_housing.pinion_left.v_y"].abs().max() > 0.0
+
+
+def test_foreign_housing_has_no_reference(refused, stranger):
+    line = refused("--reference", f"--replace=modal_housing={stranger('NoReference')}")
+    assert "modal_housing is a foreign FMU" in line
+    assert "no monolithic reference" in line
+
+
+def test_foreign_housing_with_a_missing_seat(refused, stranger):
+    seats = '("pinion_left", "pinion_right", "wheel_left", "wheel_right")'
+    file = stranger("ThreeSeats", (seats, '("pinion_left", "pinion_right", "wheel_left")'))
+    line = refused(f"--replace=modal_housing={file}")
+    assert "modal_housing has no variable or port 'wheel_right'; it has the ports" in line
+
+
+FAILURES = {
+    "Nan": ("return True", "self.pinion_left.s_y = float('nan'); return True", "diverged"),
+    "Inf": ("return True", "self.pinion_left.v_y = float('inf'); return True", "diverged"),
+    "Refuses": ("return True", "return False", "part_failed"),
+    "Raises": ("return True", "raise ValueError('too far')", "part_failed"),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_foreign_housing_fails_during_the_run(tmp_path, capsys, stranger, name):
+    old, new, outcome = FAILURES[name]
+    late = f"if current_time > 4e-4:\n            {new}\n        return True"
+    file = stranger(f"Housing{name}", (old, late))
+    line, table, summary = ended_early(
+        tmp_path, capsys, f"--replace=modal_housing={file}", outcome=outcome, fmu="in-process"
+    )
+    assert summary["culprit"].startswith("modal_housing")
+    assert "modal_housing" in line
+    assert "at 0.0004" in line
+    if name == "Raises":
+        assert "too far" in line
+    assert table["time"].iloc[-1] >= 3.8e-4
