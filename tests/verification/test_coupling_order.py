@@ -11,10 +11,11 @@ import math
 
 import numpy as np
 import pytest
-from support_parts import MOTION, TwoMass, columns, slope
+from support_parts import MOTION, TWO_MASS_SYSTEM, TwoMass, columns, slope
 
 from herringbone.core import OutcomeKind
 from herringbone.cosim.algorithms import GaussSeidel, Jacobi
+from herringbone.cosim.simulation import make_grid, simulate
 
 STEPS = (0.04, 0.02, 0.01, 0.005)
 """h w: far below all limits, far above rounding (errors 1e-1 to 1e-7)."""
@@ -80,6 +81,20 @@ def test_momentum_is_kept():
     recording = problem.run(Jacobi(order=2), 0.1, 50.0)
     v1, v2 = columns(recording, ("left.flange.v", "right.flange.v")).T
     assert np.abs(problem.mass[0] * v1 + problem.mass[1] * v2).max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    "algorithm", [Jacobi(order=0), Jacobi(order=2), GaussSeidel(order=1), GaussSeidel(order=2)],
+    ids=str,
+)  # fmt: skip
+def test_rigid_motion_makes_no_force(algorithm):
+    """Both masses move alike: one side's held position against the other's newer one would pull."""
+    parts = TwoMass(start=(0.0, 0.0)).parts()
+    for part in parts[:2]:
+        part.set("flange.v", 100.0)
+    recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(2.0, 0.1, 0.1))
+    # Rounding of positions up to 200 m times 0.75 N/m; a held one would make 7.5 N.
+    assert np.abs(columns(recording, ("spring.a.f",))).max() < 1e-10
 
 
 # -- stability ----------------------------------------------------------------------------------

@@ -218,6 +218,12 @@ def test_power_balance():
         0.5 * inertia * (table[w][-1] ** 2 - table[w][0] ** 2) / WHEEL_TURN
         for inertia, w in ((0.08, "drive_motor.flange.w"), (2.0, "load_motor.flange.w"))
     )
+    assert couplings == pytest.approx(
+        5.0 * mean("drive_coupling.w_rel", "drive_coupling.w_rel")
+        + 50.0 * mean("load_coupling.w_rel", "load_coupling.w_rel"),
+        rel=1e-3,
+    )
+    assert bearings == pytest.approx(damper_power(table), rel=3e-4)
     circulating = PINION_TORQUE * SPEED
     assert supplied == pytest.approx(circulating, rel=1e-6)
     assert taken == pytest.approx(circulating, rel=1e-6)
@@ -226,6 +232,20 @@ def test_power_balance():
     balance = supplied - taken - couplings - bearings - housing - gear - stored
     # The signals are recorded at one instant: what remains is quadrature and 1e-16 of 2e4 W.
     assert abs(balance) < 1e-3 * bearings
+
+
+def damper_power(table):
+    """Mean power in the dampers of the bearings [W], from the motions on both sides."""
+    (part,) = (p for p in open_in_process(rig()) if p.name == "bearing_supports")
+    (angle,) = part.get(["pressure_angle"])
+    power = 0.0
+    for half in HALVES:
+        gear, seat = f"gear_mesh.{half}", f"modal_housing.{half}"
+        radial, axial = part.get([f"{half.split('_')[0]}.{a}_damping" for a in ("radial", "axial")])
+        y = np.sin(angle) * table[f"{seat}.v_x"] + np.cos(angle) * table[f"{seat}.v_y"]
+        power += radial * ((table[f"{gear}.v_y"] - y)[1:] ** 2).mean()
+        power += axial * ((table[f"{gear}.v_z"] - table[f"{seat}.v_z"])[1:] ** 2).mean()
+    return power
 
 
 def test_gradual_start_reaches_the_same_state():
