@@ -8,7 +8,7 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -37,6 +37,11 @@ class Algorithm(ABC):
     @abstractmethod
     def prepare(self, network: Network) -> "Prepared":
         """Lay out a network for this algorithm."""
+
+    @classmethod
+    def charted(cls) -> tuple[Self, ...]:
+        """Variants that a speed-accuracy chart shows if none are named."""
+        return (cls(),)
 
     def __str__(self) -> str:
         options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))  # type: ignore[arg-type]

@@ -7,7 +7,7 @@ below about h w = 1.0 (2 sweeps) to 1.75 (3 sweeps of cubic nodes).
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
@@ -40,6 +40,11 @@ class FixedPoint(Algorithm):
             raise ParameterError(f"fixed_point: degree={self.degree}; it must be 1, 2, 3 or 4")
         if not 2 <= self.sweeps <= _MOST:
             raise ParameterError(f"fixed_point: sweeps={self.sweeps}; it must be 2 to {_MOST}")
+
+    @classmethod
+    def charted(cls) -> tuple[Self, ...]:
+        """Quadratic nodes, and cubic ones with two and three sweeps."""
+        return (cls(degree=2), cls(degree=3), cls(degree=3, sweeps=3))
 
     @property
     def convergence_order(self) -> int:

@@ -13,7 +13,7 @@ Order q: degree of extrapolation and interpolation.
 """
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
@@ -42,6 +42,11 @@ class GaussSeidel(Algorithm):
                 f"gauss_seidel: order={self.order}; it must be 1 or 2 "
                 "(held positions against newer ones are never stable)"
             )
+
+    @classmethod
+    def charted(cls) -> tuple[Self, ...]:
+        """Both orders."""
+        return tuple(cls(order=q) for q in (1, 2))
 
     @property
     def convergence_order(self) -> int:

@@ -15,7 +15,7 @@ that costs one step of delay and a bond limit of h w < 4/3 zeta at order 0.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
@@ -46,6 +46,11 @@ class Jacobi(Algorithm):
             raise ParameterError(
                 f"jacobi: schedule={self.schedule}; it must be bodies_first or parallel"
             )
+
+    @classmethod
+    def charted(cls) -> tuple[Self, ...]:
+        """All orders, elements after the bodies."""
+        return tuple(cls(order=q) for q in (0, 1, 2))
 
     @property
     def convergence_order(self) -> int:

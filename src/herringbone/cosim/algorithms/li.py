@@ -18,7 +18,7 @@ with inner nodes.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
@@ -52,6 +52,11 @@ class LI(Algorithm):
             raise ParameterError(f"li: degree={self.degree}; it must be 1, 2, 3 or 4")
         if not 1 <= self.iterations <= _MOST:
             raise ParameterError(f"li: iterations={self.iterations}; it must be 1 to {_MOST}")
+
+    @classmethod
+    def charted(cls) -> tuple[Self, ...]:
+        """Degrees from 2: degree 1 costs a rollback for the accuracy of extrapolation."""
+        return tuple(cls(degree=p) for p in (2, 3, 4))
 
     @property
     def convergence_order(self) -> int:
