@@ -7,6 +7,7 @@ breakpoints that the components declare.
 
 import hashlib
 import importlib.util
+import os
 import sys
 from collections.abc import Callable, Sequence
 from types import ModuleType
@@ -175,7 +176,9 @@ def _load(source: str) -> ModuleType:
         return sys.modules[name]
     file = cache_folder("twins") / f"{name}.py"
     if not file.is_file():
-        file.write_text(source, encoding="utf-8")
+        draft = file.with_suffix(f".{os.getpid()}.tmp")  # no other process imports half of it
+        draft.write_text(source, encoding="utf-8")
+        draft.replace(file)
     spec = importlib.util.spec_from_file_location(name, file)
     module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]
     sys.modules[name] = module
