@@ -1,4 +1,4 @@
-"""First run: the test rig at 1000 r/min and 200 N m, and the dynamic bearing force of the pinion."""
+"""First run: the test rig at 1000 r/min and 200 N m; the dynamic bearing force of the pinion."""
 
 import herringbone as hb
 

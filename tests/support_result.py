@@ -94,7 +94,7 @@ def make_result(
         "t_end": t_end,
         "communication_step": record_step,
         "record_step": record_step,
-        "micro_step": {"gear_mesh": 2.5e-6},
+        "micro_steps": {"gear_mesh": 2.5e-6},
         "algorithm": "gs",
         "fmu": "in-process",
         "macro_steps": time.size - 1,

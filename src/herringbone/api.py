@@ -12,7 +12,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component
-from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
+from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import Algorithm, Jacobi, parse_algorithm
 from herringbone.cosim.fmu_part import FmuPart

@@ -1,0 +1,1 @@
+"""The physical components: one file each with declaration, equations and kernels; registry."""

@@ -8,9 +8,12 @@ seat motion projected on n, each half has
     force on the shaft: -f along y;   force on the seat: +f n
 
 and the same along z with the axial stiffness, without n. The same vector carries motion in and
-force out, so that no power is created. With a radial clearance c, gap(d) = d - max(-c/2, min(d, c/2))
-and the damping acts only on the loaded part (g = 0 inside the clearance, 1 without clearance, rising
-over a tenth of the clearance); a bearing with clearance never pulls.
+force out, so that no power is created. With a radial clearance c,
+
+    gap(d) = d - max(-c/2, min(d, c/2))
+
+and the damping acts only on the loaded part (g = 0 inside the clearance, 1 without clearance,
+rising over a tenth of the clearance); a bearing with clearance never pulls.
 
 A master that steps all FMUs in parallel sees this element one macro step h late; gear and seat then
 are stable only for h < 4/3 zeta / w with the local w, zeta (here about 3e-6 s). A master

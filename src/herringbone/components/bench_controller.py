@@ -1,7 +1,7 @@
 """Bench controller: set points of a test cycle, piecewise linear in time, without state.
 
-    speed_setpoint  = speed_factor speed(t)                              for the drive motor
-    torque_setpoint = torque_factor gear_ratio torque(t) min(1, t / load_ramp_time)  for the load motor
+    speed_setpoint  = speed_factor speed(t)                                          (drive motor)
+    torque_setpoint = torque_factor gear_ratio torque(t) min(1, t / load_ramp_time)  (load motor)
 
 The cycle is a CSV file of time [s], speed [r/min or rad/s] and torque [N.m]; the torque is the
 *pinion* torque, so that the load motor behind the gearbox gets gear_ratio times as much. Before the

@@ -48,7 +48,7 @@ def read_flat_csv(
         Columns by name, and the unit of each column of numbers.
 
     Raises:
-        ResourceError: not readable, wrong unit, missing column, or a value that is no finite number.
+        ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
     try:
         lines = file.read_text(encoding="utf-8-sig").splitlines()

@@ -26,13 +26,14 @@ period. It is never inside the stiffness table.
     C = 2 zeta sqrt(k m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel)
 
 This is the corrected form of the thesis' mesh damping, whose base radii are swapped; g rises
-smoothly from 0 to 1 over `damping_transition`, so that no force jumps at contact. The phase p counts
-mesh periods of the pinion's left half; the right half is ahead by `stagger`. An optional meshing
-impact adds a raised-cosine pulse at the start of each mesh period, inside N, on the drive side.
+smoothly from 0 to 1 over `damping_transition`, so that no force jumps at contact. The phase p
+counts mesh periods of the pinion's left half; the right half is ahead by `stagger`. An optional
+meshing impact adds a raised-cosine pulse at the start of each mesh period, inside N, on the drive
+side.
 
 **Equations of motion** (virtual work; left pair 1-3, right pair 2-4; f, tau are the inputs):
 
-    m y1'' = f_y1 - k_y (y1 - y2) - c_y (y1' - y2') - cos(beta_b) N_L          wheel: + cos(beta_b) N
+    m y1'' = f_y1 - k_y (y1 - y2) - c_y (y1' - y2') - cos(beta_b) N_L       (wheel: + cos(beta_b) N)
     m z1'' = f_z1 - k_z (z1 - z2) - c_z (z1' - z2') - s sin(beta_b) N_L - restraint
     I theta1'' = share tau + k_t (theta2 - theta1) + c_t (theta2' - theta1') - rb1 cos(beta_b) N_L
 

@@ -1,4 +1,4 @@
-"""How a run ended. Failures inside a run are outcomes with a culprit and a remedy, not exceptions."""
+"""How a run ended: failures inside a run are outcomes with culprit and remedy, not exceptions."""
 
 from dataclasses import dataclass
 from enum import StrEnum

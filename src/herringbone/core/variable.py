@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 NODES = 4
-"""Most nodes that a polynomial coupling signal has inside a macro step, besides its value at c = 0."""
+"""Most nodes of a polynomial coupling signal inside a macro step, besides its value at c = 0."""
 
 
 class Causality(StrEnum):

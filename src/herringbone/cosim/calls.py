@@ -77,5 +77,5 @@ def do_step(address: int, component: int, time: float, step: float) -> int:
 
 @kernel
 def state_call(address: int, component: int, state: int) -> int:
-    """fmi2GetFMUstate or fmi2FreeFMUstate (state: address of the handle), fmi2SetFMUstate (handle)."""
+    """Get or free an FMU state (`state`: address of its handle), or set it (the handle). Status."""
     return _state(address, component, state)

@@ -45,7 +45,8 @@ def read_fmu(file: Path) -> ModelDescription:
     if binary not in names:
         have = sorted({n.split("/")[1] for n in names if n.startswith("binaries/") and n[9:]})
         raise FmuError(
-            f"{file} has no binary for this platform ({binary}); it has: {', '.join(have) or 'none'}"
+            f"{file} has no binary for this platform ({binary}); "
+            f"it has: {', '.join(have) or 'none'}"
         )
     return model
 

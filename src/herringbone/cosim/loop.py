@@ -144,7 +144,7 @@ def not_finite(plan: Plan, history: np.ndarray) -> int:
     """Part whose newest outputs are NaN or infinite, or -1."""
     for p in range(plan.component.size):
         for i in range(plan.output_first[p], plan.output_first[p + 1]):
-            if not (history[0, i] - history[0, i] == 0.0):
+            if history[0, i] - history[0, i] != 0.0:
                 return p
     return -1
 

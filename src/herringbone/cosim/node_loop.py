@@ -240,7 +240,7 @@ def residual(buffers: Buffers) -> float:
     for k in range(buffers.rest.shape[0]):
         for i in range(buffers.rest.shape[1]):
             size = abs(buffers.rest[k, i]) / buffers.scale[i]
-            if not (size - size == 0.0):
+            if size - size != 0.0:
                 return np.inf
             largest = max(largest, size)
     return largest

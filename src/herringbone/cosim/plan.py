@@ -9,7 +9,7 @@ from herringbone.core.declaration import node_name
 from herringbone.cosim.network import Network
 
 HISTORY = 4
-"""Rows of the signal history: the newest values, and those at the three communication points before."""
+"""Rows of the signal history: the newest values, and the three communication points before."""
 
 
 class Plan(NamedTuple):
@@ -94,7 +94,7 @@ def build_plan(
     ]
     records = record_names(network)
     record_first = _offsets([len(r) for r in records])
-    addresses = np.array([part.addresses for part in parts], dtype=np.int64)
+    addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
     set_first = _offsets([len(r) for r in set_references])
     return Plan(
         component=addresses[:, 0].copy(),

@@ -2,7 +2,9 @@
 
 import hashlib
 import math
+from collections.abc import Callable
 from enum import IntEnum
+from operator import itemgetter
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
@@ -52,6 +54,9 @@ class ComponentSlave(GuardedSlave):
         self._tables = ""
         self._phase = _Phase.INSTANTIATED
         self._outdated = False
+        self._kernel = self._component.kernels.step
+        self._read: tuple[list[int], Callable] = ([-1], tuple)
+        self._written: list[int] = []
         self._check_sources()
 
     def _check_sources(self) -> None:
@@ -115,19 +120,23 @@ class ComponentSlave(GuardedSlave):
     def advance(self, time: float, step_size: float) -> bool:
         """Step from `time` to `time + step_size` [s]; False discards the step."""
         self._time = time
-        if not self._failure:
-            self._attempt(self._step, time, step_size)
         if self._failure:
             return False
-        self._time = time + step_size
-        return True
+        instance = self._instance
+        stepping = self._phase is _Phase.STEPPING and 0.0 <= step_size < math.inf
+        if stepping and self._kernel(instance.block, instance.work, time, step_size) == 0:
+            self._time = time + step_size
+            return True
+        self._attempt(self._explain, time, step_size)
+        return False
 
-    def _step(self, time: float, step_size: float) -> None:
+    def _explain(self, time: float, step_size: float) -> None:
+        """Say why a step failed."""
         if self._phase is not _Phase.STEPPING:
             self._fail(f"{self.instance_name}: doStep before the end of initialisation")
         elif not 0.0 <= step_size < math.inf:
             self._fail(f"{self.instance_name}: step size {step_size} s; it must be 0 or positive")
-        elif self._instance.step(time, step_size):
+        else:
             name, value = self._instance.first_not_finite() or ("result", math.nan)
             unit = next((f" {v.unit}" for v in self._reals.values() if v.name == name), "")
             self._fail(
@@ -143,6 +152,11 @@ class ComponentSlave(GuardedSlave):
         if self._outdated:
             self._attempt(self._refresh)
         values = self._values
+        known, getter = self._read
+        if vrs == known:
+            return list(getter(values))
+        if self._references.issuperset(vrs) and len(vrs) > 1:
+            self._read = (vrs, itemgetter(*vrs))
         if self._references.issuperset(vrs):
             return [values[vr] for vr in vrs]
         self._unknown("Real", vrs, self._references)
@@ -150,9 +164,10 @@ class ComponentSlave(GuardedSlave):
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set inputs, parameters and, until initialisation ends, states."""
-        if self._inputs.issuperset(vrs) and math.isfinite(sum(values)):
+        if (vrs == self._written or self._inputs.issuperset(vrs)) and math.isfinite(sum(values)):
+            self._written = vrs
             target = self._values
-            for vr, value in zip(vrs, values, strict=True):
+            for vr, value in zip(vrs, values):  # noqa: B905 (a host gives as many of both)
                 target[vr] = value
         else:
             for vr, value in zip(vrs, values, strict=True):

@@ -68,9 +68,9 @@ def build(
     for j in range(DEFLECTIONS):
         for what in range(2):
             for i in range(phases):
-                for l in range(count):
-                    k[l] = stiffness[l * phases + i]
-                    u[l] = math.sqrt(loads[l] / (k[l] * limit)) * (DEFLECTIONS - 1)
+                for n in range(count):
+                    k[n] = stiffness[n * phases + i]
+                    u[n] = math.sqrt(loads[n] / (k[n] * limit)) * (DEFLECTIONS - 1)
                 monotone_slopes(u, k, count, m)
                 column[i] = _at(u, k, m, count, j, what)
             periodic_slopes(column, 0, 1, phases, slope, 0)
@@ -89,11 +89,11 @@ def _at(u: np.ndarray, k: np.ndarray, m: np.ndarray, count: int, x: float, what:
     """Interpolated stiffness (what = 0) or its slope (1) at x; level below the first load."""
     if x <= u[0]:
         return k[0] if what == 0 else 0.0
-    l = 1
-    while l < count - 1 and x > u[l]:
-        l += 1
-    width = u[l] - u[l - 1]
-    value, slope = hermite((x - u[l - 1]) / width, k[l - 1], k[l], m[l - 1] * width, m[l] * width)
+    n = 1
+    while n < count - 1 and x > u[n]:
+        n += 1
+    width = u[n] - u[n - 1]
+    value, slope = hermite((x - u[n - 1]) / width, k[n - 1], k[n], m[n - 1] * width, m[n] * width)
     return value if what == 0 else slope / width
 
 

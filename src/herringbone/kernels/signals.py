@@ -64,6 +64,6 @@ def store_node(b: np.ndarray, first: int, count: int, node: int) -> None:
 def all_finite(b: np.ndarray, first: int, count: int) -> bool:
     """True if no value of a range is NaN or infinite."""
     for i in range(first, first + count):
-        if not (b[i] - b[i] == 0.0):
+        if b[i] - b[i] != 0.0:
             return False
     return True

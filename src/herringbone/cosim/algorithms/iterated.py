@@ -46,8 +46,8 @@ def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
         found.append(0)
         if inputs:
             notes.append(
-                f"{part.name} has no signal nodes: its inputs are held at their mean over a step and "
-                "its outputs interpolated, which makes the coupling second order in the step"
+                f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
+                "and its outputs interpolated, which makes the coupling second order in the step"
             )
     return found, notes
 
