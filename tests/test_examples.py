@@ -1,0 +1,64 @@
+"""Every example has at most 60 lines, runs, and gives a number that is known."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[1] / "examples"
+FILES = {file.stem: file for file in sorted(FOLDER.glob("*.py"))}
+
+WHOLE = 5e-3
+"""For numbers that follow from an equilibrium; what is left is the vibration's mean."""
+VIBRATION = 0.05
+"""For short runs of vibrations: they change with the coupling's error (0.2 %) and the window."""
+
+KNOWN = {
+    "01_first_run": ({"t_end": 0.02}, 11.24, VIBRATION),
+    "02_symmetry_deviation": ({"t_end": 0.02}, None, None),
+    "03_other_housing": ({"t_end": 0.02}, 0.859, VIBRATION),
+    "04_own_drivetrain": ({"t_end": 0.02}, 600.0, WHOLE),
+    "05_error_against_step": ({"t_end": 0.002}, None, None),
+    "06_loop_benchmark": ({"steps": 200}, None, None),
+}
+"""Arguments, number and relative tolerance; or arguments of a test of its own below."""
+
+
+def run(folder, monkeypatch, name):
+    monkeypatch.chdir(folder)
+    spec = importlib.util.spec_from_file_location(f"example_{name}", FILES[name])
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.main(**KNOWN[name][0])
+
+
+def test_all_are_known():
+    assert set(KNOWN) == set(FILES)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_at_most_60_lines(name):
+    assert len(FILES[name].read_text(encoding="utf-8").splitlines()) <= 60
+
+
+@pytest.mark.parametrize("name", [name for name, known in KNOWN.items() if known[1]])
+def test_number(tmp_path, monkeypatch, name):
+    _, number, tolerance = KNOWN[name]
+    assert run(tmp_path, monkeypatch, name) == pytest.approx(number, rel=tolerance)
+
+
+def test_symmetry_deviation(tmp_path, monkeypatch):
+    """Positive; 0.01 mm/s per um at 1000 r/min. A short window sees a part of the wheel's turn."""
+    velocity = run(tmp_path, monkeypatch, "02_symmetry_deviation")
+    assert 0.005 < velocity < 0.02
+
+
+def test_error_against_step(tmp_path, monkeypatch):
+    """README: 0.17 % at 10 us, order 2, over 20 ms; less in the first milliseconds."""
+    error = run(tmp_path, monkeypatch, "05_error_against_step")
+    assert 1e-6 < error < 1.7e-3
+
+
+def test_loop_benchmark(tmp_path, monkeypatch):
+    """The compiled loop is faster than a plain one; how much depends on the machine."""
+    assert run(tmp_path, monkeypatch, "06_loop_benchmark") > 1.2

@@ -1,0 +1,36 @@
+"""The README: its test command is the one that CI runs, and what it links to exists."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LINKS = sorted(set(re.findall(r"\]\(([^)#\s]+)", README)))
+LOCAL = [link for link in LINKS if "://" not in link and not link.startswith("mailto:")]
+
+
+def commands(text):
+    """Lines of shell that run the tests."""
+    return [line.strip() for line in text.splitlines() if line.rstrip().endswith("-m pytest")]
+
+
+def test_test_command_is_what_ci_runs():
+    fences = "\n".join(re.findall(r"^```sh\n(.*?)^```$", README, re.MULTILINE | re.DOTALL))
+    (command,) = commands(fences)
+    assert commands((ROOT / ".ci" / "run").read_text(encoding="utf-8")) == [command]
+
+
+@pytest.mark.parametrize("link", LOCAL)
+def test_link(link):
+    assert (ROOT / link).exists()
+
+
+def test_there_are_links():
+    assert any(link.endswith(".png") for link in LOCAL)
+
+
+def test_files_in_text_exist():
+    files = re.findall(r"`((?:examples|fmus|tests|system_models)/[\w./-]+)`", README)
+    assert [file for file in files if not (ROOT / file).exists()] == []
