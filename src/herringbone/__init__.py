@@ -14,6 +14,7 @@ __version__ = version("herringbone")
 
 _WHERE = {
     "run": "herringbone.api",
+    "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",
     "FixedPoint": "herringbone.cosim.algorithms",

@@ -14,7 +14,7 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.part import Part
-from herringbone.cosim.algorithms import Algorithm, Jacobi, parse_algorithm
+from herringbone.cosim.algorithms import AUTO, Algorithm, choose_algorithm, parse_algorithm
 from herringbone.cosim.fmu_part import FmuPart
 from herringbone.cosim.simulation import Progress, Recording, make_grid, simulate
 from herringbone.cosim.ssp_format import is_ssp
@@ -28,9 +28,6 @@ from herringbone.ssp_import import load_ssp, ssp_scene
 from herringbone.start import started
 
 FmuKind = Literal["python", "in-process"]
-DEFAULT_ALGORITHM = Jacobi(order=2)
-DEFAULT_STEP = 1e-5
-"""Communication step size [s]; with the default algorithm about 0.3 % error on the test rig."""
 
 
 def load_system(reference: str | Path) -> tuple[System, Path]:
@@ -66,7 +63,7 @@ def run(
     *,
     scene: str | Scene | None = None,
     algorithm: str | Algorithm | None = None,
-    step: float = DEFAULT_STEP,
+    step: float | None = None,
     t_end: float | None = None,
     record_step: float | None = None,
     start: str | None = None,
@@ -81,8 +78,9 @@ def run(
     Args:
         system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene; the system's "loaded" if not given.
-        algorithm: coupling algorithm, such as `Jacobi(order=2)` or "jacobi:order=2".
-        step: communication step size [s].
+        algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
+            default, takes li if all parts can repeat a step, and jacobi otherwise.
+        step: communication step size [s]; the algorithm's default if not given.
         t_end: duration [s]; the scene's if not given.
         record_step: time between records [s]; the scene's if not given.
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.
@@ -100,17 +98,20 @@ def run(
     """
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = _with_options(load_scene(folder, scene), t_end, record_step, start, values)
-    coupling = parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
-    coupling = coupling or DEFAULT_ALGORITHM
+    coupling = _algorithm(algorithm)
+    make_grid(chosen.t_end, chosen.t_end if step is None else step, chosen.record_step)
     for instance, file in (replace_parts or {}).items():
         structure = structure.with_fmu(instance, Path(file))
     structure, notes = started(structure, chosen)
     if reference and structure.foreign_parts:
         Twin(structure)
-    record = step if reference else chosen.record_step
-    grid = make_grid(chosen.t_end, step, record)
     parts = open_parts(structure, fmu)
     try:
+        if coupling is None:
+            coupling, why = choose_algorithm(parts)
+            notes = (*notes, why)
+        step = coupling.default_step if step is None else step
+        grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
         recording = simulate(structure, parts, coupling, grid, progress)
     finally:
         for part in parts:
@@ -120,6 +121,13 @@ def run(
         result = _with_error(result, structure)
         result = _decimated(result, chosen.record_step)
     return result
+
+
+def _algorithm(algorithm: str | Algorithm | None) -> Algorithm | None:
+    """The algorithm that was asked for; None for the automatic choice."""
+    if algorithm is None or algorithm == AUTO:
+        return None
+    return parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
 
 
 def _with_options(

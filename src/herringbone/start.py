@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
+from herringbone.core import EquilibriumError
 from herringbone.cosim.system import System, Values
 from herringbone.scenes import Scene, Start
 
@@ -31,7 +32,15 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
     if start is Start.RAMP:
         system = system.with_values(_ramps(system))
     if start is not Start.REST:
-        system = system.with_values(_equilibrium_values(system))
+        try:
+            system = system.with_values(_equilibrium_values(system))
+        except EquilibriumError:
+            if not system.foreign_parts:
+                raise
+            notes += (
+                "no steady rotation exists without the foreign part; the run starts from rest, "
+                "with the start values that the parts declare",
+            )
     return system.with_values(_offsets(system, scene.start_offset)), notes
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.modal_housing import MODAL_HOUSING
-from herringbone.core import HerringboneError
+from herringbone.core import EquilibriumError
 from herringbone.cosim.system import System
 
 _ITERATIONS = 40
@@ -40,7 +40,7 @@ def equilibrium(system: System) -> Equilibrium:
 
     Raises:
         StructureError: a part is a foreign FMU.
-        HerringboneError: no equilibrium was found.
+        EquilibriumError: no equilibrium was found.
     """
     twin = Twin(system)
     rotating, zero = _steady_rows(twin)
@@ -65,9 +65,10 @@ def equilibrium(system: System) -> Equilibrium:
             return Equilibrium(_start_values(twin, x), float(scaled / first))
         step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale
         x, r = _line_search(residual, x, r, step, rows)
-    raise HerringboneError(
-        f"no equilibrium of '{system.name}' was found in {_ITERATIONS} iterations; "
-        "start with --start ramp, or look for a load without anything that balances it"
+    worst = _row_names(twin, keep, zero)[int(np.argmax(np.abs(r / rows)))]
+    raise EquilibriumError(
+        f"no steady rotation of '{system.name}' was found in {_ITERATIONS} iterations: {worst} "
+        "does not vanish; look for a load there that nothing balances, or start with --start rest"
     )
 
 
@@ -81,6 +82,16 @@ def _guess(twin: Twin) -> np.ndarray:
         instance.component.guess(block)
         x[states[p] : states[p + 1]] = block[: states[p + 1] - states[p]]
     return x
+
+
+def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
+    """What the rows of the residual are, for messages."""
+    names = []
+    for instance in twin.instances:
+        declaration = instance.component.declaration
+        names += [f"the rate of {instance.name}.{v.name}" for v in declaration.states]
+        names += [f"a modal rate of {instance.name}"] * declaration.hidden_states
+    return [names[k] for k in keep] + zero
 
 
 def _steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:

@@ -3,6 +3,7 @@
 from herringbone.core.component import Component, Kernels
 from herringbone.core.declaration import Declaration
 from herringbone.core.errors import (
+    EquilibriumError,
     FmuError,
     HerringboneError,
     ParameterError,
@@ -16,6 +17,7 @@ from herringbone.core.variable import Text, Variable, input_, local, output, par
 __all__ = [
     "Component",
     "Declaration",
+    "EquilibriumError",
     "FmuError",
     "HerringboneError",
     "Instance",

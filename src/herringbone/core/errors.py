@@ -17,5 +17,9 @@ class StructureError(HerringboneError):
     """A system cannot be wired: unknown name, unit, direction, double source, algebraic loop."""
 
 
+class EquilibriumError(HerringboneError):
+    """A system has no steady rotation to start from, or none was found."""
+
+
 class FmuError(HerringboneError):
     """An FMU cannot be read, loaded, instantiated or initialised."""

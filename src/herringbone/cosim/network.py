@@ -209,6 +209,14 @@ def _order_elements(
     A part whose dependencies are not declared counts as an element unless that makes a loop.
     """
     used = {(c.source, c.output) for c in connections}
+    feeding = {c.source for c in connections}
+    used |= {  # an observer feeds nothing; all that it shows counts
+        (i, name)
+        for i, part in enumerate(parts)
+        if i not in feeding
+        for name, v in part.variables.items()
+        if v.causality == "output"
+    }
     fed = {i: {c.input for c in connections if c.target == i} for i in range(len(parts))}
     declared, undeclared = set(), set()
     for part, output in used:

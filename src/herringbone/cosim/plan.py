@@ -64,8 +64,25 @@ def _references(rows: Sequence[Sequence[int]]) -> np.ndarray:
     return np.array([r for row in rows for r in row], dtype=np.uint32)
 
 
+def connected_outputs(
+    network: Network, extra: Sequence[Sequence[str]] | None = None
+) -> list[list[str]]:
+    """Outputs of each part that the loop reads: the connected ones, then the extra ones."""
+    outputs: list[list[str]] = [[] for _ in network.parts]
+    for c in network.connections:
+        if c.output not in outputs[c.source]:
+            outputs[c.source].append(c.output)
+    for p, names in enumerate(extra or ()):
+        outputs[p] += [name for name in names if name not in outputs[p]]
+    return outputs
+
+
 def build_plan(
-    network: Network, stages: Sequence[Sequence[int]], degree: Sequence[int], parallel: bool
+    network: Network,
+    stages: Sequence[Sequence[int]],
+    degree: Sequence[int],
+    parallel: bool,
+    extra: Sequence[Sequence[str]] | None = None,
 ) -> Plan:
     """Lay a network out for stages that are stepped one after another.
 
@@ -75,14 +92,12 @@ def build_plan(
         degree: nodes of each part's inputs.
         parallel: elements take their inputs at the start of the macro step, as in masters that
             step all parts in parallel.
+        extra: further outputs of each part that the loop needs, such as accelerations.
     """
     parts = network.parts
     position = {p: s for s, stage in enumerate(stages) for p in stage}
     inputs = [network.inputs(p) for p in range(len(parts))]
-    outputs: list[list[str]] = [[] for _ in parts]
-    for c in network.connections:
-        if c.output not in outputs[c.source]:
-            outputs[c.source].append(c.output)
+    outputs = connected_outputs(network, extra)
     output_first = _offsets([len(o) for o in outputs])
     set_references = [
         [

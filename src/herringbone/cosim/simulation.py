@@ -10,7 +10,7 @@ import numpy as np
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
-from herringbone.cosim.algorithms.base import Algorithm, Prepared
+from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.loop import DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
@@ -18,7 +18,7 @@ from herringbone.cosim.plan import HISTORY, record_names
 from herringbone.cosim.system import System
 
 CHUNK_SECONDS = 0.05
-"""Wall time between looks at the interrupt flag; a chunk never takes twice as long."""
+"""Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
 
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
@@ -152,7 +152,7 @@ def _initialise(network: Network, degrees: Sequence[int], t_end: float) -> None:
 class _Run:
     """State of one run, outside the compiled loop."""
 
-    def __init__(self, network: Network, prepared: Prepared, grid: Grid) -> None:
+    def __init__(self, network: Network, prepared: PreparedRun, grid: Grid) -> None:
         self.network, self.prepared, self.grid = network, prepared, grid
         names = record_names(network)
         self.names = tuple(

@@ -4,22 +4,29 @@ from dataclasses import fields
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.choice import AUTO, choose_algorithm
 from herringbone.cosim.algorithms.fixed_point import FixedPoint
 from herringbone.cosim.algorithms.gauss_seidel import GaussSeidel
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.li import LI
+from herringbone.cosim.algorithms.predict import Predict
 
 __all__ = [
     "ALGORITHMS",
+    "AUTO",
     "LI",
     "Algorithm",
     "FixedPoint",
     "GaussSeidel",
     "Jacobi",
+    "Predict",
+    "choose_algorithm",
     "parse_algorithm",
 ]
 
-ALGORITHMS: dict[str, type[Algorithm]] = {a.name: a for a in (Jacobi, GaussSeidel, FixedPoint, LI)}
+ALGORITHMS: dict[str, type[Algorithm]] = {
+    a.name: a for a in (Jacobi, GaussSeidel, Predict, FixedPoint, LI)
+}
 
 
 def parse_algorithm(text: str) -> Algorithm:
@@ -30,7 +37,8 @@ def parse_algorithm(text: str) -> Algorithm:
     """
     name, _, options = text.partition(":")
     if name not in ALGORITHMS:
-        raise ParameterError(f"there is no algorithm '{name}'; there are: {', '.join(ALGORITHMS)}")
+        known = ", ".join([AUTO, *ALGORITHMS])
+        raise ParameterError(f"there is no algorithm '{name}'; there are: {known}")
     kind = ALGORITHMS[name]
     types = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
     values: dict[str, int | str] = {}

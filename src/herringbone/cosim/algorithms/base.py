@@ -8,7 +8,7 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar, Self
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
@@ -24,10 +24,12 @@ class Algorithm(ABC):
     Attributes:
         name: on the command line.
         needs: capabilities that parts must have: "nodes", "rollback", "accelerations".
+        default_step: communication step size [s] if none is given.
     """
 
     name: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
+    default_step: ClassVar[float] = 1e-5
 
     @property
     @abstractmethod
@@ -35,7 +37,7 @@ class Algorithm(ABC):
         """Power of the macro step with which the global error falls."""
 
     @abstractmethod
-    def prepare(self, network: Network) -> "Prepared":
+    def prepare(self, network: Network) -> "PreparedRun":
         """Lay out a network for this algorithm."""
 
     @classmethod
@@ -48,9 +50,42 @@ class Algorithm(ABC):
         return f"{self.name}:{options}" if options else self.name
 
 
+class PreparedRun(Protocol):
+    """A network laid out for an algorithm, ready to run.
+
+    Attributes:
+        plan: parts and signals.
+        degree: interface degree that each part is to be set to.
+        notes: downgrades, and what they cost.
+    """
+
+    plan: Plan
+    degree: tuple[int, ...]
+    notes: tuple[str, ...]
+
+    def passes(self, macro_steps: int) -> list[int]:
+        """Calls of doStep so far, by part."""
+
+    @property
+    def rollbacks(self) -> int:
+        """State restores so far."""
+
+    def run(
+        self,
+        history: np.ndarray,
+        t0: float,
+        h: float,
+        start: int,
+        count: int,
+        records: np.ndarray,
+        every: int,
+    ) -> tuple[int, int, int]:
+        """Run macro steps; arguments and result are those of `loop.run_stages`."""
+
+
 @dataclass(frozen=True)
 class Prepared:
-    """A network laid out for an algorithm.
+    """A network laid out for an algorithm that steps stages.
 
     Attributes:
         plan: parts, signals and stages.

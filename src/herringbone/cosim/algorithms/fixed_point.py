@@ -34,6 +34,7 @@ class FixedPoint(Algorithm):
 
     name: ClassVar[str] = "fixed_point"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
+    default_step: ClassVar[float] = 2e-5
 
     def __post_init__(self) -> None:
         if self.degree not in (1, 2, 3, 4):

@@ -10,7 +10,7 @@ from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.loop import DONE
 from herringbone.cosim.network import Network
 from herringbone.cosim.node_loop import REFRESH, Buffers, NodePlan, run_iterated, sensitivity
-from herringbone.cosim.plan import build_plan
+from herringbone.cosim.plan import build_plan, connected_outputs
 
 PREDICTION = 2
 """Degree of the prediction; one correction makes the result nearly independent of it."""
@@ -91,10 +91,7 @@ class PreparedNodes:
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
         self.plan = build_plan(network, stages, degrees, parallel=False)
-        self._outputs: list[list[str]] = [[] for _ in network.parts]
-        for c in network.connections:
-            if c.output not in self._outputs[c.source]:
-                self._outputs[c.source].append(c.output)
+        self._outputs = connected_outputs(network)
         self.nodes = self._node_plan(degree)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))

@@ -2,7 +2,8 @@
 
 Order q: a body's inputs are the polynomial of degree q through the last q + 1 communication points,
 extrapolated over the macro step h. The global error falls with h^(q+1). The first steps use what
-history there is; from an equilibrium start that costs nothing.
+history there is, which costs nothing if the forces have no rate at the start, as in equilibrium;
+otherwise order 2 falls back to the second power.
 
 Stable for a bond of frequency w and damping ratio zeta (two masses, M. Busch, ZAMM 96, 2016,
 1061-1081; limits measured with exact subsystems): h w < 4 zeta (order 0), about 1.85 zeta^(1/3)

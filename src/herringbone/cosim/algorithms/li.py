@@ -46,6 +46,7 @@ class LI(Algorithm):
 
     name: ClassVar[str] = "li"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
+    default_step: ClassVar[float] = 4e-5
 
     def __post_init__(self) -> None:
         if self.degree not in _ORDERS:

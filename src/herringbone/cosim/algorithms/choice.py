@@ -1,0 +1,28 @@
+"""Choice of the algorithm by what the parts can do."""
+
+from collections.abc import Sequence
+
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.jacobi import Jacobi
+from herringbone.cosim.algorithms.li import LI
+
+AUTO = "auto"
+
+
+def choose_algorithm(parts: Sequence[Part]) -> tuple[Algorithm, str]:
+    """The most accurate algorithm that the parts allow, and a line that says why.
+
+    li repeats steps: every part with inputs must save and restore its state. Otherwise jacobi.
+    """
+    unable = [
+        part.name
+        for part in parts
+        if not part.addresses.can_restore
+        and any(v.causality == "input" for v in part.variables.values())
+    ]
+    if unable:
+        chosen, why = Jacobi(), f"{', '.join(unable)} cannot save and restore its state"
+    else:
+        chosen, why = LI(), "all parts save and restore their state"
+    return chosen, f"{AUTO}: {chosen}, because {why}"

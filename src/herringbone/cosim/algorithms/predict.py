@@ -1,0 +1,154 @@
+"""Predicted motions: elements see Taylor predictions, bodies step once on the forces that follow.
+
+From position, velocity and acceleration at the start of the macro step, the motions at 1/3, 2/3 and
+1 of the step are predicted; the elements are evaluated there, before the bodies step, and the
+bodies take the quadratic through these forces. One pass, no rollback.
+
+Which output is the rate of which is read from the names: s -> v -> a, phi -> w -> a. The recorded
+forces are those at the predicted motions.
+
+The global error falls with h^2 (with h^3 without damping). Stable for a bond of frequency w up to
+about h w = 2.1, nearly independent of damping (B. Schweizer, D. Lu, P. Li, Multibody Syst. Dyn. 36,
+2016, 1-36, for predicted accelerations).
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from herringbone.core import ParameterError
+from herringbone.core.declaration import node_name
+from herringbone.core.part import Part, has_nodes
+from herringbone.cosim.algorithms.base import Algorithm, prepare_stages
+from herringbone.cosim.network import Network
+from herringbone.cosim.plan import Plan, build_plan, connected_outputs
+from herringbone.cosim.predict_loop import NODES, Prediction, run_predicted
+
+_RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
+_FORCE = -2
+
+
+def _rate(name: str) -> str | None:
+    """Name of the time derivative of an output, if the name tells: `x.s_y` -> `x.v_y`."""
+    port, dot, last = name.rpartition(".")
+    quantity, bar, axis = last.partition("_")
+    return f"{port}{dot}{_RATES[quantity]}{bar}{axis}" if quantity in _RATES else None
+
+
+def _rates(part: Part, names: list[str]) -> list[str]:
+    """The given outputs' rates, and the rates of these, as far as the part has them."""
+    found: list[str] = []
+    for name in names:
+        first = _rate(name)
+        for candidate in (first, _rate(first) if first else None):
+            if candidate in part.variables and candidate not in found:
+                found.append(str(candidate))
+    return found
+
+
+@dataclass(frozen=True)
+class Predict(Algorithm):
+    """Predicted motions: one pass on Taylor predictions, no rollback."""
+
+    name: ClassVar[str] = "predict"
+    needs: ClassVar[frozenset[str]] = frozenset({"nodes", "accelerations"})
+
+    @property
+    def convergence_order(self) -> int:
+        """2, because the predicted velocity is of first order in the acceleration."""
+        return 2
+
+    def prepare(self, network: Network) -> "PreparedPrediction":
+        """Lay out a network for this algorithm.
+
+        Raises:
+            ParameterError: an element takes no signal nodes.
+        """
+        for p in network.elements:
+            part, inputs = network.parts[p], [c.input for c in network.inputs(p)]
+            if not has_nodes(part, inputs, NODES):
+                raise ParameterError(
+                    f"predict: {part.name} takes no signal nodes; use jacobi or gauss_seidel"
+                )
+        return PreparedPrediction(network)
+
+
+class PreparedPrediction:
+    """A network laid out for predicted motions."""
+
+    def __init__(self, network: Network) -> None:
+        sources, bodies, elements = network.sources, network.bodies, network.elements
+        stages = [s for s in (sources, bodies) if s] + [(e,) for e in elements]
+        staged = prepare_stages(network, stages, 2)
+        degree = [NODES if p in elements else d for p, d in enumerate(staged.degree)]
+        moved = connected_outputs(network)
+        extra = [
+            _rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
+        ]
+        self.degree, self.notes = tuple(degree), tuple(staged.notes)
+        self.plan: Plan = build_plan(network, stages, degree, parallel=False, extra=extra)
+        self._prediction = self._lay_out(network, connected_outputs(network, extra))
+
+    def _lay_out(self, network: Network, outputs: list[list[str]]) -> Prediction:
+        elements = set(network.elements)
+        place = {(p, n): k for k, (p, n) in enumerate(
+            (p, n) for p, names in enumerate(outputs) for n in names)}  # fmt: skip
+        rate, second = (np.full(len(place), -1, dtype=np.int64) for _ in range(2))
+        for (p, name), k in place.items():
+            first = _rate(name)
+            if p in elements:
+                rate[k] = _FORCE
+            elif first and (p, first) in place:
+                rate[k] = place[p, first]
+                second[k] = place.get((p, _rate(first) or ""), -1)
+        moved = {place[c.source, c.output] for c in network.connections if c.target in elements}
+        blind = [f"{network.parts[p].name}.{n}" for (p, n), k in place.items()
+                 if k in moved and rate[k] == -1]  # fmt: skip
+        if blind:
+            self.notes += (f"{', '.join(blind)}: no rate is known; extrapolated instead",)
+        rows = [
+            [
+                network.parts[p].variables[node_name(n, node)].reference
+                for node in range(1, NODES + 1)
+                for n in names
+            ]
+            if p in elements
+            else []
+            for p, names in enumerate(outputs)
+        ]
+        return Prediction(
+            rate,
+            second,
+            np.array(network.elements, dtype=np.int64),
+            np.array(network.bodies, dtype=np.int64),
+            int(bool(network.sources)),
+            np.concatenate(([0], np.cumsum([len(r) for r in rows]))).astype(np.int64),
+            np.array([r for row in rows for r in row], dtype=np.uint32),
+            np.zeros((NODES + 1, len(place))),
+            np.zeros(max([1, *(len(r) for r in rows)])),
+        )
+
+    def passes(self, macro_steps: int) -> list[int]:
+        """doStep calls of each part."""
+        return [macro_steps] * len(self.degree)
+
+    @property
+    def rollbacks(self) -> int:
+        """State restores: none."""
+        return 0
+
+    def run(
+        self,
+        history: np.ndarray,
+        t0: float,
+        h: float,
+        start: int,
+        count: int,
+        records: np.ndarray,
+        every: int,
+    ) -> tuple[int, int, int]:
+        """Run macro steps; see `loop.run_stages`."""
+        return run_predicted(
+            self.plan, self._prediction, history, t0, h, start, count, records, every
+        )

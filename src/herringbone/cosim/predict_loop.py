@@ -1,0 +1,197 @@
+"""Compiled loop of `predict`: elements see predicted motions, then bodies step on their forces."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.cosim.calls import do_step, exchange_reals
+from herringbone.cosim.loop import (
+    DONE,
+    NOT_FINITE,
+    PART_FAILED,
+    get_outputs,
+    not_finite,
+    signal,
+    step_stage,
+)
+from herringbone.cosim.plan import Plan
+from herringbone.kernels.jit import kernel
+
+NODES = 3
+"""Degree at which elements take motions and give forces."""
+_LAST_GOOD = 1
+_REAL, _REFERENCE = 8, 4
+
+
+class Prediction(NamedTuple):
+    """How motions are predicted, and where forces are read.
+
+    Attributes:
+        rate, second: for each output, the outputs that are its first and second time derivative;
+            -1 if there is none.
+        elements, bodies: parts.
+        sources: 1 if the plan's first stage holds the sources.
+        node_first, node_reference: outputs of each element at its three nodes, node by node.
+        forces: (4, outputs), values at c = 0, 1/3, 2/3, 1; row 0 is not used.
+        values: room for one part's outputs at its nodes.
+    """
+
+    rate: np.ndarray
+    second: np.ndarray
+    elements: np.ndarray
+    bodies: np.ndarray
+    sources: int
+    node_first: np.ndarray
+    node_reference: np.ndarray
+    forces: np.ndarray
+    values: np.ndarray
+
+
+@kernel
+def predicted(
+    prediction: Prediction, history: np.ndarray, index: int, known: int, c: float, h: float
+) -> float:
+    """Taylor value of an output at c in the macro step; extrapolated if it has no rate."""
+    rate, second = prediction.rate[index], prediction.second[index]
+    if rate < 0:
+        return signal(history, index, 0, 2, known, c)
+    value = history[1, index] + c * h * history[1, rate]
+    if second >= 0:
+        value += 0.5 * (c * h) ** 2 * history[1, second]
+    return value
+
+
+@kernel
+def _exchange(
+    plan: Plan, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
+    values: np.ndarray, at: int,
+) -> int:  # fmt: skip
+    return exchange_reals(
+        function[p],
+        plan.component[p],
+        references.ctypes.data + _REFERENCE * first,
+        count,
+        values.ctypes.data + _REAL * at,
+    )
+
+
+@kernel
+def _step_element(
+    plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, t: float, h: float
+) -> int:
+    """Step an element on predicted motions, and read its forces at the nodes; FMI status."""
+    first, end = plan.input_first[p], plan.input_first[p + 1]
+    start = plan.set_first[p]
+    at = start
+    for node in range(NODES + 1):
+        for i in range(first, end):
+            source = plan.input_source[i]
+            plan.set_value[at] = predicted(prediction, history, source, known, node / NODES, h)
+            at += 1
+    status = _exchange(
+        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
+    )
+    if status > _LAST_GOOD:
+        return status
+    status = do_step(plan.do_step[p], plan.component[p], t, h)
+    if status > _LAST_GOOD:
+        return status
+    begin, stop = prediction.node_first[p], prediction.node_first[p + 1]
+    status = _exchange(
+        plan, p, plan.get_real, prediction.node_reference, begin, stop - begin, prediction.values, 0
+    )
+    k = 0
+    for node in range(1, NODES + 1):
+        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+            prediction.forces[node, i] = prediction.values[k]
+            k += 1
+    return status
+
+
+@kernel
+def _set_body(plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int) -> int:
+    """Set a body's inputs: the quadratic through an element's three nodes; FMI status."""
+    first, end = plan.input_first[p], plan.input_first[p + 1]
+    start, degree = plan.set_first[p], plan.degree[p]
+    at = start
+    for node in range(degree + 1):
+        c = node / degree if degree > 0 else 0.5
+        # Lagrange weights of the nodes 1/3, 2/3, 1
+        w1 = 4.5 * (c - 2.0 / 3.0) * (c - 1.0)
+        w2 = -9.0 * (c - 1.0 / 3.0) * (c - 1.0)
+        w3 = 4.5 * (c - 1.0 / 3.0) * (c - 2.0 / 3.0)
+        for i in range(first, end):
+            source = plan.input_source[i]
+            if prediction.rate[source] == -2:
+                f = prediction.forces
+                value = w1 * f[1, source] + w2 * f[2, source] + w3 * f[3, source]
+            else:
+                value = signal(history, source, plan.input_fresh[i], 2, known, c)
+            plan.set_value[at] = value
+            at += 1
+    return _exchange(
+        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
+    )
+
+
+@kernel
+def _step_parts(
+    plan: Plan, prediction: Prediction, history: np.ndarray, known: int, t: float, h: float
+) -> int:
+    """Step elements on predicted motions, then bodies on their forces; -1, or who failed."""
+    for p in prediction.elements:
+        if _step_element(plan, prediction, history, p, known, t, h) > _LAST_GOOD:
+            return p
+    for p in prediction.bodies:
+        if _set_body(plan, prediction, history, p, known) > _LAST_GOOD:
+            return p
+    for p in prediction.bodies:
+        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+            return p
+    return -1
+
+
+@kernel
+def _read_parts(
+    plan: Plan, prediction: Prediction, history: np.ndarray, records: np.ndarray, row: int
+) -> int:
+    """Read the outputs of bodies and elements; -1, or who failed."""
+    for group in (prediction.bodies, prediction.elements):
+        for p in group:
+            if get_outputs(plan, history, p, records, row) > _LAST_GOOD:
+                return p
+    return -1
+
+
+@kernel
+def run_predicted(
+    plan: Plan,
+    prediction: Prediction,
+    history: np.ndarray,
+    t0: float,
+    h: float,
+    start: int,
+    count: int,
+    records: np.ndarray,
+    every: int,
+) -> tuple[int, int, int]:
+    """Run `count` macro steps; arguments and result as of `loop.run_stages`."""
+    for n in range(start, start + count):
+        t, known = t0 + n * h, n + 1
+        row = (n + 1) // every if (n + 1) % every == 0 else -1
+        for k in range(history.shape[0] - 1, 0, -1):
+            for i in range(history.shape[1]):
+                history[k, i] = history[k - 1, i]
+        failed = -1
+        if prediction.sources:
+            failed = step_stage(plan, history, 0, 2, known, t, h, records, row)
+        if failed < 0:
+            failed = _step_parts(plan, prediction, history, known, t, h)
+        if failed < 0:
+            failed = _read_parts(plan, prediction, history, records, row)
+        if failed >= 0:
+            return PART_FAILED, n, failed
+        culprit = not_finite(plan, history)
+        if culprit >= 0:
+            return NOT_FINITE, n + 1, culprit
+    return DONE, start + count, -1
