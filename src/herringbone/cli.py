@@ -1,4 +1,4 @@
-"""Command line: list, build, check, run, export."""
+"""Command line: list, build, check, run, chart, export."""
 
 import argparse
 import sys
@@ -73,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
     sub.add_argument("fmu", type=Path)
     _run_options(add("run", _run, "run a system"))
+    _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("export", _export, "export a system as flat .ssp that other masters load")
     sub.add_argument("system")
     sub.add_argument("--scene")
@@ -85,7 +86,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
     sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
-    sub.add_argument("--algorithm", help="NAME or NAME:key=value,..., e.g. jacobi:order=2")
+    sub.add_argument(
+        "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
+    )
     sub.add_argument("--step", type=float, help="communication step size in s")
     sub.add_argument("--t-end", type=float, help="duration in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
@@ -96,6 +99,17 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _chart_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+    sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+    sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
+    sub.add_argument("--t-end", type=float, help="duration of each run in s")
+    sub.add_argument("--fmu", default="python", help="python (default) or in-process")
+    sub.add_argument("-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if none")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -209,6 +223,23 @@ def _check(options: argparse.Namespace) -> int:
         f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
     )
     return 1 if problems else 0
+
+
+def _chart(options: argparse.Namespace) -> int:
+    from herringbone.chart_command import chart  # noqa: PLC0415 (numba: only when something runs)
+
+    _check_writable(options.output or Path("results"))
+    given = {"algorithms": options.algorithm, "steps": options.steps, "t_end": options.t_end}
+    text, outcome = chart(
+        options.system,
+        options.output,
+        as_json=options.json,
+        scene=options.scene,
+        fmu=options.fmu,
+        **{name: value for name, value in given.items() if value is not None},
+    )
+    _show(text)
+    return EXIT_CODES[outcome]
 
 
 def _export(options: argparse.Namespace) -> int:
