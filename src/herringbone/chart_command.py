@@ -19,8 +19,8 @@ from herringbone.analysis.step_ladder import (
 )
 from herringbone.analysis.work_precision import Reach, WorkPrecision
 from herringbone.api import FmuKind, load_scene, load_system, open_parts
-from herringbone.core import HerringboneError, OutcomeKind
-from herringbone.cosim.algorithms import parse_algorithm
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.cosim.algorithms import AUTO, parse_algorithm
 from herringbone.start import started
 
 LEVELS = (1e-2, 1e-3)
@@ -52,7 +52,11 @@ def measure(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    chosen = [parse_algorithm(a) for a in algorithms] or list(charted_algorithms())
+    if AUTO in algorithms:
+        raise ParameterError(
+            f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
+        )
+    chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or charted_algorithms()
     structure, folder = load_system(system)
     options = load_scene(folder, scene)
     options = replace(options, t_end=options.t_end if t_end is None else t_end)

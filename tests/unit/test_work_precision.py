@@ -9,7 +9,7 @@ import pytest
 
 from herringbone.analysis.step_ladder import FEWEST_STEPS, charted_algorithms, ladder
 from herringbone.analysis.work_precision import Point, WorkPrecision
-from herringbone.chart_command import table
+from herringbone.chart_command import measure, table
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, parse_algorithm
 from herringbone.plotting.work_precision import chart_picture, variant_labels, write_chart
@@ -91,7 +91,14 @@ def test_ladder_leaves_out_short_runs():
     found = ladder((1e-5, 2e-4, 1e-6, 1e-4), 0.005)
     assert [g.count for g in found] == [5000, 500, FEWEST_STEPS]
     with pytest.raises(ParameterError, match="longer t_end"):
-        ladder((1e-3,), 0.005)
+        ladder((1e-3, 1.0), 0.005)
+    with pytest.raises(ParameterError, match="positive"):
+        ladder((1e-5, -1e-5), 0.005)
+
+
+def test_automatic_choice_is_no_algorithm_to_compare():
+    with pytest.raises(ParameterError, match="auto is a choice"):
+        measure("test_rig", algorithms=["auto"])
 
 
 def test_every_algorithm_is_charted():

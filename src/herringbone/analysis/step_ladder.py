@@ -47,8 +47,10 @@ def ladder(steps: Sequence[float], t_end: float) -> list[Grid]:
     Raises:
         ParameterError: a step is not positive and finite, or none is left.
     """
-    grids = {g.count: g for g in (make_grid(t_end, step, step) for step in steps)}
-    found = sorted((g for g in grids.values() if g.count >= FEWEST_STEPS), key=lambda g: g.step)
+    long = [step for step in steps if step > t_end > 0.0]
+    grids = [make_grid(t_end, step, step) for step in steps if step not in long]
+    by_count = {g.count: g for g in grids if g.count >= FEWEST_STEPS}
+    found = sorted(by_count.values(), key=lambda g: g.step)
     if not found:
         raise ParameterError(
             f"no step makes {FEWEST_STEPS} macro steps in t_end = {t_end:g} s; "
@@ -98,7 +100,7 @@ class Reference:
         found = {}
         for group, columns in self.groups.items():
             values = recording.values[:, [recording.names.index(c) for c in columns]]
-            twin = self._values[np.ix_(rows, [self._columns.index(c) for c in columns])]
+            twin = self._values[rows][:, [self._columns.index(c) for c in columns]]
             with np.errstate(over="ignore", invalid="ignore"):
                 error = relative_error(values, twin)
             found[group] = error if math.isfinite(error) else math.inf
