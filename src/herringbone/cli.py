@@ -1,10 +1,11 @@
-"""Command line: list, build, check, run, chart, export."""
+"""Command line: list, build, check, run, chart, stability, export."""
 
 import argparse
 import sys
 import tempfile
 import traceback
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NoReturn
 
@@ -74,6 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("fmu", type=Path)
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
+    _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
     sub = add("export", _export, "export a system as flat .ssp that other masters load")
     sub.add_argument("system")
     sub.add_argument("--scene")
@@ -110,6 +112,16 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     sub.add_argument("--fmu", default="python", help="python (default) or in-process")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if none")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _stability_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+    sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+    sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
+    sub.add_argument("--set", action="append", default=[], metavar=_SET)
+    sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -240,6 +252,36 @@ def _chart(options: argparse.Namespace) -> int:
     )
     _show(text)
     return EXIT_CODES[outcome]
+
+
+def _stability(options: argparse.Namespace) -> int:
+    from herringbone import api, start  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.analysis import stability_report as report  # noqa: PLC0415
+    from herringbone.analysis.stability import stability  # noqa: PLC0415
+    from herringbone.cosim.algorithms import parse_algorithm  # noqa: PLC0415
+    from herringbone.scenes import Start  # noqa: PLC0415
+
+    if options.output:
+        _check_writable(options.output)
+    algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
+    structure, folder = api.load_system(options.system)
+    scene = api.load_scene(folder, options.scene)
+    values = {**scene.values, **_values(options.set)}
+    scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
+    structure, _ = start.started(structure, scene)
+    with tqdm(unit=" matrices", disable=None) as bar:
+
+        def show(algorithm: str) -> None:
+            bar.set_description(algorithm, refresh=False)
+            bar.update()
+
+        found = stability(
+            structure, scene.name, algorithms, tolerance=options.tolerance, progress=show
+        )
+    if options.output:
+        report.write_stability(found, options.output)
+    _show(report.stability_json(found) if options.json else report.stability_text(found))
+    return 0
 
 
 def _export(options: argparse.Namespace) -> int:

@@ -1,0 +1,253 @@
+"""Stable macro steps of every algorithm, known before the run.
+
+The spectral radius of the amplification matrix is scanned over the step: stability is not monotone
+in it, there are unstable bands below stable steps, so that a bisection alone would jump over them.
+Narrower bands than the spacing of the scan can be missed.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis.bonds import Bond, bond_table, highest_frequency
+from herringbone.analysis.linear_parts import MeshStiffness, linear_network
+from herringbone.analysis.recommendation import Recommendation, recommend
+from herringbone.components.gear_mesh import GEAR_MESH
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
+from herringbone.cosim.system import System
+
+SMALLEST_STEP, LARGEST_STEP = 1e-6, 2e-3
+"""Range of the scan [s]."""
+_COARSE, _FINE = 1.10, 1.025
+_BELOW, _ABOVE = 0.5, 3.0
+_CLEARLY, _FOR_LONG = 1.2, 1.3
+_RESOLUTION = 1.005
+_NEAR = 0.85
+
+Progress = Callable[[str], None]
+"""Called after every matrix, with the name of the algorithm."""
+
+
+@dataclass(frozen=True)
+class StepLimits:
+    """Unstable macro steps of one algorithm.
+
+    Attributes:
+        algorithm: what it is called on the command line.
+        unstable_bands: at mean mesh stiffness, (from, to) [s]; `to` is infinite for the last one,
+            above which everything that was examined is unstable.
+        mesh_stiffness: first unstable step [s] at minimum, mean and maximum; infinite if none.
+        frequency: of the motion that grows at the mean's limit [Hz].
+    """
+
+    algorithm: str
+    unstable_bands: tuple[tuple[float, float], ...]
+    mesh_stiffness: Mapping[str, float]
+    frequency: float = np.nan
+
+    @property
+    def limit(self) -> float:
+        """Step [s] below which everything examined is stable, at all stiffnesses."""
+        return min(self.mesh_stiffness.values())
+
+
+@dataclass(frozen=True)
+class Stability:
+    """What is known of a system's coupling before a run.
+
+    Attributes:
+        system, scene: names.
+        limits: by algorithm.
+        bonds: where bodies act on each other through an element.
+        highest_frequency: of all bonds together [rad/s].
+        tolerance: relative error for which the step is recommended.
+        recommended: algorithm and step, None if no rule is known for the algorithms.
+        notes: algorithms that this system cannot have.
+    """
+
+    system: str
+    scene: str
+    limits: tuple[StepLimits, ...]
+    bonds: tuple[Bond, ...]
+    highest_frequency: float
+    tolerance: float
+    recommended: Recommendation | None
+    notes: tuple[str, ...] = field(default=())
+
+
+def default_algorithms() -> tuple[Algorithm, ...]:
+    """Jacobi of all orders, and every other algorithm with its default options."""
+    others = (kind() for name, kind in ALGORITHMS.items() if name != Jacobi.name)
+    return (Jacobi(0), Jacobi(1), Jacobi(2), *others)
+
+
+def stability(
+    system: System,
+    scene: str = "",
+    algorithms: Sequence[Algorithm] | None = None,
+    *,
+    tolerance: float = 1e-3,
+    progress: Progress | None = None,
+) -> Stability:
+    """Stable steps, bonds and a recommended algorithm and step.
+
+    Args:
+        system: of components of this package, at the start values of an equilibrium under load.
+        scene: name, for the report.
+        algorithms: all if not given.
+        tolerance: relative error of bearing forces that is asked for.
+        progress: called after every matrix.
+
+    Raises:
+        StructureError: a part is a foreign FMU.
+        ParameterError: a mesh is open at the start, or the tolerance is not in (0, 1).
+    """
+    if not 0.0 < tolerance < 1.0:
+        raise ParameterError(f"tolerance = {tolerance:g}: it must lie between 0 and 1")
+    network, instances = linear_network(system)
+    bonds = bond_table(network, instances)
+    highest = highest_frequency(network, instances)
+    limits, chosen, notes = [], [], []
+    for algorithm in algorithms or default_algorithms():
+        try:
+            limits.append(step_limits(system, algorithm, progress))
+            chosen.append(algorithm)
+        except ParameterError as error:
+            notes.append(f"{algorithm}: {error}")
+    by_limit = [(a, found.limit) for a, found in zip(chosen, limits, strict=True)]
+    recommended = recommend(by_limit, highest, tolerance)
+    return Stability(
+        system.name, scene, tuple(limits), bonds, highest, tolerance, recommended, tuple(notes)
+    )
+
+
+def step_limits(
+    system: System, algorithm: Algorithm, progress: Progress | None = None
+) -> StepLimits:
+    """Unstable steps of an algorithm at mean mesh stiffness, and its limit at all stiffnesses."""
+
+    def unstable(stiffness: MeshStiffness) -> tuple[Amplification, Callable[[float], float]]:
+        amplification = Amplification(*linear_network(system, stiffness), algorithm)
+
+        def radius(step: float) -> float:
+            if progress:
+                progress(str(algorithm))
+            return amplification.radius(step)
+
+        return amplification, radius
+
+    amplification, radius = unstable(MeshStiffness.MEAN)
+    bands = unstable_bands(radius)
+    first = bands[0][0] if bands else np.inf
+    found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
+    frequency = amplification.growth(1.01 * first).frequency if bands else np.nan
+    has_mesh = any(part.component == GEAR_MESH.name for part in system.parts)
+    for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
+        if has_mesh and bands:
+            found[extreme.value] = _near(unstable(extreme)[1], first)
+    return StepLimits(str(algorithm), bands, found, frequency)
+
+
+def unstable_bands(
+    radius: Callable[[float], float],
+    smallest: float = SMALLEST_STEP,
+    largest: float = LARGEST_STEP,
+) -> tuple[tuple[float, float], ...]:
+    """Unstable bands (from, to) [s] of a spectral radius over the steps of a range [s]."""
+    coarse = _find_unstable(radius, smallest, _COARSE, largest)
+    if coarse is None:
+        return ()
+    # The smallest step may be unstable itself: then nothing is looked for below.
+    step = max(smallest, _BELOW * coarse)
+    bands: list[tuple[float, float]] = []
+    since: float | None = None
+    before, end = step / _FINE, min(_ABOVE * coarse, largest)
+    while step <= end:
+        value = _safe(radius, step)
+        bad = value > 1.0 + GROWTH
+        if bad and since is None:
+            since = step if step == smallest else _crossing(radius, before, step)
+        elif not bad and since is not None:
+            bands.append((since, _crossing(radius, before, step)))
+            since = None
+        if since is not None and value > _CLEARLY and step > _FOR_LONG * since:
+            break
+        before, step = step, step * _FINE
+    if since is not None:
+        bands.append((since, np.inf))
+    return tuple(bands)
+
+
+def _safe(radius: Callable[[float], float], step: float) -> float:
+    """Spectral radius; infinite where a part fails within one step."""
+    try:
+        return radius(step)
+    except ParameterError:
+        raise
+    except HerringboneError:
+        return np.inf
+
+
+def _unstable(radius: Callable[[float], float], step: float) -> bool:
+    return _safe(radius, step) > 1.0 + GROWTH
+
+
+def _find_unstable(
+    radius: Callable[[float], float], step: float, factor: float, largest: float = LARGEST_STEP
+) -> float | None:
+    """First unstable step of a geometric sequence."""
+    while step <= largest:
+        if _unstable(radius, step):
+            return step
+        step *= factor
+    return None
+
+
+def _crossing(radius: Callable[[float], float], low: float, high: float) -> float:
+    """Step between two of which one is stable, by bisection; the stable side of the bracket."""
+    low_bad = _unstable(radius, low)
+    while high > _RESOLUTION * low:
+        middle = float(np.sqrt(low * high))
+        if _unstable(radius, middle) == low_bad:
+            low = middle
+        else:
+            high = middle
+    return high if low_bad else low
+
+
+def _near(radius: Callable[[float], float], limit: float) -> float:
+    """First unstable step near a known one [s]."""
+    low = _NEAR * limit
+    while low > SMALLEST_STEP and _unstable(radius, low):
+        low *= _NEAR
+    high = _find_unstable(radius, low * _FINE, _FINE)
+    return np.inf if high is None else _crossing(radius, high / _FINE, high)
+
+
+def warn_if_unstable(system: System, algorithm: Algorithm, step: float) -> str | None:
+    """One line if an algorithm is unstable at a step, or None; one matrix at mean stiffness.
+
+    Args:
+        system: as it is started.
+        algorithm: coupling algorithm.
+        step: macro step [s].
+
+    Returns None also where nothing can be said: foreign parts, or a start with an open mesh.
+    """
+    if system.foreign_parts:
+        return None
+    try:
+        amplification = Amplification(*linear_network(system), algorithm)
+        growth = amplification.growth(step)
+    except HerringboneError:
+        return None
+    if growth.radius <= 1.0 + GROWTH:
+        return None
+    return (
+        f"{algorithm} is unstable at a step of {step:g} s: a motion at {growth.frequency:.0f} Hz "
+        f"grows by {100.0 * (growth.radius - 1.0):.3g} % per step; 'herringbone stability' shows "
+        "the limits"
+    )

@@ -1,0 +1,177 @@
+"""Predicted stability limits against long runs of the same linear parts, and against theory.
+
+A frozen gearbox is affine while its meshes stay closed, so that a run at a step just below the
+predicted limit must decay, and one just above it must grow, whatever the prediction is made of.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis.linear_parts import MeshStiffness, linear_network
+from herringbone.analysis.stability import step_limits, unstable_bands, warn_if_unstable
+from herringbone.components.in_process import InProcessPart
+from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.system import PartSpec, System
+from herringbone.cosim.system_file import find_system, read_system
+from herringbone.scenes import find_scene, read_scene
+from herringbone.start import started
+
+SEAT_VELOCITY = "modal_housing."
+INERTIA = (0.01, 0.03)
+COUPLING_FREQUENCY = 3000.0
+
+RANGES = {
+    Jacobi(0): (12e-6, 30e-6),
+    Jacobi(1): (25e-6, 50e-6),
+    Jacobi(2): (30e-6, 55e-6),
+    GaussSeidel(2): (25e-6, 50e-6),
+    FixedPoint(): (100e-6, 160e-6),
+    LI(3): (540e-6, 720e-6),
+}
+"""Where the limits are looked for, so that the tests are short."""
+STEPS = {Jacobi(0): 60000, Jacobi(1): 8000, LI(3): 800}
+"""Macro steps of a run, so that what grows stays small against the mesh deflection; else 2000."""
+
+PUBLISHED = {
+    Jacobi(0): (15e-6, 20e-6),
+    Jacobi(1): (37e-6, 41e-6),
+    Jacobi(2): (42.8e-6, 44.2e-6),
+    LI(3): (540e-6, 720e-6),
+}
+"""Limits of a dense prototype of the same gearbox, closed and open mesh, rounded outwards."""
+
+
+@cache
+def rig():
+    scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
+    return started(read_system("test_rig"), scene)[0]
+
+
+@cache
+def predicted(algorithm):
+    amplification = Amplification(*linear_network(rig()), algorithm)
+    return unstable_bands(amplification.radius, *RANGES[algorithm])[0][0]
+
+
+def growth(algorithm, step, count):
+    """Growth per macro step of a linear run's fast motions, between its middle and its end."""
+    _, instances = linear_network(rig())
+    gear = next(i for i in instances if i.name == "gear_mesh")
+    for name, kick in (("y_1", 2e-6), ("y_2", -1e-6), ("y_3", 1e-6), ("z_3", 2e-6), ("z_4", 1e-6)):
+        gear.set(f"der({name})", gear[f"der({name})"] + kick)
+    parts = [InProcessPart(i) for i in instances]
+    run = simulate(rig(), parts, algorithm, make_grid(count * step, step, step))
+    assert run.outcome.completed
+    seats = [i for i, n in enumerate(run.names) if n.startswith(SEAT_VELOCITY) and ".v_" in n]
+    fast = np.diff(run.values[:, seats], n=2, axis=0)
+    window = count // 10
+    middle, end = fast[-window - count // 2 : -count // 2], fast[-window:]
+    return float(np.log(np.linalg.norm(end) / np.linalg.norm(middle)) / (count // 2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("algorithm", RANGES, ids=str)
+def test_linear_run_changes_sides_at_the_predicted_limit(algorithm):
+    limit, count = predicted(algorithm), STEPS.get(algorithm, 2000)
+    assert growth(algorithm, 0.98 * limit, count) < 0.0
+    assert growth(algorithm, 1.02 * limit, count) > 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("algorithm", PUBLISHED, ids=str)
+def test_limits_are_those_of_the_prototype(algorithm):
+    low, high = PUBLISHED[algorithm]
+    assert low < predicted(algorithm) < high
+
+
+def two_rotors(zeta):
+    """Two free rotors and a coupling: the two-mass problem, of a known local frequency."""
+    reduced = INERTIA[0] * INERTIA[1] / sum(INERTIA)
+    coupling = {
+        "stiffness": reduced * COUPLING_FREQUENCY**2,
+        "damping": 2.0 * zeta * reduced * COUPLING_FREQUENCY,
+    }
+    rotors = [
+        PartSpec(name, component="load_motor", values={"inertia": inertia})
+        for name, inertia in zip(("left", "right"), INERTIA, strict=True)
+    ]
+    return System(
+        "two_rotors",
+        "",
+        (*rotors, PartSpec("coupling", component="shaft_coupling", values=coupling)),
+        (("left.flange", "coupling.flange_a"), ("right.flange", "coupling.flange_b")),
+    )
+
+
+@pytest.mark.parametrize("zeta", [0.01, 0.05])
+def test_two_rotors_against_the_analytic_limit(zeta):
+    """Jacobi with held forces: h w < 4 zeta, in the limit of small zeta."""
+    limit = step_limits(two_rotors(zeta), Jacobi(0)).limit
+    assert limit * COUPLING_FREQUENCY == pytest.approx(4.0 * zeta, rel=0.01)
+
+
+def test_parallel_schedule_costs_two_thirds_of_the_limit():
+    zeta = 0.02
+    limit = step_limits(two_rotors(zeta), Jacobi(0, "parallel")).limit
+    assert limit * COUPLING_FREQUENCY == pytest.approx(4.0 / 3.0 * zeta, rel=0.02)
+
+
+def test_quadratic_extrapolation_hardly_depends_on_damping():
+    """Two-mass limits 0.95 undamped to 1.10 at 10 % (spectral radius of exact subsystems)."""
+    for zeta, expected in ((0.005, 0.95), (0.1, 1.10)):
+        limit = step_limits(two_rotors(zeta), Jacobi(2)).limit
+        assert limit * COUPLING_FREQUENCY == pytest.approx(expected, abs=0.05)
+
+
+def test_measured_matrix_leaves_the_parts_as_they_were():
+    network, instances = linear_network(rig())
+    before = [i.block.copy() for i in instances]
+    amplification = Amplification(network, instances, LI(2))
+    first = amplification.matrix(1e-4)
+    mutable = [i.component.declaration.mutable_size for i in instances]
+    for instance, block, size in zip(instances, before, mutable, strict=True):
+        assert np.array_equal(instance.block[:size], block[:size])
+    assert np.array_equal(amplification.matrix(1e-4), first)
+
+
+def test_map_is_affine():
+    """Differences twenty times larger give the same matrix, in units of the differences."""
+    amplification = Amplification(*linear_network(rig()), Jacobi(2))
+    small = amplification.matrix(2e-5)
+    scale = amplification._change[amplification._used]
+    amplification._change = 20.0 * amplification._change
+    deviation = (amplification.matrix(2e-5) - small) * scale[None, :] / scale[:, None]
+    assert np.abs(deviation).max() < 1e-7
+
+
+def test_stiffer_mesh_has_a_higher_tangent():
+    tangents = []
+    for stiffness in MeshStiffness:
+        _, instances = linear_network(rig(), stiffness)
+        gear = next(i for i in instances if i.name == "gear_mesh")
+        kernels, start = gear.component.kernels, gear["mesh_left.force"]
+        gear.set("approach", gear["approach"] + 1e-8)
+        kernels.out(gear.block, 0.0)
+        tangents.append((gear["mesh_left.force"] - start) / 1e-8)
+    assert tangents[0] < tangents[1] < tangents[2]
+
+
+def test_bands_of_a_known_radius():
+    """An unstable island below the last limit is found, and its edges to 0.5 %."""
+
+    def radius(step):
+        bad = 20e-6 < step < 24e-6 or step > 31e-6
+        return 1.1 if bad else 1.0 + 0.5 * GROWTH
+
+    bands = unstable_bands(radius)
+    assert np.ravel(bands)[:3] == pytest.approx([20e-6, 24e-6, 31e-6], rel=0.006)
+    assert bands[-1][1] == np.inf
+
+
+def test_warning_of_a_run():
+    assert warn_if_unstable(rig(), Jacobi(2), 20e-6) is None
+    assert "unstable at a step of 5e-05 s" in (warn_if_unstable(rig(), Jacobi(2), 50e-6) or "")
