@@ -28,6 +28,7 @@ from herringbone.ssp_import import load_ssp, ssp_scene
 from herringbone.start import started
 
 FmuKind = Literal["python", "in-process"]
+_TINY = 1e-12  # stands for a step [s] that is not yet known
 
 
 def load_system(reference: str | Path) -> tuple[System, Path]:
@@ -99,7 +100,7 @@ def run(
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = _with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = _algorithm(algorithm)
-    make_grid(chosen.t_end, chosen.t_end if step is None else step, chosen.record_step)
+    make_grid(chosen.t_end, _TINY if step is None else step, chosen.record_step)
     for instance, file in (replace_parts or {}).items():
         structure = structure.with_fmu(instance, Path(file))
     structure, notes = started(structure, chosen)

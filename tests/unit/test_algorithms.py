@@ -30,7 +30,7 @@ def test_parse(text, expected):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "there is no algorithm ''; there are: jacobi, gauss_seidel"),
+        ("", "there is no algorithm ''; there are: auto, jacobi, gauss_seidel"),
         ("newton", "there is no algorithm 'newton'; there are: "),
         ("Jacobi", "there is no algorithm 'Jacobi'"),
         ("jacobi:degree=2", "jacobi has no option 'degree'; it has: order, schedule"),

@@ -131,7 +131,7 @@ def test_foreign_part_makes_a_ramp_with_a_note(rig, loaded, tmp_path):
     ],
 )
 def test_any_part_may_be_foreign(rig, loaded, tmp_path, foreign):
-    """With a shaft end missing there is no steady rotation, and a note says that it starts at rest."""
+    """With a shaft end missing there is no steady rotation: a note says that it starts at rest."""
     found, notes = started(rig.with_fmu(foreign, tmp_path / "strange.fmu"), loaded)
     assert notes[0].startswith(f"{foreign}: foreign")
     assert ("starts from rest" in notes[-1]) == (foreign in {"load_motor", "gear_mesh"})
@@ -148,5 +148,5 @@ def test_foreign_part_at_rest_needs_no_note(rig, loaded, tmp_path):
 def test_no_equilibrium_says_what_to_do():
     """A gearbox that is driven and not braked speeds up for ever."""
     system = read_system("gearbox").with_values({"gear_mesh.pinion.tau": 200.0})
-    with pytest.raises(HerringboneError, match="gear_mesh.der.*--start rest"):
+    with pytest.raises(HerringboneError, match=r"gear_mesh\.der.*--start rest"):
         started(system, Scene("s"))

@@ -44,9 +44,23 @@ def columns():
     }
 
 
+JACOBI = ("--algorithm", "jacobi:order=2")
+
+
+def test_default_algorithm(tmp_path, capsys):
+    """All our parts can repeat a step: li with one correction is two passes and one rollback."""
+    found = run(capsys, tmp_path, "--fmu", "in-process")
+    assert found["algorithm"].startswith("li:degree=3")
+    assert found["macro_steps"] == 125
+    jacobian = 1 + 3 * 24  # one pass per unknown: 24 forces at 3 nodes
+    assert found["passes"]["gear_mesh"] == 2 * 125 + jacobian
+    assert found["rollbacks"] == 125 + jacobian
+    assert found["notes"][0].startswith("auto: li:degree=3")
+
+
 @pytest.mark.parametrize("fmu", ["python", "in-process"])
 def test_json(tmp_path, capsys, fmu):
-    found = run(capsys, tmp_path, "--fmu", fmu)
+    found = run(capsys, tmp_path, "--fmu", fmu, *JACOBI)
     assert set(found) >= KEYS
     assert "error" not in found
     assert (found["outcome"], found["scene"], found["model"]) == ("completed", "loaded", PARTS)
@@ -63,7 +77,7 @@ def test_json(tmp_path, capsys, fmu):
 
 def test_reference(tmp_path, capsys):
     """At 10 us, order 2, the README's 0.17 % of bearing force over 20 ms; 1 % is a bound."""
-    found = run(capsys, tmp_path, "--reference", "--fmu", "in-process")
+    found = run(capsys, tmp_path, "--reference", "--fmu", "in-process", *JACOBI)
     assert set(found["error"]) == {"bearing_force", "seat_velocity"}
     assert all(0.0 < error < 0.01 for error in found["error"].values())
     assert found["record_step"] == 2e-5
@@ -71,7 +85,7 @@ def test_reference(tmp_path, capsys):
 
 
 def test_results_csv(tmp_path, capsys):
-    run(capsys, tmp_path, "--parquet", "--fmu", "in-process")
+    run(capsys, tmp_path, "--parquet", "--fmu", "in-process", *JACOBI)
     lines = (tmp_path / "results.csv").read_text().splitlines()
     comments = [line for line in lines if line.startswith("#")]
     assert comments == lines[:1]

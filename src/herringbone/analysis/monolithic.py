@@ -5,12 +5,7 @@ Equations I, 1993, section II.5) at a tolerance far below coupling errors, resta
 breakpoints that the components declare.
 """
 
-import hashlib
-import importlib.util
-import os
-import sys
 from collections.abc import Callable, Sequence
-from types import ModuleType
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -19,7 +14,7 @@ from herringbone.analysis.twin_source import TwinLayout, twin_layout, twin_sourc
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
-from herringbone.core.paths import cache_folder
+from herringbone.core.generated import load_generated
 from herringbone.cosim.network import build_network
 from herringbone.cosim.system import System
 
@@ -66,7 +61,7 @@ class Twin:
         self.network = build_network(system, [InProcessPart(i) for i in self.instances])
         self.layout: TwinLayout = twin_layout(self.instances)
         source = twin_source(system.name, self.network, self.instances, self.layout)
-        self._module = _load(source)
+        self._module = load_generated("twin", source)
         self.block = np.concatenate([i.block for i in self.instances])
 
     @property
@@ -166,21 +161,3 @@ class Twin:
             if progress:
                 progress(solver.t, float(times[-1]))
         return solver.y
-
-
-def _load(source: str) -> ModuleType:
-    """Import a generated module from the cache folder, so that its compiled code is cached too."""
-    digest = hashlib.sha256(source.encode()).hexdigest()[:16]
-    name = f"herringbone_twin_{digest}"
-    if name in sys.modules:
-        return sys.modules[name]
-    file = cache_folder("twins") / f"{name}.py"
-    if not file.is_file():
-        draft = file.with_suffix(f".{os.getpid()}.tmp")  # no other process imports half of it
-        draft.write_text(source, encoding="utf-8")
-        draft.replace(file)
-    spec = importlib.util.spec_from_file_location(name, file)
-    module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]
-    sys.modules[name] = module
-    spec.loader.exec_module(module)  # type: ignore[union-attr]
-    return module

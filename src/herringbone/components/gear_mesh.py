@@ -209,7 +209,7 @@ def _mesh_parameters() -> list[Variable]:
         p("pinion_axial_drag", "N.s/m", "axial drag of each pinion half against ground", 50.0,
           minimum=0),
         p("drag_torque", "N.m", "drag torque on the pinion", 0.0, minimum=0),
-        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=3e-5),
+        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4),
     ]  # fmt: skip
 
 

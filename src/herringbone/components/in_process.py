@@ -9,23 +9,38 @@ import numpy as np
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
 from herringbone.core.declaration import Declaration, node_name
+from herringbone.core.generated import load_generated
 from herringbone.core.part import Addresses, PartVariable
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality
 from herringbone.kernels import fmi_calls
 
+_DO_STEP = '''"""Address of fmi2DoStep of {name}; generated, not to be edited."""
+
+from numba import carray, types
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.kernels.fmi_calls import DISCARD, DO_STEP, OK
+from herringbone.kernels.jit import c_function
+
+step = COMPONENTS["{name}"].kernels.step
+
+
+@c_function(DO_STEP)
+def do_step(memory, time, step_size, no_set_before):
+    whole = carray(memory, {block} + {work})
+    if step(whole[:{block}], whole[{block}:], time, step_size) == OK:
+        return types.int32(OK)
+    return types.int32(DISCARD)
+'''
+
 
 @cache
 def _do_step_address(component: str) -> int:
+    """Address of a component's fmi2DoStep; a failed step is a discarded one."""
     declaration = COMPONENTS[component].declaration
-    function = fmi_calls.do_step(
-        COMPONENTS[component].kernels.step, declaration.size, max(declaration.work, 1)
-    )
-    _keep_alive.append(function)
-    return function.address
-
-
-_keep_alive: list[object] = []
+    source = _DO_STEP.format(name=component, block=declaration.size, work=max(declaration.work, 1))
+    return load_generated(f"step_{component}", source).do_step.address
 
 
 @cache

@@ -14,6 +14,8 @@ from herringbone.kernels.jit import kernel
 
 DONE, PART_FAILED, NOT_FINITE = 0, 1, 2
 """Status of a chunk of macro steps."""
+BOUND = 1e30
+"""Signals beyond this, in SI units, have diverged."""
 _LAST_GOOD = 1  # fmi2Warning
 _REAL, _REFERENCE = 8, 4
 
@@ -141,10 +143,10 @@ def step_stage(
 
 @kernel
 def not_finite(plan: Plan, history: np.ndarray) -> int:
-    """Part whose newest outputs are NaN or infinite, or -1."""
+    """Part whose newest outputs are NaN, infinite or beyond BOUND, or -1."""
     for p in range(plan.component.size):
         for i in range(plan.output_first[p], plan.output_first[p + 1]):
-            if history[0, i] - history[0, i] != 0.0:
+            if not abs(history[0, i]) < BOUND:
                 return p
     return -1
 

@@ -12,7 +12,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.loop import DONE, NOT_FINITE, get_all
+from herringbone.cosim.loop import BOUND, DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
 from herringbone.cosim.plan import HISTORY, record_names
 from herringbone.cosim.system import System
@@ -200,38 +200,39 @@ class _Run:
             return Outcome(kind, reached, message=message)
         part = self.network.parts[culprit]
         said = "; ".join(part.messages())
-        where = self._not_finite(culprit)
+        where, value = self._diverged(culprit)
         if status == NOT_FINITE or where:
             where = where or part.name
+            how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
             message = (
-                f"{where} is not finite at {reached:g} s; the coupling or the model is unstable: "
+                f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
                 f"use a step below {self.grid.step:g} s or an algorithm with a higher limit"
             )
             return Outcome(OutcomeKind.DIVERGED, reached, where, message)
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
 
-    def _not_finite(self, culprit: int) -> str:
-        """The first input or output of a part that is not finite, or the output that feeds it."""
+    def _diverged(self, culprit: int) -> tuple[str, float]:
+        """The first input or output of a part that has diverged, or the output that feeds it."""
         parts = self.network.parts
         part = parts[culprit]
         names = [
             n for n, v in part.variables.items() if v.causality in {"output", "input"} and v.is_real
         ]
         try:
-            values = part.get(names)
-            bad = next((n for n, x in zip(names, values, strict=True) if not math.isfinite(x)), "")
+            found = zip(names, part.get(names), strict=True)
+            bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
             for c in self.network.inputs(culprit):
-                if c.input == bad and not math.isfinite(parts[c.source].get([c.output])[0]):
-                    return f"{parts[c.source].name}.{c.output}"
+                if c.input == bad and not abs(parts[c.source].get([c.output])[0]) < BOUND:
+                    return f"{parts[c.source].name}.{c.output}", value
         except HerringboneError:
-            return ""
-        return f"{part.name}.{bad}" if bad else ""
+            return "", 0.0
+        return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         rows = done // self.grid.every + 1
         if outcome.kind in {OutcomeKind.DIVERGED, OutcomeKind.PART_FAILED}:
-            rows = int(np.isfinite(self.records[:rows]).all(axis=1).cumprod().sum())
+            rows = int((np.abs(self.records[:rows]) < BOUND).all(axis=1).cumprod().sum())
         record_step = self.grid.every * self.grid.step
         return Recording(
             np.arange(rows) * record_step,

@@ -5,10 +5,7 @@ as it treats an FMU. The component pointer is the memory's address. A saved stat
 number of values that a step may change, then these values; the part provides its memory.
 """
 
-from collections.abc import Callable
-
 from numba import carray, types
-from numba.core.ccallback import CFunc
 
 from herringbone.kernels.jit import c_function, reals_at
 
@@ -18,11 +15,14 @@ _REFERENCES = types.CPointer(types.uint32)
 _EXCHANGE = types.int32(_REALS, _REFERENCES, types.size_t, _REALS)
 _STATE = types.int32(_REALS, types.CPointer(types.int64))
 _RESTORE = types.int32(_REALS, _REALS)
-_DO_STEP = types.int32(_REALS, types.float64, types.float64, types.int32)
+DO_STEP = types.int32(_REALS, types.float64, types.float64, types.int32)
+"""Signature of fmi2DoStep."""
 _UNKNOWN_SIZE = 1  # bounds are not checked
 
 
-def _set_real(memory, references, count, values):  # noqa: ANN001, ANN202 (typed by _EXCHANGE)
+@c_function(_EXCHANGE)
+def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2SetReal."""
     block = carray(memory, _UNKNOWN_SIZE)
     reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
     for i in range(count):
@@ -30,7 +30,9 @@ def _set_real(memory, references, count, values):  # noqa: ANN001, ANN202 (typed
     return types.int32(0)
 
 
-def _get_real(memory, references, count, values):  # noqa: ANN001, ANN202 (typed by _EXCHANGE)
+@c_function(_EXCHANGE)
+def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2GetReal."""
     block = carray(memory, _UNKNOWN_SIZE)
     reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
     for i in range(count):
@@ -38,38 +40,25 @@ def _get_real(memory, references, count, values):  # noqa: ANN001, ANN202 (typed
     return types.int32(0)
 
 
-def _get_state(memory, handle):  # noqa: ANN001, ANN202 (typed by _STATE)
+@c_function(_STATE)
+def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2GetFMUstate, into the memory that the handle already names."""
     block, saved = carray(memory, _UNKNOWN_SIZE), carray(reals_at(handle, 0), _UNKNOWN_SIZE)
     for i in range(int(saved[0])):
         saved[1 + i] = block[i]
     return types.int32(0)
 
 
-def _set_state(memory, saved):  # noqa: ANN001, ANN202 (typed by _RESTORE)
+@c_function(_RESTORE)
+def set_state(memory, saved):  # noqa: ANN001, ANN201 (typed by _RESTORE)
+    """fmi2SetFMUstate."""
     block, saved_values = carray(memory, _UNKNOWN_SIZE), carray(saved, _UNKNOWN_SIZE)
     for i in range(int(saved_values[0])):
         block[i] = saved_values[1 + i]
     return types.int32(0)
 
 
-def _free_state(_memory, _handle):  # noqa: ANN001, ANN202 (typed by _STATE)
+@c_function(_STATE)
+def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2FreeFMUstate; the memory belongs to the part."""
     return types.int32(0)
-
-
-set_real = c_function(_EXCHANGE, _set_real)
-get_real = c_function(_EXCHANGE, _get_real)
-get_state = c_function(_STATE, _get_state)
-set_state = c_function(_RESTORE, _set_state)
-free_state = c_function(_STATE, _free_state)
-
-
-def do_step(step: Callable, block_size: int, work_size: int) -> CFunc:
-    """fmi2DoStep of a component whose kernel is `step`; a failed step is a discarded one."""
-
-    def _do_step(memory, time, step_size, _no_set_before):  # noqa: ANN001, ANN202
-        whole = carray(memory, block_size + work_size)
-        if step(whole[:block_size], whole[block_size:], time, step_size) == OK:
-            return types.int32(OK)
-        return types.int32(DISCARD)
-
-    return c_function(_DO_STEP, _do_step)

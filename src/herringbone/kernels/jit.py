@@ -7,6 +7,7 @@ from typing import ParamSpec, TypeVar
 import numba
 from numba import types
 from numba.core import config
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
 from herringbone.core.paths import cache_folder
@@ -36,9 +37,18 @@ def kernel(function: Callable[P, T]) -> Callable[P, T]:
         return numba.njit(error_model="numpy", fastmath=False, nogil=True, cache=True)(function)
 
 
-def inner(function: Callable[P, T]) -> Callable[P, T]:
-    """Compile a function that is made by a factory; its callers hold the cache."""
-    return numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Compile a function that a factory makes for `owner`; its callers hold the cache.
+
+    The owner becomes part of its name: numba tells closures of one factory apart by a counter of
+    the process, so that callers that different processes cached could share a symbol.
+    """
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        function.__qualname__ = f"{owner}.{function.__qualname__}"
+        return numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+
+    return decorate
 
 
 @intrinsic
@@ -53,6 +63,11 @@ def reals_at(typing_context, addresses, index):  # noqa: ANN001, ANN201
     return signature, generate
 
 
-def c_function(signature: object, function: Callable[P, T]) -> Callable[P, T]:
-    """Compile a function that is called by its C address."""
-    return numba.cfunc(signature, error_model="numpy")(function)
+def c_function(signature: object) -> Callable[[Callable], CFunc]:
+    """Compile a function of a module that is called by its C address, and cache it."""
+
+    def decorate(function: Callable) -> CFunc:
+        with _kernel_cache():
+            return numba.cfunc(signature, error_model="numpy", cache=True)(function)
+
+    return decorate

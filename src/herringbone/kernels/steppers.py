@@ -49,12 +49,12 @@ def body_stepper(
     x0, slope, at = n, 2 * n, 3 * n
     kept = at + STRIDE * inputs
 
-    @inner
+    @inner(declaration.name)
     def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
         for i in range(inputs):
             b[n + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
 
-    @inner
+    @inner(declaration.name)
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
     ) -> int:
@@ -112,7 +112,7 @@ def element_stepper(
     first_input, inputs = declaration.first_input, len(declaration.inputs)
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
 
-    @inner
+    @inner(declaration.name)
     def step(b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int) -> int:
         for i in range(inputs):
             w[i] = b[first_input + i * STRIDE]
@@ -142,7 +142,7 @@ def source_stepper(
     """
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
 
-    @inner
+    @inner(declaration.name)
     def step(b: np.ndarray, t: float, h: float, degree: int) -> int:
         intervals = max(degree, 1)
         for node in range(1, intervals + 1):
