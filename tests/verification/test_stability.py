@@ -11,7 +11,8 @@ import pytest
 
 from herringbone.analysis.amplification import GROWTH, Amplification
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
-from herringbone.analysis.stability import step_limits, unstable_bands, warn_if_unstable
+from herringbone.analysis.stability import step_limits, warn_if_unstable
+from herringbone.analysis.step_scan import unstable_bands
 from herringbone.components.in_process import InProcessPart
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi
 from herringbone.cosim.simulation import make_grid, simulate

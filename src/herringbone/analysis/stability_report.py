@@ -6,7 +6,8 @@ from pathlib import Path
 
 from herringbone.analysis.bonds import Bond
 from herringbone.analysis.linear_parts import MeshStiffness
-from herringbone.analysis.stability import LARGEST_STEP, Stability, StepLimits
+from herringbone.analysis.stability import Stability, StepLimits
+from herringbone.analysis.step_scan import LARGEST_STEP
 
 _MICRO = 1e6
 
