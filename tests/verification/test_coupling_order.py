@@ -152,7 +152,7 @@ def growth(problem, algorithm, p, steps=4000):
 @pytest.mark.parametrize("p", [0.02, 0.2, 1.0])
 def test_order_0_undamped_grows_at_every_step_size(p):
     """Each step multiplies the energy by 1 + p^2 / 2, the determinant."""
-    problem, steps = TwoMass(), 400
+    problem, steps = TwoMass(), 200  # below the bound of a diverged run
     recording = problem.run(Jacobi(order=0), p, steps * p)
     found = energy(problem, recording)
     rate = np.log(found[-1] / found[0]) / steps

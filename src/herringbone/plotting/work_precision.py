@@ -27,6 +27,7 @@ _VARIANTS: tuple[dict[str, Any], ...] = (
 _WIDTH, _ROW, _LEGEND = 12.6, 0.15, 2.95  # inch
 _LOWEST = 1e-7
 _PALETTE = 96
+_PARTS = {"python": "Python FMUs", "in-process": "parts in process, without FMU"}
 Cost = Callable[[Point], float]
 
 
@@ -75,8 +76,8 @@ def chart_picture(found: WorkPrecision) -> Figure:
         f"{1e3 * found.t_end:g} ms\n"
     )
     details = (
-        f"{found.fmu} parts, {found.mode_count} housing modes, shortest micro step "
-        f"{found.micro_step * 1e6:g} µs"
+        f"{_PARTS.get(found.fmu, found.fmu)}, {found.mode_count} housing modes, shortest "
+        f"micro step {found.micro_step * 1e6:g} µs"
     )
     figure = new_figure(title, 1, 2, width=_WIDTH, gap=0.65)
     failing = [a for a in found.algorithms if any(p.failed for p in found.of(a))]
