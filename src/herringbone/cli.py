@@ -120,6 +120,7 @@ def _stability_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
     sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
+    sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
@@ -257,12 +258,14 @@ def _chart(options: argparse.Namespace) -> int:
 def _stability(options: argparse.Namespace) -> int:
     from herringbone import api, start  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.analysis import stability_report as report  # noqa: PLC0415
+    from herringbone.analysis.atlas import atlas  # noqa: PLC0415
     from herringbone.analysis.stability import stability  # noqa: PLC0415
     from herringbone.cosim.algorithms import parse_algorithm  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
-    if options.output:
-        _check_writable(options.output)
+    output = options.output or (Path("results") if options.atlas else None)
+    if output:
+        _check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     structure, folder = api.load_system(options.system)
     scene = api.load_scene(folder, options.scene)
@@ -278,8 +281,13 @@ def _stability(options: argparse.Namespace) -> int:
         found = stability(
             structure, scene.name, algorithms, tolerance=options.tolerance, progress=show
         )
-    if options.output:
-        report.write_stability(found, options.output)
+        panels = atlas(structure, progress=show) if options.atlas else ()
+    if output:
+        report.write_stability(found, output)
+    if panels:
+        from herringbone.plotting.stability_atlas import atlas_picture  # noqa: PLC0415
+
+        atlas_picture(panels).savefig(output / "stability_atlas.png")
     _show(report.stability_json(found) if options.json else report.stability_text(found))
     return 0
 

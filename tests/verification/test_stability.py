@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from herringbone.analysis import atlas
 from herringbone.analysis.amplification import GROWTH, Amplification
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.stability import step_limits, warn_if_unstable
@@ -176,3 +177,11 @@ def test_bands_of_a_known_radius():
 def test_warning_of_a_run():
     assert warn_if_unstable(rig(), Jacobi(2), 20e-6) is None
     assert "unstable at a step of 5e-05 s" in (warn_if_unstable(rig(), Jacobi(2), 50e-6) or "")
+
+
+@pytest.mark.parametrize("zeta", [0.02, 0.1])
+def test_simulated_points_of_the_atlas_lie_on_its_lines(zeta):
+    """The limit of the real loop, by bisection, without any amplification matrix."""
+    system = atlas.two_rotors(zeta, 3.0)
+    predicted = step_limits(system, Jacobi(1)).limit
+    assert atlas.simulated_limit(system, Jacobi(1), predicted) == pytest.approx(predicted, rel=0.02)
