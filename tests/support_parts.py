@@ -21,7 +21,7 @@ from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.simulation import Recording, make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 
-OK, ERROR = 0, 3
+OK, DISCARD, ERROR = 0, 2, 3
 NODES = 4
 DEGREE = "interface_degree"
 
@@ -32,7 +32,11 @@ _DO_STEP = ctypes.CFUNCTYPE(
     ctypes.c_int32, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int32
 )
 
-UNIT = {"s": "m", "v": "m/s", "f": "N"}
+_HANDLE = ctypes.POINTER(ctypes.c_int64)
+_SAVE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, _HANDLE)
+_RESTORE = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_int64)
+
+UNIT = {"s": "m", "v": "m/s", "a": "m/s2", "f": "N"}
 
 
 @dataclass
@@ -59,19 +63,27 @@ class CallbackPart:
     Args:
         name: instance name.
         inputs, outputs: names; outputs depend directly on the inputs if `feedthrough`.
-        nodes: the inputs are polynomial signals.
+        nodes: inputs and outputs are polynomial signals.
+        state: the state can be saved and restored.
         start: start values by name.
+
+    Attributes:
+        steps: calls of doStep.
+        restores: calls of fmi2SetFMUstate.
+        saved: states that were saved and not freed, by handle.
     """
 
     feedthrough = False
 
-    def __init__(self, name, inputs, outputs, *, nodes=True, start=None):
+    def __init__(self, name, inputs, outputs, *, nodes=True, state=True, start=None):
         self.name, self.inputs, self.outputs = name, tuple(inputs), tuple(outputs)
         self.variables: dict[str, PartVariable] = {}
         self.memory: list[float] = []
         for output in self.outputs:
             dependencies = frozenset(self.inputs if self.feedthrough else ())
             self._add(output, "output", dependencies)
+            for node in range(1, NODES + 1) if nodes else ():
+                self._add(f"{output}.node{node}", "output", dependencies)
         for input_ in self.inputs:
             self._add(input_, "input")
             for node in range(1, NODES + 1) if nodes else ():
@@ -80,11 +92,14 @@ class CallbackPart:
             self._add(DEGREE, "parameter")
         for key, value in (start or {}).items():
             self.set(key, value)
-        self.steps = 0
+        self.steps = self.restores = 0
+        self.saved: dict[int, list[float]] = {}
         self.closed = False
-        self._functions = (
+        self._functions = [
             _EXCHANGE(self._set_real), _EXCHANGE(self._get_real), _DO_STEP(self._do_step)
-        )  # fmt: skip
+        ]  # fmt: skip
+        if state:
+            self._functions += [_SAVE(self._save), _RESTORE(self._restore), _SAVE(self._free)]
 
     def _add(self, name, causality, dependencies=None):
         unit = UNIT.get(name.split(".")[1]) if "." in name else "1"
@@ -99,10 +114,20 @@ class CallbackPart:
     def __setitem__(self, name, value):
         self.memory[self.variables[name].reference] = value
 
+    @property
+    def degree(self):
+        """Interface degree, 0 without nodes."""
+        return int(self[DEGREE]) if DEGREE in self.variables else 0
+
     def nodal(self, name):
         """Values of an input at the live nodes of the macro step."""
-        degree = int(self[DEGREE]) if DEGREE in self.variables else 0
-        return [self[name], *(self[f"{name}.node{i}"] for i in range(1, degree + 1))]
+        return [self[name], *(self[f"{name}.node{i}"] for i in range(1, self.degree + 1))]
+
+    def write(self, name, values):
+        """Write an output at nodes 1 ... p; the last value is that at the end."""
+        for i, value in enumerate(values[: self.degree], 1):
+            self[f"{name}.node{i}"] = value
+        self[name] = values[-1]
 
     # -- what a compiled loop calls -------------------------------------------------------------
     def _set_real(self, _component, references, count, values):
@@ -119,6 +144,26 @@ class CallbackPart:
         self.steps += 1
         return self.step(t, h)
 
+    def _save(self, _component, handle):
+        if handle[0] in self.saved:
+            return ERROR  # overwritten before it was freed
+        handle[0] = max(self.saved, default=0) + 1
+        self.saved[handle[0]] = list(self.memory)
+        return OK
+
+    def _restore(self, _component, handle):
+        self.restores += 1
+        self.memory[:] = self.saved[handle]
+        return self.restored() or OK
+
+    def _free(self, _component, handle):
+        del self.saved[handle[0]]
+        handle[0] = 0
+        return OK
+
+    def restored(self):
+        """Called after every restore; may spoil it and return a status."""
+
     def step(self, t, h):
         """Advance, write the outputs; FMI status."""
         raise NotImplementedError
@@ -131,6 +176,10 @@ class CallbackPart:
     def addresses(self):
         """Addresses of the callbacks; they ignore the component pointer."""
         return Addresses(1, *(ctypes.cast(f, ctypes.c_void_p).value for f in self._functions))
+
+    def new_state(self):
+        """0: the part keeps its states."""
+        return 0
 
     def set(self, name, value):
         """Set a variable."""
@@ -170,45 +219,81 @@ class Mass(CallbackPart):
         name: instance name.
         mass: [kg].
         position, velocity: at the start [m, m/s].
-        nodes: the force is a polynomial signal.
+        acceleration: `flange.a` is an output, too.
         misbehave: called with (part, t) after every step; may spoil it and return a status.
+        more: options of `CallbackPart`.
     """
 
-    def __init__(self, name, mass, position=0.0, velocity=0.0, *, nodes=True, misbehave=None):
-        inputs, outputs = ["flange.f", "load.f"], ["flange.s", "flange.v"]
-        super().__init__(name, inputs, outputs, nodes=nodes)
+    def __init__(
+        self, name, mass, position=0.0, velocity=0.0, *, acceleration=False, misbehave=None, **more
+    ):
+        outputs = ["flange.s", "flange.v", *(["flange.a"] if acceleration else [])]
+        super().__init__(name, ["flange.f", "load.f"], outputs, **more)
         self.mass, self.misbehave = mass, misbehave
         self["flange.s"], self["flange.v"] = position, velocity
 
+    def out(self):
+        if "flange.a" in self.variables:
+            self["flange.a"] = (self["flange.f"] + self["load.f"]) / self.mass
+
     def step(self, t, h):
         force = np.add(self.nodal("flange.f"), self.nodal("load.f"))
-        places = np.linspace(0.0, 1.0, len(force)) if len(force) > 1 else np.zeros(1)
-        a = np.linalg.solve(np.vander(places, increasing=True), force)
-        j = np.arange(len(force))
-        self["flange.s"] += h * self["flange.v"]
-        self["flange.s"] += h * h / self.mass * float((a / ((j + 1) * (j + 2))).sum())
-        self["flange.v"] += h / self.mass * float((a / (j + 1)).sum())
+        count = len(force)
+        a = np.linalg.solve(np.vander(np.arange(count) / max(count - 1, 1), increasing=True), force)
+        j = np.arange(count)
+        s, v = self["flange.s"], self["flange.v"]
+        c = np.arange(1, max(count, 2))[:, None] / max(count - 1, 1)
+        once, twice = c ** (j + 1) / (j + 1), c ** (j + 2) / ((j + 1) * (j + 2))
+        self.write("flange.s", s + h * v * c[:, 0] + h * h / self.mass * (twice @ a))
+        self.write("flange.v", v + h / self.mass * (once @ a))
+        if "flange.a" in self.variables:
+            self.write("flange.a", force[min(1, count - 1) :] / self.mass)
         return self.misbehave(self, t + h) or OK if self.misbehave else OK
 
 
+class Forgetful(Mass):
+    """A mass that comes back from every restore a little further: its answer changes.
+
+    Args:
+        offset: by which each restore shifts it [m].
+    """
+
+    def __init__(self, *arguments, offset=1e-3, **more):
+        super().__init__(*arguments, **more)
+        self.offset = offset
+
+    def restored(self):
+        self["flange.s"] += self.offset * self.restores
+
+
 class SpringDamper(CallbackPart):
-    """Massless spring-damper between flanges a and b; forces act on the bodies."""
+    """Massless spring-damper between flanges a and b; forces act on the bodies.
+
+    The stiffness is a number or a function of time.
+    """
 
     feedthrough = True
 
-    def __init__(self, name, stiffness, damping):
+    def __init__(self, name, stiffness, damping, **more):
         motion = [f"{side}.{q}" for side in "ab" for q in "sv"]
-        super().__init__(name, motion, ["a.f", "b.f"])
-        self.stiffness, self.damping = stiffness, damping
+        super().__init__(name, motion, ["a.f", "b.f"], **more)
+        self.stiffness = stiffness if callable(stiffness) else lambda t: stiffness
+        self.damping = damping
+
+    def _write(self, motions, times):
+        a_s, a_v, b_s, b_v = (np.asarray(motion) for motion in motions)
+        k = np.array([self.stiffness(t) for t in times])
+        force = k * (a_s - b_s) + self.damping * (a_v - b_v)
+        self.write("b.f", force)
+        self.write("a.f", -force)
 
     def out(self):
-        s = self["a.s"] - self["b.s"]
-        v = self["a.v"] - self["b.v"]
-        self["b.f"] = self.stiffness * s + self.damping * v
-        self["a.f"] = -self["b.f"]
+        self._write([[self[name]] for name in self.inputs], [0.0])
 
     def step(self, t, h):
-        self.out()
+        degree = self.degree
+        motions = [self.nodal(name)[min(degree, 1) :] for name in self.inputs]
+        self._write(motions, [t + h * i / max(degree, 1) for i in range(1, max(degree, 1) + 1)])
         return OK
 
 
@@ -240,12 +325,19 @@ class TwoMass:
         """Of the damper [N s/m]."""
         return 2.0 * self.zeta * self.reduced * self.w
 
-    def parts(self, *, nodes=True, **more):
-        """New participants; `more` are options of the left mass."""
+    def parts(self, *, nodes=True, acceleration=False, kind=Mass, stiffness=None, **more):
+        """New participants.
+
+        Args:
+            nodes, acceleration: of both masses.
+            kind: class of the left mass; `more` are options of it.
+            stiffness: of the spring, instead of the problem's.
+        """
+        both = {"nodes": nodes, "acceleration": acceleration}
         return [
-            Mass("left", self.mass[0], self.start[0], nodes=nodes, **more),
-            Mass("right", self.mass[1], self.start[1], nodes=nodes),
-            SpringDamper("spring", self.stiffness, self.damping),
+            kind("left", self.mass[0], self.start[0], **(both | more)),
+            Mass("right", self.mass[1], self.start[1], **both),
+            SpringDamper("spring", stiffness or self.stiffness, self.damping),
         ]
 
     def exact(self, times):

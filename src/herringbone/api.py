@@ -10,6 +10,7 @@ import pandas as pd
 
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
+from herringbone.analysis.stability import warn_if_unstable
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import HerringboneError, Instance, ParameterError
@@ -112,6 +113,8 @@ def run(
             coupling, why = choose_algorithm(parts)
             notes = (*notes, why)
         step = coupling.default_step if step is None else step
+        if not structure.foreign_parts and (warning := warn_if_unstable(structure, coupling, step)):
+            notes = (*notes, warning)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
         recording = simulate(structure, parts, coupling, grid, progress)
     finally:

@@ -18,6 +18,7 @@ EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
+    OutcomeKind.COUPLING_FAILED: 1,
     OutcomeKind.INTERRUPTED: 130,
 }
 BAD_INPUT = 2

@@ -181,3 +181,11 @@ def test_phase_shape_between_the_points_of_the_table():
         expected = 1e9 * (1 + 0.05 * np.cos(8 * np.pi * p))
         bound = 2 * 0.05 * (2 * np.pi * 4 / 64) ** 4 / 384
         assert force(p, 0.5 * limit)[0] / (0.5 * limit) == pytest.approx(expected, rel=2 * bound)
+
+
+@pytest.mark.parametrize("phase", [-9.2234e18, -1e19, 1e19, 1e300, np.inf, np.nan])
+def test_a_phase_that_has_diverged_reads_inside_the_table(mesh, phase):
+    """Beyond 2**63 the floor of a phase is undefined; the force is that of some phase."""
+    force, _, _ = mesh
+    inside = [force(p, 2e-6)[0] for p in np.linspace(0.0, 1.0, 65)]
+    assert min(inside) <= force(phase, 2e-6)[0] <= max(inside)

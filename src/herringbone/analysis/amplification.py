@@ -20,7 +20,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.loop import DONE, get_all
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import HISTORY, record_names
+from herringbone.cosim.plan import HISTORY, Chunk, record_names
 
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
@@ -140,9 +140,8 @@ class Amplification:
             self._restore(history)
             if entry is not None:
                 self._perturb(history, entry)
-            status, _, culprit = prepared.run(
-                history, -_START * step, step, _START, 1, self._records, _NEVER
-            )
+            chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
+            status, _, culprit = prepared.run(history, chunk)
             if status != DONE:
                 name = self.network.parts[culprit].name if culprit >= 0 else "the coupling"
                 raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")

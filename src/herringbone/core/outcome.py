@@ -11,6 +11,7 @@ class OutcomeKind(StrEnum):
     INTERRUPTED = "interrupted"
     DIVERGED = "diverged"
     PART_FAILED = "part_failed"
+    COUPLING_FAILED = "coupling_failed"
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ interpolated.
 import numpy as np
 
 from herringbone.cosim.calls import do_step, exchange_reals
-from herringbone.cosim.plan import Plan
+from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
-DONE, PART_FAILED, NOT_FINITE = 0, 1, 2
+DONE, PART_FAILED, NOT_FINITE, COUPLING_FAILED = 0, 1, 2, 4
 """Status of a chunk of macro steps."""
 BOUND = 1e30
 """Signals beyond this, in SI units, have diverged."""
@@ -47,6 +47,35 @@ def signal(history: np.ndarray, index: int, fresh: int, order: int, known: int, 
 
 
 @kernel
+def exchange(
+    plan: Plan, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
+    values: np.ndarray, at: int,
+) -> int:  # fmt: skip
+    """Set or get `count` reals of a part: references from `first`, values from `at` (flat)."""
+    return exchange_reals(
+        function[p],
+        plan.component[p],
+        references.ctypes.data + _REFERENCE * first,
+        count,
+        values.ctypes.data + _REAL * at,
+    )
+
+
+@kernel
+def start_step(history: np.ndarray) -> None:
+    """Row 0 of the history becomes row 1, and so on: a macro step begins."""
+    for row in range(history.shape[0] - 1, 0, -1):
+        for i in range(history.shape[1]):
+            history[row, i] = history[row - 1, i]
+
+
+@kernel
+def record_row(chunk: Chunk, n: int) -> int:
+    """Row of the records that macro step n fills, or -1."""
+    return (n + 1) // chunk.every if (n + 1) % chunk.every == 0 else -1
+
+
+@kernel
 def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) -> int:
     """Set all connected inputs of a part, with nodes; FMI status."""
     first, end = plan.input_first[p], plan.input_first[p + 1]
@@ -61,13 +90,9 @@ def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) 
             place = 1.0 if plan.at_end[p] or (degree == 0 and fresh) else c
             plan.set_value[at] = signal(history, plan.input_source[i], fresh, order, known, place)
             at += 1
-    first = plan.set_first[p]
-    return exchange_reals(
-        plan.set_real[p],
-        plan.component[p],
-        plan.set_reference.ctypes.data + _REFERENCE * first,
-        at - first,
-        plan.set_value.ctypes.data + _REAL * first,
+    start = plan.set_first[p]
+    return exchange(
+        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
     )
 
 
@@ -82,23 +107,14 @@ def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, ro
     if row < 0:
         if first == end:
             return 0
-        return exchange_reals(
-            plan.get_real[p],
-            plan.component[p],
-            plan.output_reference.ctypes.data + _REFERENCE * first,
-            end - first,
-            history.ctypes.data + _REAL * first,
+        return exchange(
+            plan, p, plan.get_real, plan.output_reference, first, end - first, history, first
         )
     at, count = plan.record_first[p], plan.record_first[p + 1] - plan.record_first[p]
     status = 0
     if count > 0:
-        status = exchange_reals(
-            plan.get_real[p],
-            plan.component[p],
-            plan.record_reference.ctypes.data + _REFERENCE * at,
-            count,
-            records.ctypes.data + _REAL * (row * records.shape[1] + at),
-        )
+        place = row * records.shape[1] + at
+        status = exchange(plan, p, plan.get_real, plan.record_reference, at, count, records, place)
     for i in range(first, end):
         history[0, i] = records[row, plan.output_record[i]]
     return status
@@ -152,43 +168,27 @@ def not_finite(plan: Plan, history: np.ndarray) -> int:
 
 
 @kernel
-def run_stages(
-    plan: Plan,
-    history: np.ndarray,
-    order: int,
-    t0: float,
-    h: float,
-    start: int,
-    count: int,
-    records: np.ndarray,
-    every: int,
-) -> tuple[int, int, int]:
-    """Run `count` macro steps, stage after stage: Jacobi and Gauss-Seidel schemes.
-
-    Time is t0 + n h with integer n, so that it does not drift.
+def run_stages(plan: Plan, history: np.ndarray, order: int, chunk: Chunk) -> tuple[int, int, int]:
+    """Run macro steps, stage after stage: Jacobi and Gauss-Seidel schemes.
 
     Args:
-        plan, history: parts and signals; row 0 of the history holds the values at step `start`.
+        plan: parts and signals.
+        history: signals; row 0 holds the values at the first step.
         order: degree of extrapolation and interpolation.
-        t0, h: start time and macro step [s].
-        start, count: first macro step and how many.
-        records: one row per `every` macro steps, row 0 at t0.
-        every: macro steps per record.
+        chunk: macro steps.
 
     Returns:
         Status, macro steps done in all, and the part that ended the run (or -1).
     """
-    for n in range(start, start + count):
-        for row in range(history.shape[0] - 1, 0, -1):
-            for i in range(history.shape[1]):
-                history[row, i] = history[row - 1, i]
-        row = (n + 1) // every if (n + 1) % every == 0 else -1
+    h = chunk.h
+    for n in range(chunk.start, chunk.start + chunk.count):
+        start_step(history)
+        t, row = chunk.t0 + n * h, record_row(chunk, n)
         for stage in range(plan.stage_first.size - 1):
-            t = t0 + n * h
-            failed = step_stage(plan, history, stage, order, n + 1, t, h, records, row)
+            failed = step_stage(plan, history, stage, order, n + 1, t, h, chunk.records, row)
             if failed >= 0:
                 return PART_FAILED, n, failed
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-    return DONE, start + count, -1
+    return DONE, chunk.start + chunk.count, -1

@@ -11,15 +11,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.cosim.calls import do_step, exchange_reals, state_call
-from herringbone.cosim.loop import DONE, NOT_FINITE, PART_FAILED, get_outputs, not_finite, signal
-from herringbone.cosim.plan import Plan
+from herringbone.cosim.calls import do_step, state_call
+from herringbone.cosim.loop import (
+    DONE,
+    NOT_FINITE,
+    PART_FAILED,
+    exchange,
+    get_all,
+    not_finite,
+    record_row,
+    signal,
+    start_step,
+)
+from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
 REFRESH = 3
 """Status: the correction no longer contracts; a new Jacobian is wanted."""
 _LAST_GOOD = 1
-_REAL, _REFERENCE = 8, 4
 
 
 class NodePlan(NamedTuple):
@@ -46,6 +55,24 @@ class NodePlan(NamedTuple):
     get_state: np.ndarray
     set_state: np.ndarray
     free_state: np.ndarray
+
+
+class Control(NamedTuple):
+    """How often a macro step is corrected.
+
+    Attributes:
+        corrections: how many at least.
+        most: how many at most.
+        tolerance: residual, in units of the scale, above which there are more.
+        slow: contraction above which a new Jacobian is wanted.
+        order: degree of the prediction.
+    """
+
+    corrections: int
+    most: int
+    tolerance: float
+    slow: float
+    order: int
 
 
 class Buffers(NamedTuple):
@@ -126,13 +153,9 @@ def _set_from_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> in
                     value += nodes.weights[k] * buffers.nodes[k, source]
             plan.set_value[at] = value
             at += 1
-    first = plan.set_first[p]
-    return exchange_reals(
-        plan.set_real[p],
-        plan.component[p],
-        plan.set_reference.ctypes.data + _REFERENCE * first,
-        at - first,
-        plan.set_value.ctypes.data + _REAL * first,
+    start = plan.set_first[p]
+    return exchange(
+        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
     )
 
 
@@ -145,12 +168,8 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
     degree, at = nodes.degree, nodes.node_first[p]
     count = nodes.node_first[p + 1] - at
     if count > 0:
-        status = exchange_reals(
-            plan.get_real[p],
-            plan.component[p],
-            nodes.node_reference.ctypes.data + _REFERENCE * at,
-            count,
-            buffers.values.ctypes.data,
+        status = exchange(
+            plan, p, plan.get_real, nodes.node_reference, at, count, buffers.values, 0
         )
         k = 0
         for node in range(1, degree + 1):
@@ -158,15 +177,11 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
                 buffers.nodes[node, i] = buffers.values[k]
                 k += 1
         return status
-    status = exchange_reals(
-        plan.get_real[p],
-        plan.component[p],
-        plan.output_reference.ctypes.data + _REFERENCE * first,
-        end - first,
-        buffers.values.ctypes.data,
+    status = exchange(
+        plan, p, plan.get_real, plan.output_reference, first, end - first, buffers.values, 0
     )
     for i in range(first, end):
-        now, before = buffers.nodes[0, i], buffers.history[1, i]
+        now, before = buffers.nodes[0, i], buffers.history[2, i]
         after = buffers.values[i - first]
         for node in range(1, degree + 1):
             c = node / degree
@@ -218,9 +233,7 @@ def begin(
     plan: Plan, nodes: NodePlan, buffers: Buffers, order: int, known: int, t: float, h: float
 ) -> int:
     """Save, step the sources, predict the unknowns; -1, or who failed."""
-    for row in range(buffers.history.shape[0] - 1, 0, -1):
-        for i in range(buffers.history.shape[1]):
-            buffers.history[row, i] = buffers.history[row - 1, i]
+    start_step(buffers.history)
     for i in range(buffers.history.shape[1]):
         buffers.nodes[0, i] = buffers.history[1, i]
     failed = save(plan, nodes, buffers)
@@ -267,72 +280,68 @@ def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
 
 
 @kernel
+def _converge(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    correction: np.ndarray,
+    control: Control,
+    t: float,
+    h: float,
+) -> tuple[int, float]:
+    """Correct one macro step until the residual is small; who failed (or -1), and contraction."""
+    failed = one_pass(plan, nodes, buffers, t, h)
+    before, contraction = residual(buffers), 0.0
+    for done in range(control.most):
+        if failed >= 0 or (done >= control.corrections and before <= control.tolerance):
+            break
+        correct(buffers, correction)
+        failed = restore(plan, nodes, buffers, False)
+        if failed < 0:
+            failed = one_pass(plan, nodes, buffers, t, h)
+        after = residual(buffers)
+        if before > control.tolerance:
+            contraction = max(contraction, after / before)
+        before = after
+        buffers.counts[1] += 1
+    buffers.worst[0] = max(buffers.worst[0], before)
+    buffers.worst[1] = max(buffers.worst[1], contraction)
+    return failed, contraction
+
+
+@kernel
 def run_iterated(
     plan: Plan,
     nodes: NodePlan,
     buffers: Buffers,
     correction: np.ndarray,
-    corrections: int,
-    most: int,
-    tolerance: float,
-    slow: float,
-    order: int,
-    t0: float,
-    h: float,
-    start: int,
-    count: int,
-    records: np.ndarray,
-    every: int,
+    control: Control,
+    chunk: Chunk,
 ) -> tuple[int, int, int]:
-    """Run `count` macro steps.
+    """Run macro steps; the result is that of `loop.run_stages`.
 
     Args:
         correction: C, (unknowns p) squared.
-        corrections: how many at least; most: how many at most.
-        tolerance: residual, in units of the scale, above which there are more corrections.
-        slow: contraction above which a new Jacobian is wanted.
-        order: degree of the prediction.
 
-    Other arguments and the result are those of `loop.run_stages`; status REFRESH ends the chunk
-    after a macro step that is complete.
+    Status REFRESH ends the chunk after a macro step that is complete.
     """
-    for n in range(start, start + count):
-        t = t0 + n * h
-        failed = begin(plan, nodes, buffers, order, n + 1, t, h)
+    h = chunk.h
+    for n in range(chunk.start, chunk.start + chunk.count):
+        t, row, contraction = chunk.t0 + n * h, record_row(chunk, n), 0.0
+        failed = begin(plan, nodes, buffers, control.order, n + 1, t, h)
         if failed < 0:
-            failed = one_pass(plan, nodes, buffers, t, h)
-        before = residual(buffers)
-        contraction = 0.0
-        done = 0
-        while failed < 0 and done < most:
-            if done >= corrections and before <= tolerance:
-                break
-            correct(buffers, correction)
-            failed = restore(plan, nodes, buffers, False)
-            if failed < 0:
-                failed = one_pass(plan, nodes, buffers, t, h)
-            after = residual(buffers)
-            if before > tolerance:
-                contraction = max(contraction, after / before)
-            before = after
-            done += 1
+            failed, contraction = _converge(plan, nodes, buffers, correction, control, t, h)
         if failed >= 0:
             return PART_FAILED, n, failed
-        buffers.counts[1] += done
-        buffers.worst[0] = max(buffers.worst[0], before)
-        buffers.worst[1] = max(buffers.worst[1], contraction)
         finish(plan, nodes, buffers)
         culprit = not_finite(plan, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-        if (n + 1) % every == 0:
-            for p in range(plan.component.size):
-                row = (n + 1) // every
-                if get_outputs(plan, buffers.history, p, records, row) > _LAST_GOOD:
-                    return PART_FAILED, n + 1, p
-        if contraction > slow:
+        if row >= 0 and get_all(plan, buffers.history, chunk.records, row) > _LAST_GOOD:
+            return PART_FAILED, n + 1, -1
+        if contraction > control.slow:
             return REFRESH, n + 1, -1
-    return DONE, start + count, -1
+    return DONE, chunk.start + chunk.count, -1
 
 
 @kernel

@@ -44,6 +44,26 @@ class Plan(NamedTuple):
     stage_part: np.ndarray
 
 
+class Chunk(NamedTuple):
+    """Macro steps that a compiled loop runs in one go.
+
+    Time is t0 + n h with integer n, so that it does not drift.
+
+    Attributes:
+        t0, h: start of the run and macro step [s].
+        start, count: first macro step and how many.
+        records: one row per `every` macro steps of the run, row 0 at t0.
+        every: macro steps per record.
+    """
+
+    t0: float
+    h: float
+    start: int
+    count: int
+    records: np.ndarray
+    every: int
+
+
 def record_names(network: Network) -> list[list[str]]:
     """Outputs of each part that are recorded: all real ones, without nodes."""
     return [

@@ -4,23 +4,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.cosim.calls import do_step, exchange_reals
+from herringbone.cosim.calls import do_step
 from herringbone.cosim.loop import (
     DONE,
     NOT_FINITE,
     PART_FAILED,
+    exchange,
     get_outputs,
     not_finite,
+    record_row,
     signal,
+    start_step,
     step_stage,
 )
-from herringbone.cosim.plan import Plan
+from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
 NODES = 3
 """Degree at which elements take motions and give forces."""
 _LAST_GOOD = 1
-_REAL, _REFERENCE = 8, 4
 
 
 class Prediction(NamedTuple):
@@ -62,20 +64,6 @@ def predicted(
 
 
 @kernel
-def _exchange(
-    plan: Plan, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
-    values: np.ndarray, at: int,
-) -> int:  # fmt: skip
-    return exchange_reals(
-        function[p],
-        plan.component[p],
-        references.ctypes.data + _REFERENCE * first,
-        count,
-        values.ctypes.data + _REAL * at,
-    )
-
-
-@kernel
 def _step_element(
     plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, t: float, h: float
 ) -> int:
@@ -88,7 +76,7 @@ def _step_element(
             source = plan.input_source[i]
             plan.set_value[at] = predicted(prediction, history, source, known, node / NODES, h)
             at += 1
-    status = _exchange(
+    status = exchange(
         plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
     )
     if status > _LAST_GOOD:
@@ -97,7 +85,7 @@ def _step_element(
     if status > _LAST_GOOD:
         return status
     begin, stop = prediction.node_first[p], prediction.node_first[p + 1]
-    status = _exchange(
+    status = exchange(
         plan, p, plan.get_real, prediction.node_reference, begin, stop - begin, prediction.values, 0
     )
     k = 0
@@ -129,7 +117,7 @@ def _set_body(plan: Plan, prediction: Prediction, history: np.ndarray, p: int, k
                 value = signal(history, source, plan.input_fresh[i], 2, known, c)
             plan.set_value[at] = value
             at += 1
-    return _exchange(
+    return exchange(
         plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
     )
 
@@ -165,33 +153,23 @@ def _read_parts(
 
 @kernel
 def run_predicted(
-    plan: Plan,
-    prediction: Prediction,
-    history: np.ndarray,
-    t0: float,
-    h: float,
-    start: int,
-    count: int,
-    records: np.ndarray,
-    every: int,
+    plan: Plan, prediction: Prediction, history: np.ndarray, chunk: Chunk
 ) -> tuple[int, int, int]:
-    """Run `count` macro steps; arguments and result as of `loop.run_stages`."""
-    for n in range(start, start + count):
-        t, known = t0 + n * h, n + 1
-        row = (n + 1) // every if (n + 1) % every == 0 else -1
-        for k in range(history.shape[0] - 1, 0, -1):
-            for i in range(history.shape[1]):
-                history[k, i] = history[k - 1, i]
+    """Run macro steps; arguments and result as of `loop.run_stages`."""
+    h = chunk.h
+    for n in range(chunk.start, chunk.start + chunk.count):
+        start_step(history)
+        t, known, row = chunk.t0 + n * h, n + 1, record_row(chunk, n)
         failed = -1
         if prediction.sources:
-            failed = step_stage(plan, history, 0, 2, known, t, h, records, row)
+            failed = step_stage(plan, history, 0, 2, known, t, h, chunk.records, row)
         if failed < 0:
             failed = _step_parts(plan, prediction, history, known, t, h)
         if failed < 0:
-            failed = _read_parts(plan, prediction, history, records, row)
+            failed = _read_parts(plan, prediction, history, chunk.records, row)
         if failed >= 0:
             return PART_FAILED, n, failed
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-    return DONE, start + count, -1
+    return DONE, chunk.start + chunk.count, -1

@@ -12,9 +12,9 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.loop import BOUND, DONE, NOT_FINITE, get_all
+from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
-from herringbone.cosim.plan import HISTORY, record_names
+from herringbone.cosim.plan import HISTORY, Chunk, record_names
 from herringbone.cosim.system import System
 
 CHUNK_SECONDS = 0.05
@@ -187,9 +187,8 @@ class _Run:
         return self._recording(done, outcome, wall)
 
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
-        return self.prepared.run(
-            self.history, 0.0, self.grid.step, start, count, self.records, self.grid.every
-        )
+        chunk = Chunk(0.0, self.grid.step, start, count, self.records, self.grid.every)
+        return self.prepared.run(self.history, chunk)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
         reached = done * self.grid.step
@@ -198,6 +197,8 @@ class _Run:
             kind = OutcomeKind.COMPLETED if finished else OutcomeKind.INTERRUPTED
             message = "" if finished else f"interrupted at {reached:g} s; results so far are kept"
             return Outcome(kind, reached, message=message)
+        if status == COUPLING_FAILED:
+            return Outcome(OutcomeKind.COUPLING_FAILED, reached, message=self.prepared.problem)
         part = self.network.parts[culprit]
         said = "; ".join(part.messages())
         where, value = self._diverged(culprit)
@@ -231,7 +232,7 @@ class _Run:
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         rows = done // self.grid.every + 1
-        if outcome.kind in {OutcomeKind.DIVERGED, OutcomeKind.PART_FAILED}:
+        if outcome.kind not in {OutcomeKind.COMPLETED, OutcomeKind.INTERRUPTED}:
             rows = int((np.abs(self.records[:rows]) < BOUND).all(axis=1).cumprod().sum())
         record_step = self.grid.every * self.grid.step
         return Recording(

@@ -100,8 +100,10 @@ def _at(u: np.ndarray, k: np.ndarray, m: np.ndarray, count: int, x: float, what:
 @kernel
 def _secant(b: np.ndarray, at: int, phase: float, u: float) -> tuple[float, float]:
     """K and dK/du at u in node intervals, 0 <= u <= DEFLECTIONS - 1."""
-    p = (phase - math.floor(phase)) * PHASES
-    i = min(int(p), PHASES - 1)
+    p = phase - math.floor(phase)
+    # The floor is undefined beyond 2**63: a diverging run must not read outside the table.
+    p = p * PHASES if 0.0 <= p < 1.0 else 0.0
+    i = int(p)
     p -= i
     j = min(int(u), DEFLECTIONS - 2)
     here = at + 2 + i * _ROW + j * _NODE

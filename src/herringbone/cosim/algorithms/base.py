@@ -15,7 +15,7 @@ import numpy as np
 from herringbone.core.part import has_nodes
 from herringbone.cosim.loop import run_stages
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Plan, build_plan
+from herringbone.cosim.plan import Chunk, Plan, build_plan
 
 
 class Algorithm(ABC):
@@ -57,11 +57,13 @@ class PreparedRun(Protocol):
         plan: parts and signals.
         degree: interface degree that each part is to be set to.
         notes: downgrades, and what they cost.
+        problem: why the coupling cannot go on, if it cannot.
     """
 
     plan: Plan
     degree: tuple[int, ...]
     notes: tuple[str, ...]
+    problem: str
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""
@@ -70,16 +72,7 @@ class PreparedRun(Protocol):
     def rollbacks(self) -> int:
         """State restores so far."""
 
-    def run(
-        self,
-        history: np.ndarray,
-        t0: float,
-        h: float,
-        start: int,
-        count: int,
-        records: np.ndarray,
-        every: int,
-    ) -> tuple[int, int, int]:
+    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; arguments and result are those of `loop.run_stages`."""
 
 
@@ -100,6 +93,7 @@ class Prepared:
     order: int
     notes: tuple[str, ...]
     starter: Plan | None = None
+    problem: str = ""
 
     def passes(self, macro_steps: int) -> list[int]:
         """doStep calls of each part."""
@@ -110,22 +104,13 @@ class Prepared:
         """State restores: none in these schemes."""
         return 0
 
-    def run(
-        self,
-        history: np.ndarray,
-        t0: float,
-        h: float,
-        start: int,
-        count: int,
-        records: np.ndarray,
-        every: int,
-    ) -> tuple[int, int, int]:
+    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
-        if self.starter is not None and start < self.order:
-            plan, count = self.starter, min(count, self.order - start)
-        else:
-            plan = self.plan
-        return run_stages(plan, history, self.order, t0, h, start, count, records, every)
+        plan = self.plan
+        if self.starter is not None and chunk.start < self.order:
+            plan = self.starter
+            chunk = chunk._replace(count=min(chunk.count, self.order - chunk.start))
+        return run_stages(plan, history, self.order, chunk)
 
 
 def prepare_stages(

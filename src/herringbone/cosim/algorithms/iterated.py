@@ -4,13 +4,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.core import ParameterError
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
-from herringbone.cosim.loop import DONE
+from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import REFRESH, Buffers, NodePlan, run_iterated, sensitivity
-from herringbone.cosim.plan import build_plan, connected_outputs
+from herringbone.cosim.node_loop import (
+    REFRESH,
+    Buffers,
+    Control,
+    NodePlan,
+    run_iterated,
+    sensitivity,
+)
+from herringbone.cosim.plan import Chunk, build_plan, connected_outputs
 
 PREDICTION = 2
 """Degree of the prediction; one correction makes the result nearly independent of it."""
@@ -97,6 +104,7 @@ class PreparedNodes:
         self._correction = np.empty((0, 0))
         self._next_refresh = 0
         self.jacobians = 0
+        self.problem = ""
 
     def _node_plan(self, degree: int) -> NodePlan:
         network, parts = self.network, self.network.parts
@@ -158,34 +166,28 @@ class PreparedNodes:
             np.zeros(2),
         )
 
-    def run(
-        self,
-        history: np.ndarray,
-        t0: float,
-        h: float,
-        start: int,
-        count: int,
-        records: np.ndarray,
-        every: int,
-    ) -> tuple[int, int, int]:
+    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
         if self._buffers is None:
             self._buffers = self._make_buffers(history)
         self._update_scale()
-        if self._correction.size == 0:
-            self._refresh(t0, h, start)
-        done, end, status, culprit = start, start + count, DONE, -1
+        done, end = chunk.start, chunk.start + chunk.count
+        if self._correction.size == 0 and (status := self._refresh(chunk)) != DONE:
+            return status, done, -1
         while True:
-            slow = SLOW if done >= self._next_refresh and self.newton else np.inf
-            chunk = end - done if np.isfinite(slow) else min(end, self._next_refresh) - done
-            chunk = end - done if not self.newton else max(chunk, 0)
+            patient = self.newton and done < self._next_refresh
+            until = min(end, self._next_refresh) if patient else end
+            slow = SLOW if self.newton and not patient else np.inf
             status, done, culprit = run_iterated(
-                self.plan, self.nodes, self._buffers, self._correction, self.corrections, self.most,
-                REST, slow, PREDICTION, t0, h, done, chunk, records, every,
-            )  # fmt: skip
+                self.plan,
+                self.nodes,
+                self._buffers,
+                self._correction,
+                Control(self.corrections, self.most, REST, slow, PREDICTION),
+                chunk._replace(start=done, count=until - done),
+            )
             if status == REFRESH:
-                self._refresh(t0, h, done)
-                status = DONE
+                status = self._refresh(chunk._replace(start=done))
             if status != DONE or done >= end:
                 return status, done, culprit
 
@@ -202,41 +204,33 @@ class PreparedNodes:
             same = [now[j] for j in self.nodes.unknown if units[j] == units[i]]
             buffers.scale[k] = max([*same, buffers.scale[k] if self.jacobians else 1e-3])
 
-    def _refresh(self, t0: float, h: float, done: int) -> None:
-        """Correction matrix at the present state.
-
-        Raises:
-            HerringboneError: a part fails, or the Jacobian is singular.
-        """
-        size = self.nodes.degree * self.nodes.unknown.size
+    def _refresh(self, chunk: Chunk) -> int:
+        """Correction matrix at the present state, where the chunk starts; a status of the loop."""
+        size, done, h = self.nodes.degree * self.nodes.unknown.size, chunk.start, chunk.h
+        t = chunk.t0 + done * h
         self._next_refresh = done + PATIENCE
         self.jacobians += 1
         if not self.newton:
             self._correction = np.eye(size)
-            return
+            return DONE
         jacobian = np.zeros((size, size))
         change = _CHANGE * self._buffers.scale
         failed = sensitivity(
-            self.plan,
-            self.nodes,
-            self._buffers,
-            jacobian,
-            change,
-            PREDICTION,
-            t0 + done * h,
-            h,
-            done + 1,
+            self.plan, self.nodes, self._buffers, jacobian, change, PREDICTION, t, h, done + 1
         )
         if failed >= 0 or not np.isfinite(jacobian).all():
             name = self.network.parts[failed].name if failed >= 0 else "the coupling"
-            raise HerringboneError(
-                f"the interface Jacobian cannot be computed at {t0 + done * h:g} s: {name} fails; "
+            self.problem = (
+                f"the interface Jacobian cannot be computed at {t:g} s: {name} fails; "
                 "use a smaller step"
             )
+            return COUPLING_FAILED
         try:
             self._correction = np.linalg.inv(np.eye(size) - jacobian)
-        except np.linalg.LinAlgError as error:
-            raise HerringboneError(
-                f"the interface Jacobian is singular at {t0 + done * h:g} s (h = {h:g} s); "
+        except np.linalg.LinAlgError:
+            self.problem = (
+                f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "
                 "use another step, or fixed_point"
-            ) from error
+            )
+            return COUPLING_FAILED
+        return DONE

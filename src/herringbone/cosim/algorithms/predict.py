@@ -22,7 +22,7 @@ from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.algorithms.base import Algorithm, prepare_stages
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Plan, build_plan, connected_outputs
+from herringbone.cosim.plan import Chunk, Plan, build_plan, connected_outputs
 from herringbone.cosim.predict_loop import NODES, Prediction, run_predicted
 
 _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
@@ -86,7 +86,7 @@ class PreparedPrediction:
         extra = [
             _rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
         ]
-        self.degree, self.notes = tuple(degree), tuple(staged.notes)
+        self.degree, self.notes, self.problem = tuple(degree), tuple(staged.notes), ""
         self.plan: Plan = build_plan(network, stages, degree, parallel=False, extra=extra)
         self._prediction = self._lay_out(network, connected_outputs(network, extra))
 
@@ -138,17 +138,6 @@ class PreparedPrediction:
         """State restores: none."""
         return 0
 
-    def run(
-        self,
-        history: np.ndarray,
-        t0: float,
-        h: float,
-        start: int,
-        count: int,
-        records: np.ndarray,
-        every: int,
-    ) -> tuple[int, int, int]:
+    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
-        return run_predicted(
-            self.plan, self._prediction, history, t0, h, start, count, records, every
-        )
+        return run_predicted(self.plan, self._prediction, history, chunk)
