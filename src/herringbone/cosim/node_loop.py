@@ -230,9 +230,19 @@ def one_pass(plan: Plan, nodes: NodePlan, buffers: Buffers, t: float, h: float) 
 
 @kernel
 def begin(
-    plan: Plan, nodes: NodePlan, buffers: Buffers, order: int, known: int, t: float, h: float
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    order: int,
+    known: int,
+    t: float,
+    h: float,
+    trial: bool,
 ) -> int:
-    """Save, step the sources, predict the unknowns; -1, or who failed."""
+    """Save, step the sources, predict the unknowns; -1, or who failed.
+
+    In a trial that will be taken back, sources that cannot be restored hold their outputs.
+    """
     start_step(buffers.history)
     for i in range(buffers.history.shape[1]):
         buffers.nodes[0, i] = buffers.history[1, i]
@@ -243,7 +253,16 @@ def begin(
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
             buffers.trial[k, i] = signal(buffers.history, nodes.unknown[i], 0, order, known, c)
-    return _step_group(plan, nodes, buffers, nodes.sources, t, h)
+    for s in range(nodes.sources.size):
+        p = nodes.sources[s]
+        if trial and nodes.get_state[p] == 0:
+            for i in range(plan.output_first[p], plan.output_first[p + 1]):
+                buffers.nodes[1:, i] = buffers.nodes[0, i]
+            continue
+        failed = _step_group(plan, nodes, buffers, nodes.sources[s : s + 1], t, h)
+        if failed >= 0:
+            return failed
+    return -1
 
 
 @kernel
@@ -328,7 +347,7 @@ def run_iterated(
     h = chunk.h
     for n in range(chunk.start, chunk.start + chunk.count):
         t, row, contraction = chunk.t0 + n * h, record_row(chunk, n), 0.0
-        failed = begin(plan, nodes, buffers, control.order, n + 1, t, h)
+        failed = begin(plan, nodes, buffers, control.order, n + 1, t, h, False)
         if failed < 0:
             failed, contraction = _converge(plan, nodes, buffers, correction, control, t, h)
         if failed >= 0:
@@ -366,7 +385,7 @@ def sensitivity(
         -1, or the part that failed.
     """
     saved = buffers.history.copy()
-    failed = begin(plan, nodes, buffers, order, known, t, h)
+    failed = begin(plan, nodes, buffers, order, known, t, h, True)
     if failed < 0:
         failed = one_pass(plan, nodes, buffers, t, h)
     count = nodes.unknown.size
