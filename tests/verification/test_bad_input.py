@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 import zipfile
@@ -250,7 +251,8 @@ def test_step_beyond_the_limit(tmp_path, capsys, fmu):
     """Order 2 is unstable at 50 us; the values pass 1e30 after some hundred steps."""
     options = ("--step", "5e-5", "--algorithm", "jacobi:order=2")
     line, table, summary = ended_early(tmp_path, capsys, *options, outcome="diverged", fmu=fmu)
-    assert f"{summary['culprit']} grows beyond all bounds at {summary['t_reached']:g} s" in line
+    how = "(grows beyond all bounds|is not finite)"
+    assert re.search(f"{summary['culprit']} {how} at {summary['t_reached']:g} s", line)
     assert "use a step below 5e-05 s or an algorithm with a higher limit" in line
     assert len(table) > 100
 
