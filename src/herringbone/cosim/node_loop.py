@@ -17,7 +17,7 @@ from herringbone.cosim.loop import (
     NOT_FINITE,
     PART_FAILED,
     exchange,
-    get_all,
+    get_outputs,
     not_finite,
     record_row,
     signal,
@@ -356,8 +356,9 @@ def run_iterated(
         culprit = not_finite(plan, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-        if row >= 0 and get_all(plan, buffers.history, chunk.records, row) > _LAST_GOOD:
-            return PART_FAILED, n + 1, -1
+        for p in range(plan.component.size if row >= 0 else 0):
+            if get_outputs(plan, buffers.history, p, chunk.records, row) > _LAST_GOOD:
+                return PART_FAILED, n + 1, p
         if contraction > control.slow:
             return REFRESH, n + 1, -1
     return DONE, chunk.start + chunk.count, -1
