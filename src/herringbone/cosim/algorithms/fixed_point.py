@@ -2,8 +2,9 @@
 
 The forces are polynomials of degree p inside the macro step h, through their values U at the nodes
 1/p, ..., 1; each sweep replaces U by the forces G(U) that follow from the motions it causes. The
-iteration contracts like (h w)^2 / 6 for a bond of frequency w and diverges above h w = 2.45, however
-many sweeps there are; with 2 sweeps of cubic nodes the test rig is stable up to h w = 1.67.
+iteration contracts like (h w)^2 / 6 for a bond of frequency w and diverges above h w = 2.45,
+however many sweeps there are; with 2 sweeps of cubic nodes the test rig is stable up to
+h w = 1.67.
 """
 
 from dataclasses import dataclass

@@ -94,7 +94,7 @@ class PreparedNodes:
         self.network, self.newton = network, newton
         self.corrections, self.most = corrections, most
         degrees, notes = _degrees(network, degree)
-        self.degree, self.notes = tuple(degrees), tuple(notes)
+        self.degree, self._downgrades = tuple(degrees), tuple(notes)
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
         self.plan = build_plan(network, stages, degrees, parallel=False)
@@ -138,6 +138,18 @@ class PreparedNodes:
             np.array([r for row in rows for r in row], dtype=np.uint32),
             _mean_weights(degree),
             *(state[:, k].copy() for k in range(3)),
+        )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Downgrades; and, after a run, a residual that the corrections did not remove."""
+        left = float(self._buffers.worst[0]) if self._buffers else 0.0
+        if not self.newton or left <= REST:
+            return self._downgrades
+        return (
+            *self._downgrades,
+            f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "
+            "largest: use a smaller step, or look for a part that does not repeat a step alike",
         )
 
     def passes(self, macro_steps: int) -> list[int]:
