@@ -3,12 +3,13 @@
 import re
 import tempfile
 import zipfile
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import fmpy
 from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
+from herringbone.cosim.archive import escaping_entry
 
 _DESCRIPTION = "modelDescription.xml"
 _FOREIGN_XML = re.compile(rb"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
@@ -27,7 +28,10 @@ def read_fmu(file: Path) -> ModelDescription:
     try:
         with zipfile.ZipFile(file) as archive:
             names = archive.namelist()
-            _check_names(names, file)
+            if name := escaping_entry(names):
+                raise FmuError(
+                    f"{file}: entry '{name}' would be written outside its folder; refused"
+                )
             description = archive.read(_DESCRIPTION)
     except zipfile.BadZipFile as error:
         raise FmuError(f"{file} is not an FMU: {error}") from error
@@ -49,13 +53,6 @@ def read_fmu(file: Path) -> ModelDescription:
             f"it has: {', '.join(have) or 'none'}"
         )
     return model
-
-
-def _check_names(names: list[str], file: Path) -> None:
-    for name in names:
-        path = PurePosixPath(name.replace("\\", "/"))
-        if path.is_absolute() or ".." in path.parts or ":" in path.parts[0]:
-            raise FmuError(f"{file}: entry '{name}' would be written outside its folder; refused")
 
 
 def _check_description(description: bytes, file: Path) -> None:

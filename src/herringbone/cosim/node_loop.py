@@ -7,8 +7,6 @@ and step again. C = I is the plain fixed point, C = (I - dG/dU)^-1 one Newton st
 Jacobian. After the last pass the parts are at the end of the step, and G - U is what is left over.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from herringbone.cosim.calls import do_step, state_call
@@ -23,84 +21,13 @@ from herringbone.cosim.loop import (
     signal,
     start_step,
 )
+from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
 REFRESH = 3
 """Status: the correction no longer contracts; a new Jacobian is wanted."""
 _LAST_GOOD = 1
-
-
-class NodePlan(NamedTuple):
-    """What a pass needs beside the plan.
-
-    Attributes:
-        degree: p.
-        unknown: outputs that feed bodies and come from elements or bodies.
-        bodies, elements, sources: parts; elements in the order of their dependence.
-        node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
-            part without them.
-        weights: of the nodes, for the mean of a signal over the step.
-        get_state, set_state, free_state: addresses.
-    """
-
-    degree: int
-    unknown: np.ndarray
-    bodies: np.ndarray
-    elements: np.ndarray
-    sources: np.ndarray
-    node_first: np.ndarray
-    node_reference: np.ndarray
-    weights: np.ndarray
-    get_state: np.ndarray
-    set_state: np.ndarray
-    free_state: np.ndarray
-
-
-class Control(NamedTuple):
-    """How often a macro step is corrected.
-
-    Attributes:
-        corrections: how many at least.
-        most: how many at most.
-        tolerance: residual, in units of the scale, above which there are more.
-        slow: contraction above which a new Jacobian is wanted.
-        order: degree of the prediction.
-    """
-
-    corrections: int
-    most: int
-    tolerance: float
-    slow: float
-    order: int
-
-
-class Buffers(NamedTuple):
-    """What the loop writes.
-
-    Attributes:
-        history: values at communication points, newest first.
-        nodes: (p + 1, outputs): values at c = 0, 1/p, ..., 1 of the present macro step.
-        trial: (p, unknowns): U.
-        rest: (p, unknowns): G - U.
-        scale: (unknowns,) sizes by which residuals are measured.
-        values: room for one part's outputs at its nodes.
-        states: handle of each part's saved state.
-        passes: doStep calls by part.
-        counts: rollbacks; iterations.
-        worst: largest residual after the last correction; largest contraction.
-    """
-
-    history: np.ndarray
-    nodes: np.ndarray
-    trial: np.ndarray
-    rest: np.ndarray
-    scale: np.ndarray
-    values: np.ndarray
-    states: np.ndarray
-    passes: np.ndarray
-    counts: np.ndarray
-    worst: np.ndarray
 
 
 @kernel

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.core.declaration import node_name
+from herringbone.core.part import Part
 from herringbone.cosim.network import Network
 
 HISTORY = 4
@@ -84,6 +85,21 @@ def _references(rows: Sequence[Sequence[int]]) -> np.ndarray:
     return np.array([r for row in rows for r in row], dtype=np.uint32)
 
 
+def _named_references(parts: Sequence[Part], names: Sequence[Sequence[str]]) -> np.ndarray:
+    return _references(
+        [[part.variables[n].reference for n in row] for part, row in zip(parts, names, strict=True)]
+    )
+
+
+def _set_references(part: Part, inputs: Sequence[str], degree: int) -> list[int]:
+    """References of a part's inputs, node by node."""
+    return [
+        part.variables[name if node == 0 else node_name(name, node)].reference
+        for node in range(degree + 1)
+        for name in inputs
+    ]
+
+
 def connected_outputs(
     network: Network, extra: Sequence[Sequence[str]] | None = None
 ) -> list[list[str]]:
@@ -115,22 +131,18 @@ def build_plan(
         extra: further outputs of each part that the loop needs, such as accelerations.
     """
     parts = network.parts
-    position = {p: s for s, stage in enumerate(stages) for p in stage}
     inputs = [network.inputs(p) for p in range(len(parts))]
     outputs = connected_outputs(network, extra)
     output_first = _offsets([len(o) for o in outputs])
     set_references = [
-        [
-            part.variables[c.input if node == 0 else node_name(c.input, node)].reference
-            for node in range(degree[p] + 1)
-            for c in inputs[p]
-        ]
+        _set_references(part, [c.input for c in inputs[p]], degree[p])
         for p, part in enumerate(parts)
     ]
     records = record_names(network)
     record_first = _offsets([len(r) for r in records])
-    addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
     set_first = _offsets([len(r) for r in set_references])
+    position = {p: s for s, stage in enumerate(stages) for p in stage}
+    addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
     return Plan(
         component=addresses[:, 0].copy(),
         set_real=addresses[:, 1].copy(),
@@ -152,21 +164,13 @@ def build_plan(
         set_reference=_references(set_references),
         set_value=np.zeros(set_first[-1]),
         output_first=output_first,
-        output_reference=_references(
-            [[part.variables[n].reference for n in outputs[p]] for p, part in enumerate(parts)]
-        ),
+        output_reference=_named_references(parts, outputs),
         output_record=np.array(
-            [
-                record_first[p] + records[p].index(n)
-                for p, names in enumerate(outputs)
-                for n in names
-            ],
+            [record_first[p] + records[p].index(n) for p, row in enumerate(outputs) for n in row],
             dtype=np.int64,
         ),
         record_first=record_first,
-        record_reference=_references(
-            [[part.variables[n].reference for n in records[p]] for p, part in enumerate(parts)]
-        ),
+        record_reference=_named_references(parts, records),
         stage_first=_offsets([len(s) for s in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
     )

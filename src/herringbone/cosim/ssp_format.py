@@ -4,12 +4,13 @@ import atexit
 import shutil
 import tempfile
 import zipfile
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Final
 from xml.etree.ElementTree import Element, ParseError, fromstring
 from xml.parsers import expat
 
 from herringbone.core import StructureError
+from herringbone.cosim.archive import escaping_entry
 
 STRUCTURE_FILE: Final = "SystemStructure.ssd"
 VERSION: Final = "1.0"
@@ -79,13 +80,9 @@ def _archive(file: Path) -> zipfile.ZipFile:
         archive = zipfile.ZipFile(file)
     except zipfile.BadZipFile as error:
         raise StructureError(f"{file} is not an .ssp file: {error}") from error
-    for name in archive.namelist():
-        path = PurePosixPath(name.replace("\\", "/"))
-        if path.is_absolute() or ".." in path.parts or any(":" in part for part in path.parts):
-            archive.close()
-            raise StructureError(
-                f"{file}: entry '{name}' would be written outside its folder; refused"
-            )
+    if name := escaping_entry(archive.namelist()):
+        archive.close()
+        raise StructureError(f"{file}: entry '{name}' would be written outside its folder; refused")
     return archive
 
 

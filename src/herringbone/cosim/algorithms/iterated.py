@@ -9,14 +9,8 @@ from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import (
-    REFRESH,
-    Buffers,
-    Control,
-    NodePlan,
-    run_iterated,
-    sensitivity,
-)
+from herringbone.cosim.node_loop import REFRESH, run_iterated, sensitivity
+from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, build_plan, connected_outputs
 
 PREDICTION = 2
