@@ -129,3 +129,11 @@ def test_moments_and_largest_lines_of_a_group():
     lines = largest_lines(result, result.channel("bearing_force"), 3000.0)
     assert [round(line.frequency) for line in lines[:2]] == [450, 900]
     assert lines[0].amplitude == pytest.approx(12.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-14, 0.5])
+def test_a_gear_at_rest_has_no_mesh_orders(speed):
+    """Less than one mesh period in the record; the orders of 1e-14 rad/s would be endless."""
+    result = make_result("gearbox", t_end=0.1)
+    result.data["gear_mesh.pinion.w"] = speed
+    assert run_mesh_frequency(result) is None

@@ -98,7 +98,8 @@ def run_mesh_frequency(result: Result, number_of_teeth: float | None = None) -> 
         number_of_teeth: of the pinion; the run's own parameter if not given.
 
     Returns:
-        None without gear mesh, without rotation, or when the speed is not steady.
+        None without gear mesh, when the speed is not steady, or when the steady part is shorter
+        than a mesh period (a gear at rest): no order could be told from its neighbours.
     """
     speed = signal(result, "gear_mesh", "pinion.w")
     part = steady_part(result)
@@ -108,7 +109,9 @@ def run_mesh_frequency(result: Result, number_of_teeth: float | None = None) -> 
         declared = COMPONENTS["gear_mesh"].declaration.variable(_TEETH).start
         name = f"{instance(result, 'gear_mesh')}.{_TEETH}"
         number_of_teeth = result.info.parameters.get(name, declared)
-    return mesh_frequency(float(speed[part.rows].mean()), number_of_teeth) or None
+    frequency = mesh_frequency(float(speed[part.rows].mean()), number_of_teeth)
+    time = result.data[TIME].to_numpy()[part.rows]
+    return frequency if frequency * (time[-1] - time[0]) >= 1.0 else None
 
 
 @dataclass(frozen=True)
