@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.error import relative_error
-from herringbone.analysis.monolithic import Twin
+from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
 from herringbone.analysis.stability import warn_if_unstable
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component
@@ -105,8 +105,8 @@ def run(
     for instance, file in (replace_parts or {}).items():
         structure = structure.with_fmu(instance, Path(file))
     structure, notes = started(structure, chosen)
-    if reference and structure.foreign_parts:
-        Twin(structure)
+    if reference:
+        refuse_foreign_parts(structure)
     parts = open_parts(structure, fmu)
     try:
         if coupling is None:

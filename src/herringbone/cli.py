@@ -86,9 +86,13 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _run_options(sub: argparse.ArgumentParser) -> None:
+def _scene_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
     sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+
+
+def _run_options(sub: argparse.ArgumentParser) -> None:
+    _scene_options(sub)
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
@@ -105,10 +109,14 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def _chart_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
-    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+def _comparison_options(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compare algorithms on a scene."""
+    _scene_options(sub)
     sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+
+
+def _chart_options(sub: argparse.ArgumentParser) -> None:
+    _comparison_options(sub)
     sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     sub.add_argument("--fmu", default="python", help="python (default) or in-process")
@@ -117,9 +125,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _stability_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
-    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
-    sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+    _comparison_options(sub)
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
     sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
     sub.add_argument("--set", action="append", default=[], metavar=_SET)

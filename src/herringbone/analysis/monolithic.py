@@ -23,6 +23,19 @@ TOLERANCE = 1e-10
 _SMALLEST = 1e-15
 
 
+def refuse_foreign_parts(system: System) -> None:
+    """Check that the equations of all parts are known.
+
+    Raises:
+        StructureError: a part is a foreign FMU.
+    """
+    if system.foreign_parts:
+        raise StructureError(
+            f"{', '.join(system.foreign_parts)} is a foreign FMU: its equations are not known, so "
+            "that there is no monolithic reference for this system"
+        )
+
+
 def make_instances(system: System) -> list[Instance]:
     """Instances of a system's components, values set and initialised.
 
@@ -30,11 +43,7 @@ def make_instances(system: System) -> list[Instance]:
         StructureError: a part is a foreign FMU, whose equations are not known.
         ParameterError, ResourceError: bad values.
     """
-    if system.foreign_parts:
-        raise StructureError(
-            f"{', '.join(system.foreign_parts)} is a foreign FMU: its equations are not known, so "
-            "that there is no monolithic reference for this system"
-        )
+    refuse_foreign_parts(system)
     instances = []
     for spec in system.parts:
         instance = Instance(component(str(spec.component)), spec.name)

@@ -16,7 +16,8 @@ DONE, PART_FAILED, NOT_FINITE, COUPLING_FAILED = 0, 1, 2, 4
 """Status of a chunk of macro steps."""
 BOUND = 1e30
 """Signals beyond this, in SI units, have diverged."""
-_LAST_GOOD = 1  # fmi2Warning
+LAST_GOOD = 1
+"""Largest FMI status after which a run goes on: fmi2Warning."""
 _REAL, _REFERENCE = 8, 4
 
 
@@ -125,7 +126,7 @@ def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> i
     """Get the outputs of all parts, recorded in a row; FMI status."""
     for p in range(plan.component.size):
         status = get_outputs(plan, history, p, records, row)
-        if status > _LAST_GOOD:
+        if status > LAST_GOOD:
             return status
     return 0
 
@@ -145,14 +146,14 @@ def step_stage(
     """Step the parts of one stage over the macro step; -1, or the part that failed."""
     first, end = plan.stage_first[stage], plan.stage_first[stage + 1]
     for k in range(first, end):
-        if set_inputs(plan, history, plan.stage_part[k], order, known) > _LAST_GOOD:
+        if set_inputs(plan, history, plan.stage_part[k], order, known) > LAST_GOOD:
             return plan.stage_part[k]
     for k in range(first, end):
         p = plan.stage_part[k]
-        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+        if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:
             return p
     for k in range(first, end):
-        if get_outputs(plan, history, plan.stage_part[k], records, row) > _LAST_GOOD:
+        if get_outputs(plan, history, plan.stage_part[k], records, row) > LAST_GOOD:
             return plan.stage_part[k]
     return -1
 

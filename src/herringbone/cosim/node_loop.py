@@ -12,6 +12,7 @@ import numpy as np
 from herringbone.cosim.calls import do_step, state_call
 from herringbone.cosim.loop import (
     DONE,
+    LAST_GOOD,
     NOT_FINITE,
     PART_FAILED,
     exchange,
@@ -27,7 +28,6 @@ from herringbone.kernels.jit import kernel
 
 REFRESH = 3
 """Status: the correction no longer contracts; a new Jacobian is wanted."""
-_LAST_GOOD = 1
 
 
 @kernel
@@ -40,7 +40,7 @@ def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
                 continue
             if buffers.states[p] != 0:
                 state_call(nodes.free_state[p], plan.component[p], at + 8 * p)
-            if state_call(nodes.get_state[p], plan.component[p], at + 8 * p) > _LAST_GOOD:
+            if state_call(nodes.get_state[p], plan.component[p], at + 8 * p) > LAST_GOOD:
                 return p
     return -1
 
@@ -55,7 +55,7 @@ def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int
             if nodes.get_state[p] == 0 or (is_source and not sources):
                 continue
             status = state_call(nodes.set_state[p], plan.component[p], buffers.states[p])
-            if status > _LAST_GOOD:
+            if status > LAST_GOOD:
                 return p
     return -1
 
@@ -123,14 +123,14 @@ def _step_group(
 ) -> int:
     """Set, step and get a group of parts that do not see each other; -1, or who failed."""
     for p in group:
-        if _set_from_nodes(plan, nodes, buffers, p) > _LAST_GOOD:
+        if _set_from_nodes(plan, nodes, buffers, p) > LAST_GOOD:
             return p
     for p in group:
         buffers.passes[p] += 1
-        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+        if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:
             return p
     for p in group:
-        if _get_to_nodes(plan, nodes, buffers, p) > _LAST_GOOD:
+        if _get_to_nodes(plan, nodes, buffers, p) > LAST_GOOD:
             return p
     return -1
 
@@ -284,7 +284,7 @@ def run_iterated(
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
         for p in range(plan.component.size if row >= 0 else 0):
-            if get_outputs(plan, buffers.history, p, chunk.records, row) > _LAST_GOOD:
+            if get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:
                 return PART_FAILED, n + 1, p
         if contraction > control.slow:
             return REFRESH, n + 1, -1

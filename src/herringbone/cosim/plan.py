@@ -100,6 +100,21 @@ def _set_references(part: Part, inputs: Sequence[str], degree: int) -> list[int]
     ]
 
 
+def node_references(
+    parts: Sequence[Part], outputs: Sequence[Sequence[str]], degrees: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Outputs at node 1 ... degree of each part, node by node: offsets and value references."""
+    rows = [
+        [
+            part.variables[node_name(name, node)].reference
+            for node in range(1, degree + 1)
+            for name in names
+        ]
+        for part, names, degree in zip(parts, outputs, degrees, strict=True)
+    ]
+    return _offsets([len(row) for row in rows]), _references(rows)
+
+
 def connected_outputs(
     network: Network, extra: Sequence[Sequence[str]] | None = None
 ) -> list[list[str]]:

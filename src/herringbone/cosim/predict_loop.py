@@ -7,6 +7,7 @@ import numpy as np
 from herringbone.cosim.calls import do_step
 from herringbone.cosim.loop import (
     DONE,
+    LAST_GOOD,
     NOT_FINITE,
     PART_FAILED,
     exchange,
@@ -22,7 +23,6 @@ from herringbone.kernels.jit import kernel
 
 NODES = 3
 """Degree at which elements take motions and give forces."""
-_LAST_GOOD = 1
 
 
 class Prediction(NamedTuple):
@@ -79,10 +79,10 @@ def _step_element(
     status = exchange(
         plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
     )
-    if status > _LAST_GOOD:
+    if status > LAST_GOOD:
         return status
     status = do_step(plan.do_step[p], plan.component[p], t, h)
-    if status > _LAST_GOOD:
+    if status > LAST_GOOD:
         return status
     begin, stop = prediction.node_first[p], prediction.node_first[p + 1]
     status = exchange(
@@ -128,13 +128,13 @@ def _step_parts(
 ) -> int:
     """Step elements on predicted motions, then bodies on their forces; -1, or who failed."""
     for p in prediction.elements:
-        if _step_element(plan, prediction, history, p, known, t, h) > _LAST_GOOD:
+        if _step_element(plan, prediction, history, p, known, t, h) > LAST_GOOD:
             return p
     for p in prediction.bodies:
-        if _set_body(plan, prediction, history, p, known) > _LAST_GOOD:
+        if _set_body(plan, prediction, history, p, known) > LAST_GOOD:
             return p
     for p in prediction.bodies:
-        if do_step(plan.do_step[p], plan.component[p], t, h) > _LAST_GOOD:
+        if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:
             return p
     return -1
 
@@ -146,7 +146,7 @@ def _read_parts(
     """Read the outputs of bodies and elements; -1, or who failed."""
     for group in (prediction.bodies, prediction.elements):
         for p in group:
-            if get_outputs(plan, history, p, records, row) > _LAST_GOOD:
+            if get_outputs(plan, history, p, records, row) > LAST_GOOD:
                 return p
     return -1
 

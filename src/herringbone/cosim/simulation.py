@@ -39,7 +39,7 @@ class Recording:
         macro_steps: macro steps that were completed.
         passes: doStep calls by instance.
         rollbacks: state restores.
-        wall_seconds: wall time of the loop.
+        wall_seconds: wall time of the loop, without compilation and the first Jacobian.
         notes: downgrades and other lines that the user should read.
     """
 

@@ -8,7 +8,7 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar, Protocol, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -50,8 +50,8 @@ class Algorithm(ABC):
         return f"{self.name}:{options}" if options else self.name
 
 
-class PreparedRun(Protocol):
-    """A network laid out for an algorithm, ready to run.
+class PreparedRun(ABC):
+    """A network laid out for an algorithm, ready to run; each part steps once a macro step.
 
     Attributes:
         plan: parts and signals.
@@ -67,17 +67,20 @@ class PreparedRun(Protocol):
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""
+        return [macro_steps] * len(self.degree)
 
     @property
     def rollbacks(self) -> int:
         """State restores so far."""
+        return 0
 
+    @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; arguments and result are those of `loop.run_stages`."""
 
 
 @dataclass(frozen=True)
-class Prepared:
+class Prepared(PreparedRun):
     """A network laid out for an algorithm that steps stages.
 
     Attributes:
@@ -94,15 +97,6 @@ class Prepared:
     notes: tuple[str, ...]
     starter: Plan | None = None
     problem: str = ""
-
-    def passes(self, macro_steps: int) -> list[int]:
-        """doStep calls of each part."""
-        return [macro_steps] * len(self.degree)
-
-    @property
-    def rollbacks(self) -> int:
-        """State restores: none in these schemes."""
-        return 0
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""

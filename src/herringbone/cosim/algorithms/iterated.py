@@ -7,11 +7,12 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
+from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
 from herringbone.cosim.node_loop import REFRESH, run_iterated, sensitivity
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
-from herringbone.cosim.plan import Chunk, build_plan, connected_outputs
+from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
 
 PREDICTION = 2
 """Degree of the prediction; one correction makes the result nearly independent of it."""
@@ -71,7 +72,7 @@ def check_rollback(name: str, network: Network) -> None:
         )
 
 
-class PreparedNodes:
+class PreparedNodes(PreparedRun):
     """A network laid out for an iterated algorithm.
 
     Args:
@@ -111,16 +112,6 @@ class PreparedNodes:
                 if c.target in bodies and c.source not in network.sources
             }
         )
-        rows = [
-            [
-                parts[p].variables[node_name(n, node)].reference
-                for node in range(1, degree + 1)
-                for n in names
-            ]
-            if self.degree[p]
-            else []
-            for p, names in enumerate(self._outputs)
-        ]
         state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
         return NodePlan(
             degree,
@@ -128,8 +119,7 @@ class PreparedNodes:
             np.array(network.bodies, dtype=np.int64),
             np.array(network.elements, dtype=np.int64),
             np.array(network.sources, dtype=np.int64),
-            np.concatenate(([0], np.cumsum([len(r) for r in rows]))).astype(np.int64),
-            np.array([r for row in rows for r in row], dtype=np.uint32),
+            *node_references(parts, self._outputs, self.degree),
             _mean_weights(degree),
             *(state[:, k].copy() for k in range(3)),
         )

@@ -19,11 +19,16 @@ from typing import ClassVar
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
-from herringbone.cosim.algorithms.base import Algorithm, prepare_stages
+from herringbone.cosim.algorithms.base import Algorithm, PreparedRun, prepare_stages
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Chunk, Plan, build_plan, connected_outputs
+from herringbone.cosim.plan import (
+    Chunk,
+    Plan,
+    build_plan,
+    connected_outputs,
+    node_references,
+)
 from herringbone.cosim.predict_loop import NODES, Prediction, run_predicted
 
 _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
@@ -75,7 +80,7 @@ class Predict(Algorithm):
         return PreparedPrediction(network)
 
 
-class PreparedPrediction:
+class PreparedPrediction(PreparedRun):
     """A network laid out for predicted motions."""
 
     def __init__(self, network: Network) -> None:
@@ -108,36 +113,19 @@ class PreparedPrediction:
                  if k in moved and rate[k] == -1]  # fmt: skip
         if blind:
             self.notes += (f"{', '.join(blind)}: no rate is known; extrapolated instead",)
-        rows = [
-            [
-                network.parts[p].variables[node_name(n, node)].reference
-                for node in range(1, NODES + 1)
-                for n in names
-            ]
-            if p in elements
-            else []
-            for p, names in enumerate(outputs)
-        ]
+        degrees = [NODES if p in elements else 0 for p in range(len(outputs))]
+        node_first, node_reference = node_references(network.parts, outputs, degrees)
         return Prediction(
             rate,
             second,
             np.array(network.elements, dtype=np.int64),
             np.array(network.bodies, dtype=np.int64),
             int(bool(network.sources)),
-            np.concatenate(([0], np.cumsum([len(r) for r in rows]))).astype(np.int64),
-            np.array([r for row in rows for r in row], dtype=np.uint32),
+            node_first,
+            node_reference,
             np.zeros((NODES + 1, len(place))),
-            np.zeros(max([1, *(len(r) for r in rows)])),
+            np.zeros(max(1, int(np.diff(node_first).max()))),
         )
-
-    def passes(self, macro_steps: int) -> list[int]:
-        """doStep calls of each part."""
-        return [macro_steps] * len(self.degree)
-
-    @property
-    def rollbacks(self) -> int:
-        """State restores: none."""
-        return 0
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
