@@ -48,6 +48,7 @@ ONLY_IN: dict[str, set[str]] = {
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},
+    "pypardiso": {"housing/eigenmodes.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""
 

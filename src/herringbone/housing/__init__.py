@@ -1,0 +1,1 @@
+"""Housings off line: finite elements, reduction, the neutral format, importers."""
