@@ -1,0 +1,17 @@
+"""The involute function and its inverse."""
+
+import math
+
+from scipy.optimize import brentq
+
+
+def involute(angle: float) -> float:
+    """inv(alpha) = tan(alpha) - alpha [rad]."""
+    return math.tan(angle) - angle
+
+
+def involute_angle(value: float) -> float:
+    """The angle [rad] whose involute function is `value` >= 0."""
+    if value == 0.0:
+        return 0.0
+    return brentq(lambda angle: involute(angle) - value, 0.0, 0.5 * math.pi - 1e-6, xtol=1e-15)

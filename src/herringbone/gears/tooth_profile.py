@@ -1,0 +1,162 @@
+r"""A tooth cut by its basic rack: trochoid fillet, then involute.
+
+The rack stands in the normal section (ISO 53): straight flanks at alpha_n and a tip rounding of
+radius rho_fP. In the transverse section lengths along the pitch line are 1 / cos(beta) longer, so
+that the rounding becomes an arc of an ellipse. A point (u, v) of the rack, v from the rolling pitch
+line away from the gear's centre, touches the gear when its normal passes through the pitch point:
+
+    s = -u - v dv/du,    phi = s / r,
+
+and the gear's point is (u + s, v + r) turned back by phi. The tooth is symmetric to its axis, the y
+axis; coordinates are those of its right flank.
+
+Source: F. L. Litvin and A. Fuentes, Gear Geometry and Applied Theory (2004), chapter 6.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from herringbone.core import ParameterError
+from herringbone.gears.involute import involute
+
+
+@dataclass(frozen=True)
+class Rack:
+    """Basic rack in the normal section; lengths in m.
+
+    Attributes:
+        module: m_n.
+        pressure_angle: alpha_n [rad].
+        dedendum: h_fP, of the gear's tooth: depth of the rack's tip below its datum line.
+        fillet_radius: rho_fP.
+        profile_shift: x m_n, of the datum line from the reference circle.
+    """
+
+    module: float
+    pressure_angle: float
+    dedendum: float
+    fillet_radius: float
+    profile_shift: float
+
+
+@dataclass(frozen=True)
+class ToothProfile:
+    """Right flank of a tooth whose axis is +y and whose gear's centre is the origin.
+
+    Attributes:
+        fillet: (n, 2) points [m] from the root circle to the beginning of the involute.
+        flank: (n, 2) points [m] of the involute, from there to the tip.
+        reference_radius: r [m].
+        base_radius: r_b [m].
+        root_radius: r_f [m], where the fillet begins.
+        form_radius: r_Ff [m], where the involute begins.
+        tip_radius: r_a [m].
+        reference_half_angle: half of the tooth's angle at the reference circle [rad].
+        number_of_teeth: z; not an integer for a virtual gear.
+    """
+
+    fillet: np.ndarray
+    flank: np.ndarray
+    reference_radius: float
+    base_radius: float
+    root_radius: float
+    form_radius: float
+    tip_radius: float
+    reference_half_angle: float
+    number_of_teeth: float
+
+    @property
+    def points(self) -> np.ndarray:
+        """(m, 2) points of fillet and flank [m], from root to tip."""
+        return np.vstack([self.fillet, self.flank[1:]])
+
+    @property
+    def root_half_angle(self) -> float:
+        """Angle [rad] between the tooth's axis and the beginning of the fillet."""
+        return math.atan2(*self.fillet[0])
+
+    @property
+    def pitch_angle(self) -> float:
+        """Angle [rad] of one tooth and one space."""
+        return 2.0 * math.pi / self.number_of_teeth
+
+    def half_angle(self, radius: float) -> float:
+        """Half of the tooth's angle [rad] at a radius of the involute [m]."""
+        at = self.reference_half_angle + involute(
+            math.acos(self.base_radius / self.reference_radius)
+        )
+        return at - involute(math.acos(min(1.0, self.base_radius / radius)))
+
+
+def generate_tooth(
+    rack: Rack,
+    number_of_teeth: float,
+    tip_radius: float,
+    *,
+    helix_angle: float = 0.0,
+    points: int = 200,
+) -> ToothProfile:
+    """Cut a tooth.
+
+    Args:
+        rack: basic rack.
+        number_of_teeth: z.
+        tip_radius: r_a [m].
+        helix_angle: beta [rad].
+        points: on the fillet and on the involute, each.
+
+    Raises:
+        ParameterError: the tooth would be undercut, or has no flank.
+    """
+    longer = 1.0 / math.cos(helix_angle)
+    alpha_n, x = rack.pressure_angle, rack.profile_shift
+    alpha = math.atan(math.tan(alpha_n) * longer)
+    radius = 0.5 * number_of_teeth * rack.module * longer
+    base = radius * math.cos(alpha)
+    half_thickness = 0.25 * math.pi * rack.module + x * math.tan(alpha_n)
+    centre = x - rack.dedendum + rack.fillet_radius
+    tangent = centre - rack.fillet_radius * math.sin(alpha_n)
+    least = -radius * math.sin(alpha) ** 2
+    if tangent < least:
+        raise ParameterError(
+            f"teeth of the gear with z = {number_of_teeth:.6g} are undercut: its profile shift "
+            f"coefficient {x / rack.module:.4g} must be at least "
+            f"{(x + least - tangent) / rack.module:.4g}, or the dedendum smaller"
+        )
+    form = math.hypot(tangent / math.tan(alpha), radius + tangent)
+    if form >= tip_radius:
+        raise ParameterError(
+            f"teeth of the gear with z = {number_of_teeth:.6g} have no flank: the involute begins "
+            f"at radius {1e3 * form:.4f} mm, the tip is at {1e3 * tip_radius:.4f} mm"
+        )
+    along = half_thickness - tangent * math.tan(alpha_n) + rack.fillet_radius * math.cos(alpha_n)
+    theta = np.linspace(0.5 * math.pi, alpha_n, points)
+    u = longer * (along - rack.fillet_radius * np.cos(theta))
+    v = centre - rack.fillet_radius * np.sin(theta)
+    fillet = _rolled(u, v, v / (longer * np.tan(theta)), radius)
+    half_angle = half_thickness * longer / radius
+    radii = np.linspace(form, tip_radius, points)
+    at = np.arccos(np.minimum(1.0, base / radii))
+    turned = half_angle + involute(alpha) - (np.tan(at) - at)
+    flank = np.column_stack([radii * np.sin(turned), radii * np.cos(turned)])
+    return ToothProfile(
+        fillet,
+        flank,
+        radius,
+        base,
+        radius + x - rack.dedendum,
+        form,
+        tip_radius,
+        half_angle,
+        number_of_teeth,
+    )
+
+
+def _rolled(u: np.ndarray, v: np.ndarray, reach: np.ndarray, radius: float) -> np.ndarray:
+    """Points that a rack's points cut; `reach` is where they touch, from the pitch point."""
+    phi = (reach - u) / radius
+    x = reach * np.cos(phi) - (v + radius) * np.sin(phi)
+    y = reach * np.sin(phi) + (v + radius) * np.cos(phi)
+    return np.column_stack([x, y])
