@@ -28,31 +28,58 @@ def read_modes(
         ResourceError: see `read_flat_csv`; unknown kind, frequency or damping out of range,
             missing seat, numbers of modes that differ or are too large.
     """
+    _, frequency_hz, damping_ratio = read_mode_table(modes)
+    if frequency_hz.size > most:
+        raise ResourceError(f"{modes}: {frequency_hz.size} modes; at most {most}")
+    keys, values = read_shape_table(shapes)
+    if values.shape[1] != frequency_hz.size:
+        raise ResourceError(
+            f"{shapes} has {values.shape[1]} modes, {modes} has {frequency_hz.size}"
+        )
+    rows = {key: i for i, key in enumerate(keys)}
+    missing = [f"{point} {dof}" for point, dof in dofs if (point, dof) not in rows]
+    if missing:
+        raise ResourceError(f"{shapes}: rows are missing for {', '.join(missing)}")
+    return frequency_hz, damping_ratio, values[[rows[d] for d in dofs]]
+
+
+def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Read and check the table of modes.
+
+    Returns:
+        kind (n,), frequency_hz (n,) [Hz], damping_ratio (n,) [1].
+
+    Raises:
+        ResourceError: see `read_flat_csv`; unknown kind, frequency or damping out of range.
+    """
     columns, _ = read_flat_csv(
         modes, ("kind",), {"mode": ("1",), "frequency_hz": ("Hz",), "damping_ratio": ("1",)}
     )
     frequency_hz, damping_ratio = columns["frequency_hz"], columns["damping_ratio"]
     _check_modes(columns["kind"], frequency_hz, damping_ratio, modes)
-    if frequency_hz.size > most:
-        raise ResourceError(f"{modes}: {frequency_hz.size} modes; at most {most}")
+    return tuple(map(str, columns["kind"])), frequency_hz, damping_ratio
+
+
+def read_shape_table(shapes: Path) -> tuple[tuple[tuple[str, str], ...], np.ndarray]:
+    """Read and check the table of shapes.
+
+    Returns:
+        (point, dof) of the d rows, and the shapes (d, n) [kg^-1/2].
+
+    Raises:
+        ResourceError: see `read_flat_csv`; not mass-normalised, or a row stands twice.
+    """
     table, units = read_flat_csv(shapes, ("point", "dof"), {}, more="shape")
     if units.get("shape") != "kg^-1/2":
         raise ResourceError(
             f"{shapes}: shapes have unit '{units.get('shape', 'none')}' in the '# units:' line; "
             "they must be mass-normalised, 'shape kg^-1/2'"
         )
-    values = np.array([v for name, v in table.items() if name not in {"point", "dof"}])
-    if values.shape[0] != frequency_hz.size:
-        raise ResourceError(
-            f"{shapes} has {values.shape[0]} modes, {modes} has {frequency_hz.size}"
-        )
-    rows = {key: i for i, key in enumerate(zip(table["point"], table["dof"], strict=True))}
-    if len(rows) < len(table["point"]):
+    rows = tuple((str(p), str(d)) for p, d in zip(table["point"], table["dof"], strict=True))
+    if len(set(rows)) < len(rows):
         raise ResourceError(f"{shapes}: a point and dof stand twice")
-    missing = [f"{point} {dof}" for point, dof in dofs if (point, dof) not in rows]
-    if missing:
-        raise ResourceError(f"{shapes}: rows are missing for {', '.join(missing)}")
-    return frequency_hz, damping_ratio, values[:, [rows[d] for d in dofs]].T
+    names = [name for name in table if name not in {"point", "dof"}]
+    return rows, np.array([table[name] for name in names]).reshape(len(names), len(rows)).T
 
 
 def _check_modes(

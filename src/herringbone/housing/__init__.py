@@ -1,1 +1,24 @@
-"""Housings off line: finite elements, reduction, the neutral format, importers."""
+"""Housings, off line: modal models, their file format, how they are made, reduced and imported."""
+
+from herringbone.core.paths import resources_folder
+from herringbone.housing.modal_model import SEAT_DOFS, Frame, ModalHousing, Point
+from herringbone.housing.reader import read_housing
+from herringbone.housing.writer import write_housing
+
+__all__ = [
+    "SEAT_DOFS",
+    "Frame",
+    "ModalHousing",
+    "Point",
+    "default_housing",
+    "read_housing",
+    "write_housing",
+]
+
+
+def default_housing() -> ModalHousing:
+    """The housing that the component `modal_housing` has by default.
+
+    A welded housing calibrated to the published frequencies; its geometry is not published.
+    """
+    return read_housing(resources_folder("modal_housing"))
