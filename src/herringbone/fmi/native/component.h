@@ -1,0 +1,116 @@
+/* What the FMI wrapper knows of a component.
+
+   The build generates one C file that defines `hb_component` from the component's declaration, and
+   one object with its kernels. Everything else of a native FMU is the same for all components.
+
+   The block is one array of doubles: states (hidden ones last), inputs, outputs, locals, parameters,
+   tables. The value reference of a real is its index in the block. */
+
+#ifndef HERRINGBONE_COMPONENT_H
+#define HERRINGBONE_COMPONENT_H
+
+#include <stdint.h>
+
+/* Values of a signal with nodes: X, X.node1 ... X.node4, side by side in the block. */
+#define HB_STRIDE 5
+/* Numbers that a refusal may show. */
+#define HB_REPORT 6
+
+/* What the environment may do with an entry of the block. */
+enum HbAccess {
+    HB_HIDDEN,     /* no FMI variable: hidden states */
+    HB_INPUT,      /* set at any time */
+    HB_CALCULATED, /* outputs and locals: never set */
+    HB_STATE,      /* set until initialisation ends */
+    HB_FIXED,      /* parameter, set until initialisation ends */
+    HB_TUNABLE     /* parameter, set at any time */
+};
+
+/* A real variable; the nodes of a signal are variables too ("X.node1"). */
+typedef struct {
+    const char *name, *unit; /* name is NULL for a hidden state */
+    double start, minimum, maximum;
+    double nominal; /* of a state, hidden or not; 1 otherwise */
+} HbReal;
+
+/* A column of a resource file. */
+typedef struct {
+    const char *name;
+    const char *const *units; /* numbers: units it may have, NULL at the end; NULL: words */
+    const char *const *words; /* words: the k-th one is read as k, NULL at the end */
+    uint8_t other_words;      /* further words are allowed, and read as -1 */
+    uint8_t rest;             /* the last entry only: all further columns of the file, whatever their
+                                 names, are numbers in the unit that stands under this name */
+} HbColumn;
+
+/* A String parameter that names a resource file; `columns` is its grammar. */
+typedef struct {
+    const char *name, *start;
+    const HbColumn *columns;
+    uint32_t column_count;
+} HbText;
+
+/* Why the load kernel refuses: `text` is the resource file at fault (index in `texts`); the message
+   is the file's path, then `format` with the report's numbers. The format has %g conversions only,
+   at most HB_REPORT. */
+typedef struct {
+    uint32_t text;
+    const char *format;
+} HbRefusal;
+
+typedef struct {
+    const char *name;    /* FMI model identifier */
+    const char *token;   /* guid of FMI 2, instantiationToken of FMI 3 */
+    const char *sources; /* hash of the sources; part of a serialised state */
+
+    /* Layout of the block. */
+    uint32_t states; /* hidden ones included; they start at 0 */
+    uint32_t visible_states;
+    uint32_t first_input, inputs;        /* each HB_STRIDE long */
+    uint32_t first_output, node_outputs; /* outputs with nodes, each HB_STRIDE long */
+    uint32_t mutable_size;               /* length of what a step may change; parameters follow */
+    uint32_t first_table, size;
+    uint32_t work;   /* length of the kernels' work space; zeroed when parameters or tables change */
+    uint32_t degree; /* index of the parameter interface_degree */
+
+    /* Entries 0 ... first_table - 1 of the block. */
+    const HbReal *reals;
+    const uint8_t *access;  /* HbAccess */
+    const uint8_t *extents; /* FMI 3: length of the array variable that starts here; 0: none does.
+                               A signal with nodes is the scalar X and the array X.node[4]. */
+
+    uint32_t texts_count;
+    const HbText *texts; /* value references size + k */
+
+    /* Value references of FMI 3's `time` and of the states' derivatives follow those of the texts:
+       der(state i) is size + texts_count + i, time is size + texts_count + states. */
+
+    /* Kernels; those from `start` on are NULL if the component has none. 0 is success. */
+    int32_t (*step)(double *b, double *w, double t, double h);
+    void (*rhs)(double *b, double t, double *dx);
+    void (*out)(double *b, double t);
+    /* States from start parameters, before `out`, whenever the block changes in initialisation. */
+    void (*start)(double *b);
+    /* Tables from resource files: a refusal's number, counted from 1, or 0.
+       values: file after file; for each one a number per declared column (index of the unit that the
+       file uses, 0 for words), then its rows, columns in declared order, further ones in file order.
+       shape: for each file (rows, columns). scratch: `load_scratch` long.
+       report: HB_REPORT numbers for the refusal's format. */
+    int32_t (*load)(const double *values, const int64_t *shape, double *b, double *scratch,
+                    double *report);
+    uint32_t load_scratch;
+    uint32_t refusals_count;
+    const HbRefusal *refusals;
+
+    /* Model exchange, offered if `model_exchange`. */
+    uint32_t model_exchange;
+    uint32_t indicators_count;
+    void (*indicators)(double *b, double t, double *z);
+    /* Directional derivative. seed: direction, for every entry below first_table. result: outputs and
+       locals at their index, the derivative of state i at first_table + i. */
+    void (*tangent)(double *b, double t, const double *seed, double *result);
+} HbComponent;
+
+extern const HbComponent hb_component;
+
+#endif
