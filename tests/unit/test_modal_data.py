@@ -56,7 +56,7 @@ def swap(text: str, old: str, new: str) -> str:
 
 
 BAD_MODES = [
-    ("2,normal", "2,elastic", "mode 2: kind 'elastic' is none of normal, residual, rigid"),
+    ("2,normal", "2,elastic", "kind 'elastic' is none of normal, residual, rigid"),
     ("normal,250.5", "normal,0", "mode 2: frequency 0 Hz must be positive (0 only if rigid)"),
     ("normal,250.5", "normal,-3", "mode 2: frequency -3 Hz must be positive"),
     ("rigid,0,", "rigid,-1,", "mode 1: frequency -1 Hz must be positive"),
@@ -66,7 +66,6 @@ BAD_MODES = [
     ("frequency_hz Hz", "frequency_hz rad/s", "'frequency_hz' has unit 'rad/s'"),
     (",damping_ratio\n", ",zeta\n", "column damping_ratio is missing"),
     ("# units", "# unit", "the first line must be '# units:"),
-    ("3,residual,5000,0.02\n", "", "shapes.csv has 3 modes, "),
 ]
 
 
@@ -78,10 +77,10 @@ def test_bad_modes(message, old, new, expected):
 
 
 BAD_SHAPES = [
-    ("wheel_right,z", "wheel_right,y", "rows are missing for wheel_right z"),
-    ("pinion_left,x,0.1,-0.2,0.3\n", "", "rows are missing for pinion_left x"),
-    ("kg^-1/2", "1", "shapes have unit '1'"),
-    ("# units: shape kg^-1/2", "# units: form kg^-1/2", "shapes have unit 'none'"),
+    ("wheel_right,z", "wheel_right,y", "1 of 2 rows are missing, the first for wheel_right z"),
+    ("pinion_left,x,0.1,-0.2,0.3\n", "", "1 of 2 rows are missing, the first for pinion_left x"),
+    ("kg^-1/2", "1", "column 'shape' has unit '1'"),
+    ("# units: shape kg^-1/2", "# units: form kg^-1/2", "column 'shape' has unit 'none'"),
     ("-0.2", "inf", "line 5: m2 = 'inf' is not a finite number"),
     ("-0.2,0.3", "-0.2", "line 5: 4 fields, 5 expected"),
     ("point,dof", "seat,dof", "column point is missing"),
@@ -95,9 +94,19 @@ def test_bad_shapes(message, old, new, expected):
     assert "shapes.csv" in text
 
 
-def test_all_missing_seats_are_named(message):
+def test_other_number_of_modes(message):
+    text = message(modes=swap(MODES, "3,residual,5000,0.02\n", ""))
+    assert "shapes.csv has 3 modes, the file of frequencies has 2" in text
+
+
+def test_row_that_stands_twice(message):
+    text = message(shapes=SHAPES + "pinion_left,x,1,2,3\n")
+    assert "shapes.csv: a point and dof stand twice" in text
+
+
+def test_all_missing_rows_are_counted(message):
     text = message(shapes="\n".join(SHAPES.splitlines()[:2]) + "\nsensor,y,7,8,9\n")
-    assert "rows are missing for pinion_left x, wheel_right z" in text
+    assert "2 of 2 rows are missing, the first for pinion_left x" in text
 
 
 def test_too_many_modes(message):

@@ -12,19 +12,19 @@ Source: the test control of the thesis, chapter 5 (TCT1000).
 """
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.flat_csv import read_flat_csv
-from herringbone.core import Component, Declaration, Kernels, ResourceError, Text, output, parameter
+from herringbone.components.resource_loader import Refusal, ResourceLoader
+from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
 ROWS = 256
 """Most rows of a cycle."""
-_UNITS = {"time": ("s",), "speed": ("r/min", "rad/s"), "torque": ("N.m",)}
+_COLUMNS = (Column("time", ("s",)), Column("speed", ("r/min", "rad/s")), Column("torque", ("N.m",)))
+_WIDTH = len(_COLUMNS)
+_PER_MINUTE = 0
 
 _d = Declaration(
     "bench_controller",
@@ -37,7 +37,7 @@ _d = Declaration(
         parameter("torque_factor", "1", "multiplies the cycle's torque", 1.0),
         parameter("load_ramp_time", "s", "torque rises from zero over this time", 0.0, minimum=0),
     ],
-    texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv")],
+    texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv", _COLUMNS)],
     tables=1 + 3 * ROWS,
 )
 
@@ -81,20 +81,32 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, t, h, int(b[_DEGREE]))
 
 
-def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
-    file = files["cycle"]
-    columns, units = read_flat_csv(file, (), _UNITS)
-    time, speed, torque = (columns[name] for name in _UNITS)
-    if time.size > ROWS:
-        raise ResourceError(f"{file}: {time.size} rows; at most {ROWS}")
-    if (falls := np.flatnonzero(np.diff(time) <= 0.0)).size:
-        i = falls[0]
-        raise ResourceError(f"{file}: time does not rise from {time[i]:g} s to {time[i + 1]:g} s")
-    if units["speed"].strip() == "r/min":
-        speed = speed * math.pi / 30.0
-    block[_COUNT] = time.size
-    for at, values in ((_TIMES, time), (_SPEEDS, speed), (_TORQUES, torque)):
-        block[at : at + time.size] = values
+_TOO_LONG, _NOT_RISING = 1, 2
+_REFUSALS = (
+    Refusal(f": %g rows; at most {ROWS}"),
+    Refusal(": time does not rise from %g s to %g s"),
+)
+
+
+@kernel
+def _load(
+    values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
+) -> int:
+    rows = shape[0]
+    if rows > ROWS:
+        report[0] = rows
+        return _TOO_LONG
+    b[_COUNT] = rows
+    for i in range(rows):
+        at = _WIDTH * (i + 1)
+        speed = values[at + 1]
+        b[_TIMES + i] = values[at]
+        b[_SPEEDS + i] = speed * math.pi / 30.0 if values[1] == _PER_MINUTE else speed
+        b[_TORQUES + i] = values[at + 2]
+        if i > 0 and b[_TIMES + i] <= b[_TIMES + i - 1]:
+            report[0], report[1] = b[_TIMES + i - 1], b[_TIMES + i]
+            return _NOT_RISING
+    return 0
 
 
 def _breakpoints(block: np.ndarray) -> tuple[float, ...]:
@@ -104,5 +116,9 @@ def _breakpoints(block: np.ndarray) -> tuple[float, ...]:
 
 
 BENCH_CONTROLLER = Component(
-    _d, Kernels(_step, _rhs, _out), __doc__, load=_load, breakpoints=_breakpoints
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    load=ResourceLoader(_d.texts, _load, _REFUSALS, scratch=1),
+    breakpoints=_breakpoints,
 )

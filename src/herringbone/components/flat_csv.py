@@ -21,9 +21,10 @@ def _units(line: str, file: Path) -> dict[str, str]:
     return dict(item.split(maxsplit=1) for item in text.strip().split(",") if len(item.split()) > 1)
 
 
-def _check_units(
+def check_units(
     found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: Path
 ) -> None:
+    """Check the units of columns; raises ResourceError."""
     for column, units in wanted.items():
         unit = found.get(column, "").strip()
         if unit not in units:
@@ -55,7 +56,7 @@ def read_flat_csv(
     except (OSError, UnicodeDecodeError) as error:
         raise ResourceError(f"cannot read {file}: {error}") from error
     units = _units(lines[0] if lines else "", file)
-    _check_units(units, numbers, file)
+    check_units(units, numbers, file)
     rows = [(n, r) for n, r in enumerate(csv.reader(lines), 1) if r and not r[0].startswith("#")]
     if len(rows) < 2:
         raise ResourceError(f"{file}: it has no rows")

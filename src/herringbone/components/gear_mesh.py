@@ -58,13 +58,12 @@ stiffnesses of solid steel bodies with 47.3 mm face width per half and a 45 mm g
 """
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
+from herringbone.components import stiffness_table
 from herringbone.components.ports import HALVES, flange_body
-from herringbone.components.stiffness_table import read_stiffness_table
+from herringbone.components.resource_loader import ResourceLoader
 from herringbone.core import (
     Component,
     Declaration,
@@ -227,7 +226,14 @@ _d = Declaration(
         *_gear_parameters("wheel", _WHEEL_TEETH, _BASE_RADIUS[1]),
         *_mesh_parameters(),
     ],
-    texts=[Text("stiffness_table", "stiffness table of both meshes, CSV", "mesh_stiffness.csv")],
+    texts=[
+        Text(
+            "stiffness_table",
+            "stiffness table of both meshes, CSV",
+            "mesh_stiffness.csv",
+            stiffness_table.COLUMNS,
+        )
+    ],
     tables=2 * force_law.TABLE_SIZE + _STATES,
     work=steppers.body_work(_STATES, _INPUTS),
 )
@@ -425,13 +431,18 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return status
 
 
-def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
+@kernel
+def _load(
+    values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
+) -> int:
     """Turn the stiffness table into the force laws of both meshes."""
-    scratch = np.empty(force_law.SCRATCH_SIZE)
-    table = read_stiffness_table(files["stiffness_table"])
-    for at, (loads, stiffness) in zip(_TABLE, table, strict=True):
-        phases = stiffness.shape[1]
-        force_law.build(loads, np.ascontiguousarray(stiffness).ravel(), phases, block, at, scratch)
+    for side in range(2):
+        refusal, loads, phases = stiffness_table.collect(values, shape[0], side, s, report)
+        if refusal:
+            return refusal
+        stiffness, scratch = s[stiffness_table.GRID :], s[stiffness_table.SCRATCH_SIZE :]
+        force_law.build(s[:loads], stiffness, phases, b, _TABLE[side], scratch)
+    return 0
 
 
 def _guess(block: np.ndarray) -> None:
@@ -440,4 +451,11 @@ def _guess(block: np.ndarray) -> None:
     block[_APPROACH] = offset + _CLOSED
 
 
-GEAR_MESH = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_load, guess=_guess)
+_LOADER = ResourceLoader(
+    _d.texts,
+    _load,
+    stiffness_table.REFUSALS,
+    stiffness_table.SCRATCH_SIZE + force_law.SCRATCH_SIZE,
+)
+
+GEAR_MESH = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_LOADER, guess=_guess)

@@ -1,46 +1,166 @@
-"""Reader of the two modal tables: frequencies with damping, and shapes at the seats."""
+"""The two modal tables: frequencies with damping, and shapes at the seats; what is refused.
+
+Modes: columns mode, kind (normal, residual, rigid), frequency_hz [Hz], damping_ratio [1].
+Shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
+"""
 
 from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.flat_csv import read_flat_csv
-from herringbone.core import ResourceError
+from herringbone.components.flat_csv import check_units, read_flat_csv
+from herringbone.components.resource_loader import REPORT, Refusal, read_numbers
+from herringbone.core import Column, ResourceError
+from herringbone.kernels.jit import kernel
+
+Dofs = tuple[tuple[str, str], ...]
 
 _KINDS = ("normal", "residual", "rigid")
+_RIGID = _KINDS.index("rigid")
+MODE_COLUMNS = (
+    Column("mode", ("1",)),
+    Column("kind", words=_KINDS),
+    Column("frequency_hz", ("Hz",)),
+    Column("damping_ratio", ("1",)),
+)
+_WIDTH = len(MODE_COLUMNS)
+_SHAPE_UNITS = ("kg^-1/2",)
+_SHAPE_HEADER, _NAMING = 3, 2
+_FREQUENCY, _DAMPING, _TOO_MANY, _OTHER_COUNT, _TWICE, _MISSING = range(1, 7)
+
+
+def shape_columns(dofs: Dofs) -> tuple[Column, ...]:
+    """Columns of the shapes; rows of other points, such as sensors, are allowed."""
+    points = tuple(dict.fromkeys(point for point, _ in dofs))
+    axes = tuple(dict.fromkeys(axis for _, axis in dofs))
+    return (
+        Column("point", words=points, other_words=True),
+        Column("dof", words=axes, other_words=True),
+        Column("shape", _SHAPE_UNITS, rest=True),
+    )
+
+
+def wanted_rows(dofs: Dofs) -> np.ndarray:
+    """(len(dofs), 2): numbers of point and axis of each dof, as `shape_columns` reads them."""
+    point, axis, _ = shape_columns(dofs)
+    return np.array([[point.words.index(p), axis.words.index(a)] for p, a in dofs])
+
+
+def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
+    """What `collect` may return."""
+    return (
+        Refusal(", mode %g: frequency %g Hz must be positive (0 only if rigid)"),
+        Refusal(", mode %g: damping ratio %g must not be negative"),
+        Refusal(f": %g modes; at most {most}"),
+        Refusal(" has %g modes, the file of frequencies has %g", 1),
+        Refusal(": a point and dof stand twice", 1),
+        *(
+            Refusal(f": %g of {len(dofs)} rows are missing, the first for {point} {axis}", 1)
+            for point, axis in dofs
+        ),
+    )
+
+
+@kernel
+def _check_modes(values: np.ndarray, modes: int, report: np.ndarray) -> int:
+    for mode in range(modes):
+        at = _WIDTH * (mode + 1)
+        kind, frequency_hz, damping_ratio = values[at + 1], values[at + 2], values[at + 3]
+        report[0] = mode + 1
+        if frequency_hz < 0.0 or (frequency_hz == 0.0 and kind != _RIGID):
+            report[1] = frequency_hz
+            return _FREQUENCY
+        if damping_ratio < 0.0:
+            report[1] = damping_ratio
+            return _DAMPING
+    return 0
+
+
+@kernel
+def collect(
+    values: np.ndarray,
+    shape: np.ndarray,
+    wanted: np.ndarray,
+    most: int,
+    out: np.ndarray,
+    at: int,
+    report: np.ndarray,
+) -> int:
+    """Check modes and shapes, and arrange them.
+
+    Args:
+        values, shape: see `ResourceLoader`.
+        wanted: see `wanted_rows`.
+        most: largest number of modes.
+        out, at: the number of modes, `most` frequencies [Hz], `most` damping ratios [1] and the
+            shapes [kg^-1/2] by mode, then by dof, are written to `out[at:]`.
+        report: numbers of a refusal.
+
+    Returns:
+        0 or the number of a refusal (frequency or damping out of range, too many modes, numbers of
+        modes that differ, a row that stands twice or is missing).
+    """
+    modes, rows, columns = shape[0], shape[2], shape[3]
+    refusal = _check_modes(values, modes, report)
+    if refusal:
+        return refusal
+    report[0], report[1] = modes, modes
+    if modes > most:
+        return _TOO_MANY
+    if columns - _NAMING != modes:
+        report[0] = columns - _NAMING
+        return _OTHER_COUNT
+    out[at] = modes
+    for mode in range(modes):
+        out[at + 1 + mode] = values[_WIDTH * (mode + 1) + 2]
+        out[at + 1 + most + mode] = values[_WIDTH * (mode + 1) + 3]
+    first_row = _WIDTH * (modes + 1) + _SHAPE_HEADER
+    dofs = wanted.shape[0]
+    missing, first_missing = 0, 0
+    for k in range(dofs):
+        found = 0
+        for row in range(rows):
+            here = first_row + row * columns
+            if values[here] == wanted[k, 0] and values[here + 1] == wanted[k, 1]:
+                found += 1
+                for mode in range(modes):
+                    out[at + 1 + 2 * most + mode * dofs + k] = values[here + _NAMING + mode]
+        if found > 1:
+            return _TWICE
+        if found == 0:
+            first_missing = k if missing == 0 else first_missing
+            missing += 1
+    report[0] = missing
+    return _MISSING + first_missing if missing else 0
 
 
 def read_modes(
-    modes: Path, shapes: Path, dofs: tuple[tuple[str, str], ...], most: int
+    modes: Path, shapes: Path, dofs: Dofs, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Read and check modes and shapes.
 
     Args:
-        modes: columns mode, kind (normal, residual, rigid), frequency_hz [Hz], damping_ratio [1].
-        shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
-        dofs: (point, dof) pairs that are needed; further rows, such as sensors, are allowed.
+        modes, shapes: the files.
+        dofs: (point, dof) pairs that are needed.
         most: largest number of modes.
 
     Returns:
         frequency_hz (n,), damping_ratio (n,), shapes (len(dofs), n).
 
     Raises:
-        ResourceError: see `read_flat_csv`; unknown kind, frequency or damping out of range,
-            missing seat, numbers of modes that differ or are too large.
+        ResourceError: see `read_numbers` and `collect`.
     """
-    _, frequency_hz, damping_ratio = read_mode_table(modes)
-    if frequency_hz.size > most:
-        raise ResourceError(f"{modes}: {frequency_hz.size} modes; at most {most}")
-    keys, values = read_shape_table(shapes)
-    if values.shape[1] != frequency_hz.size:
-        raise ResourceError(
-            f"{shapes} has {values.shape[1]} modes, {modes} has {frequency_hz.size}"
-        )
-    rows = {key: i for i, key in enumerate(keys)}
-    missing = [f"{point} {dof}" for point, dof in dofs if (point, dof) not in rows]
-    if missing:
-        raise ResourceError(f"{shapes}: rows are missing for {', '.join(missing)}")
-    return frequency_hz, damping_ratio, values[[rows[d] for d in dofs]]
+    first, first_shape = read_numbers(modes, MODE_COLUMNS)
+    second, second_shape = read_numbers(shapes, shape_columns(dofs))
+    shape = np.array([*first_shape, *second_shape])
+    out, report = np.zeros(1 + most * (2 + len(dofs))), np.zeros(REPORT)
+    values = np.concatenate([first, second])
+    refusal = collect(values, shape, wanted_rows(dofs), most, out, 0, report)
+    if refusal:
+        raise refusals(dofs, most)[refusal - 1].error([modes, shapes], report)
+    n = int(out[0])
+    frequency_hz, damping_ratio = out[1 : 1 + n], out[1 + most : 1 + most + n]
+    return frequency_hz, damping_ratio, out[1 + 2 * most :][: n * len(dofs)].reshape(n, -1).T
 
 
 def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
@@ -50,17 +170,17 @@ def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarra
         kind (n,), frequency_hz (n,) [Hz], damping_ratio (n,) [1].
 
     Raises:
-        ResourceError: see `read_flat_csv`; unknown kind, frequency or damping out of range.
+        ResourceError: see `read_numbers`; frequency or damping out of range.
     """
-    columns, _ = read_flat_csv(
-        modes, ("kind",), {"mode": ("1",), "frequency_hz": ("Hz",), "damping_ratio": ("1",)}
-    )
-    frequency_hz, damping_ratio = columns["frequency_hz"], columns["damping_ratio"]
-    _check_modes(columns["kind"], frequency_hz, damping_ratio, modes)
-    return tuple(map(str, columns["kind"])), frequency_hz, damping_ratio
+    values, (count, width) = read_numbers(modes, MODE_COLUMNS)
+    report = np.zeros(REPORT)
+    if refusal := _check_modes(values, count, report):
+        raise refusals((), count)[refusal - 1].error([modes], report)
+    _, kinds, frequency_hz, damping_ratio = values[width:].reshape(count, width).T
+    return tuple(_KINDS[int(kind)] for kind in kinds), frequency_hz, damping_ratio
 
 
-def read_shape_table(shapes: Path) -> tuple[tuple[tuple[str, str], ...], np.ndarray]:
+def read_shape_table(shapes: Path) -> tuple[Dofs, np.ndarray]:
     """Read and check the table of shapes.
 
     Returns:
@@ -70,26 +190,9 @@ def read_shape_table(shapes: Path) -> tuple[tuple[tuple[str, str], ...], np.ndar
         ResourceError: see `read_flat_csv`; not mass-normalised, or a row stands twice.
     """
     table, units = read_flat_csv(shapes, ("point", "dof"), {}, more="shape")
-    if units.get("shape") != "kg^-1/2":
-        raise ResourceError(
-            f"{shapes}: shapes have unit '{units.get('shape', 'none')}' in the '# units:' line; "
-            "they must be mass-normalised, 'shape kg^-1/2'"
-        )
+    check_units(units, {"shape": _SHAPE_UNITS}, shapes)
     rows = tuple((str(p), str(d)) for p, d in zip(table["point"], table["dof"], strict=True))
     if len(set(rows)) < len(rows):
         raise ResourceError(f"{shapes}: a point and dof stand twice")
     names = [name for name in table if name not in {"point", "dof"}]
     return rows, np.array([table[name] for name in names]).reshape(len(names), len(rows)).T
-
-
-def _check_modes(
-    kinds: np.ndarray, frequency_hz: np.ndarray, damping_ratio: np.ndarray, file: Path
-) -> None:
-    for n, (kind, f, zeta) in enumerate(zip(kinds, frequency_hz, damping_ratio, strict=True), 1):
-        where = f"{file}, mode {n}"
-        if kind not in _KINDS:
-            raise ResourceError(f"{where}: kind '{kind}' is none of {', '.join(_KINDS)}")
-        if f < 0.0 or (f == 0.0 and kind != "rigid"):
-            raise ResourceError(f"{where}: frequency {f:g} Hz must be positive (0 only if rigid)")
-        if zeta < 0.0:
-            raise ResourceError(f"{where}: damping ratio {zeta:g} must not be negative")

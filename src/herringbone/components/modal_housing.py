@@ -16,13 +16,12 @@ Source: K. S. Bathe, Finite Element Procedures, section 9.3 (mode superposition)
 """
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.modal_data import read_modes
+from herringbone.components import modal_data
 from herringbone.components.ports import HALVES
+from herringbone.components.resource_loader import ResourceLoader
 from herringbone.core import (
     Component,
     Declaration,
@@ -70,8 +69,13 @@ _d = Declaration(
     "Gearbox housing as oscillators with shapes at the four bearing seats",
     [v for seat, axis in _DOFS for v in _port(seat, axis)],
     texts=[
-        Text("modes", "frequencies and damping, CSV", "modes.csv"),
-        Text("shapes", "mass-normalised shapes at the seats, CSV", "shapes.csv"),
+        Text("modes", "frequencies and damping, CSV", "modes.csv", modal_data.MODE_COLUMNS),
+        Text(
+            "shapes",
+            "mass-normalised shapes at the seats, CSV",
+            "shapes.csv",
+            modal_data.shape_columns(_DOFS),
+        ),
     ],
     hidden_states=2 * MODES,
     tables=_TABLE_SIZE,
@@ -183,24 +187,34 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return 0 if all_finite(b, 0, 2 * MODES) else NOT_FINITE
 
 
-def _start(block: np.ndarray) -> None:
+@kernel
+def _start(b: np.ndarray) -> None:
     """Static deflection under the start forces; rigid modes stay at zero."""
-    count = int(block[_COUNT])
-    shapes = block[_SHAPES : _SHAPES + count * _N].reshape(count, _N)
-    omega = block[_OMEGA : _OMEGA + count]
-    force = shapes @ block[list(_START)]
-    block[: 2 * MODES] = 0.0
-    block[:count] = np.divide(force, omega**2, out=np.zeros(count), where=omega > 0.0)
+    for i in range(2 * MODES):
+        b[i] = 0.0
+    for i in range(int(b[_COUNT])):
+        w = b[_OMEGA + i]
+        if w > 0.0:
+            force = 0.0
+            for k in range(_N):
+                force += b[_SHAPES + i * _N + k] * b[_START[k]]
+            b[i] = force / (w * w)
 
 
-def _load(block: np.ndarray, files: Mapping[str, Path]) -> None:
-    frequency_hz, damping_ratio, shapes = read_modes(files["modes"], files["shapes"], _DOFS, MODES)
-    count = frequency_hz.size
-    block[_COUNT : _COUNT + _TABLE_SIZE] = 0.0
-    block[_COUNT] = count
-    block[_OMEGA : _OMEGA + count] = 2.0 * math.pi * frequency_hz
-    block[_ZETA : _ZETA + count] = damping_ratio
-    block[_SHAPES : _SHAPES + count * _N] = shapes.T.ravel()
+_WANTED = modal_data.wanted_rows(_DOFS)
 
 
-MODAL_HOUSING = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_load, start=_start)
+@kernel
+def _load(
+    values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
+) -> int:
+    refusal = modal_data.collect(values, shape, _WANTED, MODES, b, _COUNT, report)
+    if refusal == 0:
+        for i in range(int(b[_COUNT])):
+            b[_OMEGA + i] *= 2.0 * math.pi
+    return refusal
+
+
+_LOADER = ResourceLoader(_d.texts, _load, modal_data.refusals(_DOFS, MODES), scratch=1)
+
+MODAL_HOUSING = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_LOADER, start=_start)

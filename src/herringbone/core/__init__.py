@@ -12,9 +12,19 @@ from herringbone.core.errors import (
 )
 from herringbone.core.instance import Instance
 from herringbone.core.outcome import Outcome, OutcomeKind
-from herringbone.core.variable import Text, Variable, input_, local, output, parameter, state
+from herringbone.core.variable import (
+    Column,
+    Text,
+    Variable,
+    input_,
+    local,
+    output,
+    parameter,
+    state,
+)
 
 __all__ = [
+    "Column",
     "Component",
     "Declaration",
     "EquilibriumError",

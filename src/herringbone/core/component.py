@@ -32,7 +32,8 @@ def _no_breakpoints(block: np.ndarray) -> tuple[float, ...]:
     return ()
 
 
-def _unchanged(block: np.ndarray) -> None:
+def unchanged(block: np.ndarray) -> None:
+    """The `start` and `guess` of components that have none."""
     del block
 
 
@@ -46,7 +47,8 @@ class Component:
         equations: the docstring of the component's module, Markdown.
         load: reads the resource files (by String parameter) into the tables of a block;
             raises ResourceError.
-        start: makes a block's states from its start parameters, at the end of initialisation.
+        start: makes a block's states from its start parameters, at the end of initialisation;
+            a kernel, or `unchanged`.
         guess: puts the states where steady rotation is searched from, when the inputs are set:
             inside the limits of a controller, where the equations are not flat.
         breakpoints: times [s] at which the right-hand side is not smooth.
@@ -56,8 +58,8 @@ class Component:
     kernels: Kernels
     equations: str
     load: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
-    start: Callable[[np.ndarray], None] = _unchanged
-    guess: Callable[[np.ndarray], None] = _unchanged
+    start: Callable[[np.ndarray], None] = unchanged
+    guess: Callable[[np.ndarray], None] = unchanged
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
 
     @property

@@ -59,8 +59,28 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a resource file: numbers in one of some units, or words.
+
+    Attributes:
+        name: name in the header.
+        units: units that numbers may have; empty for words.
+        words: what words are read as their number in this tuple.
+        other_words: further words are allowed, and read as -1.
+        rest: stands last, for all further columns of the file: numbers, in the unit that is given
+            under this name.
+    """
+
+    name: str
+    units: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    other_words: bool = False
+    rest: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Text:
-    """A String parameter that names a resource file.
+    """A String parameter that names a resource file, a flat CSV of these columns.
 
     A relative name is looked up in the component's resources folder.
     """
@@ -68,6 +88,7 @@ class Text:
     name: str
     description: str
     start: str
+    columns: tuple[Column, ...] = ()
 
 
 def input_(name: str, unit: str, description: str, start: float = 0.0) -> Variable:
