@@ -20,7 +20,8 @@
 enum HbAccess {
     HB_HIDDEN,     /* no FMI variable: hidden states */
     HB_INPUT,      /* set at any time */
-    HB_CALCULATED, /* outputs and locals: never set */
+    HB_OUTPUT,     /* never set */
+    HB_LOCAL,      /* never set */
     HB_STATE,      /* set until initialisation ends */
     HB_FIXED,      /* parameter, set until initialisation ends */
     HB_TUNABLE     /* parameter, set at any time */
@@ -78,6 +79,8 @@ typedef struct {
     const uint8_t *access;  /* HbAccess */
     const uint8_t *extents; /* FMI 3: length of the array variable that starts here; 0: none does.
                                A signal with nodes is the scalar X and the array X.node[4]. */
+    const uint32_t *rates;  /* index of the output or state that is the entry's time derivative, 0:
+                               none is known */
 
     uint32_t texts_count;
     const HbText *texts; /* value references size + k */
@@ -106,9 +109,10 @@ typedef struct {
     uint32_t model_exchange;
     uint32_t indicators_count;
     void (*indicators)(double *b, double t, double *z);
-    /* Directional derivative. seed: direction, for every entry below first_table. result: outputs and
-       locals at their index, the derivative of state i at first_table + i. */
-    void (*tangent)(double *b, double t, const double *seed, double *result);
+    /* Directional derivative. d, as long as the block: on entry the direction at states and inputs,
+       zero elsewhere; on exit also the tangents of outputs and locals. dx, 2 states long: on exit the
+       states' derivatives, then their tangents. b: outputs are written as `out` does. */
+    void (*tangent)(double *b, double t, double *d, double *dx);
 } HbComponent;
 
 extern const HbComponent hb_component;
