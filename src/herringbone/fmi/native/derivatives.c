@@ -1,0 +1,122 @@
+#include <math.h>
+#include <string.h>
+
+#include "instance.h"
+
+/* Write the nodes of a signal of degree `degree` from its value and derivatives at the start. */
+static void expand(double *signal, const double *slopes, uint32_t degree, double step_size) {
+    for (uint32_t node = 1; node <= degree; node++) {
+        double since = step_size * node / degree, sum = 0.0;
+        for (uint32_t order = degree; order > 0; order--)
+            sum = (sum + slopes[order - 1]) * since / order;
+        signal[node] = signal[0] + sum;
+    }
+}
+
+uint32_t input_derivatives_to_nodes(Instance *instance, double step_size) {
+    uint32_t degree = instance->now.input_order;
+    double *signal = instance->block + hb_component.first_input;
+    for (uint32_t i = 0; i < hb_component.inputs; i++)
+        expand(signal + i * HB_STRIDE, instance->slopes + i * HIGHEST_ORDER, degree, step_size);
+    memset(instance->slopes, 0,
+           (size_t)hb_component.inputs * HIGHEST_ORDER * sizeof *instance->slopes);
+    instance->now.input_order = 0;
+    return degree;
+}
+
+static bool is_input(uint32_t reference) {
+    return instance_is_real(reference) && hb_component.access[reference] == HB_INPUT &&
+           (reference - hb_component.first_input) % HB_STRIDE == 0;
+}
+
+static Status set_input_derivative(Instance *instance, uint32_t reference, int32_t order,
+                                   double value) {
+    if (!is_input(reference))
+        return instance_unknown(instance, "input", &reference, 1);
+    const char *name = hb_component.reals[reference].name;
+    if (order < 1 || order > HIGHEST_ORDER)
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s.%s: derivative of order %d; orders 1 to %d are known",
+                             instance->name, name, (int)order, HIGHEST_ORDER);
+    if (!isfinite(value))
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s.%s: derivative %g; it must be finite", instance->name, name,
+                             isnan(value) ? NAN : value);
+    double degree = instance->block[hb_component.degree];
+    if (degree != 0.0)
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s.%s: input derivatives need interface_degree = 0, but it is %g: "
+                             "the signals are given by nodes",
+                             instance->name, name, degree);
+    uint32_t input = (reference - hb_component.first_input) / HB_STRIDE;
+    instance->slopes[input * HIGHEST_ORDER + (uint32_t)order - 1] = value;
+    if ((uint32_t)order > instance->now.input_order)
+        instance->now.input_order = (uint32_t)order;
+    return STATUS_OK;
+}
+
+Status instance_set_input_derivatives(Instance *instance, const uint32_t references[],
+                                      size_t count, const int32_t orders[],
+                                      const double values[]) {
+    if (instance->model_exchange || instance->now.phase < PHASE_INITIALISATION ||
+        instance->now.phase > PHASE_STEP)
+        return instance_refuse(instance, "setRealInputDerivatives");
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < count; i++) {
+        Status status = set_input_derivative(instance, references[i], orders[i], values[i]);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
+/* Derivative at the end of the last step, of the polynomial through `degree` + 1 equidistant values
+   of that step: the backward differences of order k, over k, summed. */
+static double end_slope(double values[], uint32_t degree, double step_size) {
+    double sum = 0.0;
+    for (uint32_t order = 1; order <= degree; order++) {
+        for (uint32_t i = degree; i >= order; i--)
+            values[i] -= values[i - 1];
+        sum += values[degree] / order;
+    }
+    return sum * degree / step_size;
+}
+
+static double output_derivative(const Instance *instance, uint32_t reference) {
+    const double *block = instance->block;
+    if (hb_component.rates[reference])
+        return block[hb_component.rates[reference]];
+    if (!(instance->now.last_step > 0.0))
+        return 0.0;
+    uint32_t place = reference - hb_component.first_output;
+    bool nodes = place < hb_component.node_outputs * HB_STRIDE;
+    uint32_t degree = nodes && instance->now.last_degree ? instance->now.last_degree : 1;
+    double values[HB_STRIDE] = {instance->previous[place]};
+    for (uint32_t node = 1; node < degree; node++)
+        values[node] = block[reference + node];
+    values[degree] = block[reference];
+    return end_slope(values, degree, instance->now.last_step);
+}
+
+static bool is_output(uint32_t reference) {
+    if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
+        return false;
+    uint32_t place = reference - hb_component.first_output;
+    return place >= hb_component.node_outputs * HB_STRIDE || place % HB_STRIDE == 0;
+}
+
+Status instance_get_output_derivatives(Instance *instance, const uint32_t references[],
+                                       size_t count, const int32_t orders[], double values[]) {
+    if (instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_TERMINATED)
+        return instance_refuse(instance, "getRealOutputDerivatives");
+    for (size_t i = 0; i < count; i++) {
+        if (!is_output(references[i]))
+            return instance_unknown(instance, "output", &references[i], 1);
+        if (orders[i] != 1)
+            return instance_fail(instance, STATUS_ERROR,
+                                 "%s.%s: derivative of order %d; order 1 is known",
+                                 instance->name, hb_component.reals[references[i]].name,
+                                 (int)orders[i]);
+        values[i] = output_derivative(instance, references[i]);
+    }
+    return STATUS_OK;
+}

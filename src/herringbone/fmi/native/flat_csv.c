@@ -1,0 +1,311 @@
+#include "flat_csv.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "platform.h"
+
+typedef struct {
+    size_t line, first, count; /* line in the file; fields[first ... first + count - 1] */
+} Row;
+
+typedef struct {
+    const char *file;
+    char *text;
+    char *units; /* what follows "# units:" */
+    char **fields;
+    Row *rows; /* the first one is the header */
+    size_t field_count, row_count;
+} Table;
+
+static const char SPACE[] = " \t\v\f";
+
+/* Cut spaces off both ends, in place. */
+static char *trim(char *text) {
+    text += strspn(text, SPACE);
+    size_t end = strlen(text);
+    while (end > 0 && strchr(SPACE, text[end - 1]))
+        text[--end] = '\0';
+    return text;
+}
+
+/* End the line that starts here; returns the start of the next one, NULL at the end of the text. */
+static char *end_line(char *line) {
+    char *end = line + strcspn(line, "\r\n");
+    if (*end == '\0')
+        return NULL;
+    char *next = end + (end[0] == '\r' && end[1] == '\n' ? 2 : 1);
+    *end = '\0';
+    return *next ? next : NULL;
+}
+
+/* End the field that starts at *cursor and move to the next one (NULL after the last one); quotes
+   are taken off. NULL if a quote is not closed. */
+static char *cut_field(char **cursor) {
+    char *field = *cursor, *from = field, *to = field;
+    if (*from == '"') {
+        for (from++; *from != '"' || from[1] == '"'; *to++ = *from++) {
+            if (*from == '\0')
+                return NULL;
+            from += *from == '"';
+        }
+        from++;
+    }
+    while (*from && *from != ',')
+        *to++ = *from++;
+    *cursor = *from ? from + 1 : NULL;
+    *to = '\0';
+    return field;
+}
+
+static bool cut_row(Table *table, char *line, size_t number, Message *message) {
+    Row *row = &table->rows[table->row_count++];
+    *row = (Row){.line = number, .first = table->field_count};
+    for (char *cursor = line; cursor;) {
+        char *field = cut_field(&cursor);
+        if (!field) {
+            message_write(message, "%s, line %zu: a quote is not closed", table->file, number);
+            return false;
+        }
+        table->fields[table->field_count++] = field;
+        row->count++;
+    }
+    return true;
+}
+
+static size_t count_of(const char *text, const char *characters) {
+    size_t count = 0;
+    for (; (text = strpbrk(text, characters)); text++)
+        count++;
+    return count;
+}
+
+static bool allocate(Table *table, Message *message) {
+    size_t lines = count_of(table->text, "\r\n") + 1;
+    table->rows = malloc(lines * sizeof *table->rows);
+    table->fields = malloc((lines + count_of(table->text, ",")) * sizeof *table->fields);
+    if (table->rows && table->fields)
+        return true;
+    message_write(message, "cannot read %s: out of memory", table->file);
+    return false;
+}
+
+static bool cut_units(Table *table, Message *message) {
+    static const char mark[] = "# units:";
+    char *found = strstr(table->text, mark);
+    char *first_end = table->text + strcspn(table->text, "\r\n");
+    if (!found || found > first_end || found + strlen(mark) == first_end) {
+        message_write(message, "%s: the first line must be '# units: <column> <unit>, ...'",
+                      table->file);
+        return false;
+    }
+    table->units = found + strlen(mark);
+    return true;
+}
+
+static bool cut(Table *table, Message *message) {
+    if (!cut_units(table, message))
+        return false;
+    char *next = end_line(table->text);
+    for (size_t number = 2; next; number++) {
+        char *line = next;
+        next = end_line(line);
+        if (*line && *line != '#' && !cut_row(table, line, number, message))
+            return false;
+    }
+    return true;
+}
+
+/* Index of the unit that the file gives for a column; -1 with a message if it takes no such unit. */
+static int unit_index(const Table *table, const HbColumn *column, Message *message) {
+    char unit[64] = "none";
+    for (const char *item = table->units; *item; item += *item == ',') {
+        size_t length = strcspn(item, ",");
+        char copy[128];
+        snprintf(copy, sizeof copy, "%.*s", (int)(length < sizeof copy ? length : sizeof copy), item);
+        char *name = trim(copy), *rest = name + strcspn(name, SPACE);
+        if (*rest) {
+            *rest = '\0';
+            if (strcmp(name, column->name) == 0)
+                snprintf(unit, sizeof unit, "%.*s", (int)sizeof unit - 1, trim(rest + 1));
+        }
+        item += length;
+    }
+    char wanted[256] = "";
+    for (int k = 0; column->units[k]; k++) {
+        if (strcmp(unit, column->units[k]) == 0)
+            return k;
+        size_t used = strlen(wanted);
+        snprintf(wanted + used, sizeof wanted - used, "%s%s", k ? " or " : "", column->units[k]);
+    }
+    message_write(message, "%s: column '%s' has unit '%s' in the '# units:' line; it takes %s",
+                  table->file, column->name, unit, wanted);
+    return -1;
+}
+
+static bool has_rest(const HbText *grammar) {
+    return grammar->column_count && grammar->columns[grammar->column_count - 1].rest;
+}
+
+/* Names in a list of the form a, b, c. */
+static void list_name(char *list, size_t size, const char *name) {
+    size_t used = strlen(list);
+    snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
+}
+
+static size_t find_field(const Table *table, const char *name) {
+    size_t i = 0;
+    while (i < table->rows->count && strcmp(table->fields[i], name) != 0)
+        i++;
+    return i;
+}
+
+static const HbColumn *declared_column(const HbText *grammar, const char *name) {
+    for (uint32_t k = 0; k < grammar->column_count; k++)
+        if (!grammar->columns[k].rest && strcmp(grammar->columns[k].name, name) == 0)
+            return &grammar->columns[k];
+    return NULL;
+}
+
+static bool check_header(const Table *table, const HbText *grammar, Message *message) {
+    char missing[256] = "", extra[256] = "", all[256] = "";
+    for (size_t i = 0; i < table->rows->count; i++) {
+        const char *name = table->fields[i];
+        list_name(all, sizeof all, name);
+        if (find_field(table, name) < i) {
+            message_write(message, "%s: column %s stands twice", table->file, name);
+            return false;
+        }
+        if (!declared_column(grammar, name))
+            list_name(extra, sizeof extra, name);
+    }
+    for (uint32_t k = 0; k < grammar->column_count; k++) {
+        const HbColumn *column = &grammar->columns[k];
+        if (!column->rest && find_field(table, column->name) == table->rows->count)
+            list_name(missing, sizeof missing, column->name);
+    }
+    if (*missing)
+        message_write(message, "%s: column %s is missing; it has %s", table->file, missing, all);
+    else if (*extra && !has_rest(grammar))
+        message_write(message, "%s: column %s is unknown", table->file, extra);
+    else
+        return true;
+    return false;
+}
+
+/* Place of every column of the file in a row of numbers. */
+static void arrange(const Table *table, const HbText *grammar, size_t place[]) {
+    size_t next = grammar->column_count - (has_rest(grammar) ? 1 : 0);
+    for (size_t i = 0; i < table->rows->count; i++) {
+        const HbColumn *column = declared_column(grammar, table->fields[i]);
+        place[i] = column ? (size_t)(column - grammar->columns) : next++;
+    }
+}
+
+static bool read_word(const char *file, const HbColumn *column, const char *word, double *value,
+                      Message *message) {
+    char known[256] = "";
+    for (int k = 0; column->words[k]; k++) {
+        *value = k;
+        if (strcmp(word, column->words[k]) == 0)
+            return true;
+        list_name(known, sizeof known, column->words[k]);
+    }
+    *value = -1.0;
+    if (!column->other_words)
+        message_write(message, "%s: %s '%.64s' is none of %s", file, column->name, word, known);
+    return column->other_words;
+}
+
+static bool read_row(const Table *table, const Row *row, const HbText *grammar,
+                     const size_t place[], double values[], Message *message) {
+    if (row->count != table->rows->count) {
+        message_write(message, "%s, line %zu: %zu fields, %zu expected", table->file, row->line,
+                      row->count, table->rows->count);
+        return false;
+    }
+    for (size_t i = 0; i < row->count; i++) {
+        const HbColumn *column = declared_column(grammar, table->fields[i]);
+        char *field = table->fields[row->first + i];
+        double *value = &values[place[i]];
+        if (column && column->words) {
+            if (!read_word(table->file, column, trim(field), value, message))
+                return false;
+        } else if (!platform_number(field, value)) {
+            message_write(message, "%s, line %zu: %s = '%.64s' is not a finite number",
+                          table->file, row->line, table->fields[i], field);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_numbers(const Table *table, const HbText *grammar, double values[],
+                         Message *message) {
+    size_t columns = table->rows->count;
+    size_t *place = malloc(columns * sizeof *place);
+    if (!place) {
+        message_write(message, "cannot read %s: out of memory", table->file);
+        return false;
+    }
+    arrange(table, grammar, place);
+    bool read = true;
+    for (size_t r = 1; read && r < table->row_count; r++)
+        read = read_row(table, &table->rows[r], grammar, place, values + (r - 1) * columns, message);
+    free(place);
+    return read;
+}
+
+static bool read_units(const Table *table, const HbText *grammar, double values[],
+                       Message *message) {
+    for (uint32_t k = 0; k < grammar->column_count; k++) {
+        int index = grammar->columns[k].units ? unit_index(table, &grammar->columns[k], message) : 0;
+        if (index < 0)
+            return false;
+        values[k] = index;
+    }
+    return true;
+}
+
+static bool append(const Table *table, const HbText *grammar, Numbers *numbers, int64_t shape[2],
+                   Message *message) {
+    double units[16];
+    if (grammar->column_count > sizeof units / sizeof *units ||
+        !read_units(table, grammar, units, message))
+        return false;
+    if (table->row_count < 2) {
+        message_write(message, "%s: it has no rows", table->file);
+        return false;
+    }
+    for (size_t i = 0; i < table->rows->count; i++)
+        table->fields[i] = trim(table->fields[i]);
+    if (!check_header(table, grammar, message))
+        return false;
+    size_t declared = grammar->column_count, rows = table->row_count - 1;
+    size_t more = declared + rows * table->rows->count;
+    double *values = realloc(numbers->values, (numbers->count + more) * sizeof *values);
+    if (!values) {
+        message_write(message, "cannot read %s: out of memory", table->file);
+        return false;
+    }
+    numbers->values = values;
+    memcpy(values + numbers->count, units, declared * sizeof *units);
+    if (!read_numbers(table, grammar, values + numbers->count + declared, message))
+        return false;
+    numbers->count += more;
+    shape[0] = (int64_t)rows;
+    shape[1] = (int64_t)table->rows->count;
+    return true;
+}
+
+bool flat_csv_read(const char *file, const HbText *grammar, Numbers *numbers, int64_t shape[2],
+                   Message *message) {
+    Table table = {.file = file, .text = platform_read_text(file, message)};
+    bool read = table.text && allocate(&table, message) && cut(&table, message) &&
+                append(&table, grammar, numbers, shape, message);
+    free(table.text);
+    free(table.fields);
+    free(table.rows);
+    return read;
+}

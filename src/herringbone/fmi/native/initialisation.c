@@ -1,0 +1,150 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "flat_csv.h"
+#include "instance.h"
+#include "platform.h"
+
+Status instance_set_time(Instance *instance, double time, const char *what) {
+    if (!isfinite(time))
+        return instance_fail(instance, STATUS_ERROR, "%s: %s %g s; it must be finite",
+                             instance->name, what, isnan(time) ? NAN : time);
+    instance->now.time = time;
+    return STATUS_OK;
+}
+
+Status instance_enter_initialisation(Instance *instance) {
+    if (instance->now.phase != PHASE_INSTANTIATED)
+        return instance_refuse(instance, "enterInitializationMode");
+    instance->now.phase = PHASE_INITIALISATION;
+    instance->outdated = true;
+    return STATUS_OK;
+}
+
+Status instance_exit_initialisation(Instance *instance) {
+    if (instance->now.phase != PHASE_INITIALISATION)
+        return instance_refuse(instance, "exitInitializationMode");
+    instance->outdated = true;
+    Status status = instance_refresh(instance);
+    if (status != STATUS_OK)
+        return status;
+    double *signal = instance->block + hb_component.first_output;
+    for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
+        for (int node = 1; node < HB_STRIDE; node++)
+            signal[node] = signal[0];
+    instance->now.phase = instance->model_exchange ? PHASE_EVENT : PHASE_STEP;
+    return STATUS_OK;
+}
+
+/* Path of a resource file; NULL if there is none. */
+static char *resource_path(Instance *instance, uint32_t k) {
+    const char *text = instance->texts->values[k];
+    char *path = platform_join(instance->resources, text);
+    if (path && platform_is_file(path))
+        return path;
+    instance_fail(instance, STATUS_ERROR,
+                  "%s.%s = '%s': there is no file %s; give an absolute path or a name in %s",
+                  instance->name, hb_component.texts[k].name, text, path ? path : text,
+                  instance->resources);
+    free(path);
+    return NULL;
+}
+
+/* FNV-1a by words: a fingerprint, no protection. */
+static uint64_t hash_tables(const double *tables, size_t count) {
+    uint64_t hash = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < count; i++) {
+        uint64_t word;
+        memcpy(&word, &tables[i], sizeof word);
+        hash = (hash ^ word) * 0x100000001B3u;
+    }
+    return hash ? hash : 1;
+}
+
+static Status refuse_tables(Instance *instance, int32_t number, char *const files[],
+                            const double report[]) {
+    if (number < 1 || (uint32_t)number > hb_component.refusals_count)
+        return instance_fail(instance, STATUS_ERROR, "%s: the resource files are refused (%d)",
+                             instance->name, (int)number);
+    const HbRefusal *refusal = &hb_component.refusals[number - 1];
+    Message why;
+    message_write(&why, refusal->format, report[0], report[1], report[2], report[3], report[4],
+                  report[5]);
+    return instance_fail(instance, STATUS_ERROR, "%s: %s%s", instance->name, files[refusal->text],
+                         why.text);
+}
+
+static Status make_tables(Instance *instance, const Numbers *numbers, const int64_t *shape,
+                          char *const files[]) {
+    double report[HB_REPORT] = {0.0};
+    double *scratch = calloc((size_t)hb_component.load_scratch + 1, sizeof *scratch);
+    if (!scratch)
+        return instance_fail(instance, STATUS_ERROR, "%s: out of memory", instance->name);
+    double *tables = instance->block + hb_component.first_table;
+    size_t count = hb_component.size - hb_component.first_table;
+    memset(tables, 0, count * sizeof *tables);
+    int32_t refusal = hb_component.load(numbers->values, shape, instance->block, scratch, report);
+    free(scratch);
+    if (refusal)
+        return refuse_tables(instance, refusal, files, report);
+    memset(instance->work, 0, hb_component.work * sizeof *instance->work);
+    instance->now.tables = hash_tables(tables, count);
+    return STATUS_OK;
+}
+
+static Status read_files(Instance *instance, char *files[], int64_t *shape, Numbers *numbers) {
+    for (uint32_t k = 0; k < hb_component.texts_count; k++) {
+        Message message;
+        files[k] = resource_path(instance, k);
+        if (!files[k])
+            return STATUS_ERROR;
+        if (!flat_csv_read(files[k], &hb_component.texts[k], numbers, shape + 2 * k, &message))
+            return instance_fail(instance, STATUS_ERROR, "%s: %s", instance->name, message.text);
+        message_write(&message, "%s: read %s", instance->name, files[k]);
+        log_write(&instance->log, STATUS_OK, &message);
+    }
+    return STATUS_OK;
+}
+
+Status instance_read_resources(Instance *instance) {
+    uint32_t count = hb_component.texts_count;
+    if (count == 0 || instance->now.tables)
+        return STATUS_OK;
+    char *files[count];
+    int64_t shape[2 * count];
+    memset(files, 0, sizeof files);
+    Numbers numbers = {NULL, 0};
+    Status status = read_files(instance, files, shape, &numbers);
+    if (status == STATUS_OK)
+        status = make_tables(instance, &numbers, shape, files);
+    free(numbers.values);
+    for (uint32_t k = 0; k < count; k++)
+        free(files[k]);
+    return status;
+}
+
+Status instance_refresh(Instance *instance) {
+    if (instance->now.phase == PHASE_INITIALISATION) {
+        Status status = instance_read_resources(instance);
+        if (status != STATUS_OK)
+            return status;
+        if (hb_component.start)
+            hb_component.start(instance->block);
+        instance->rates_outdated = true;
+    }
+    hb_component.out(instance->block, instance->now.time);
+    instance->outdated = false;
+    return STATUS_OK;
+}
+
+Status instance_refresh_rates(Instance *instance) {
+    if (instance->outdated) {
+        Status status = instance_refresh(instance);
+        if (status != STATUS_OK)
+            return status;
+    }
+    hb_component.rhs(instance->block, instance->now.time, instance->rates);
+    instance->rates_outdated = false;
+    return STATUS_OK;
+}

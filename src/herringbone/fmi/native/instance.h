@@ -1,0 +1,124 @@
+/* An instance of the component: what FMI 2 and FMI 3 have in common.
+
+   Every function returns the status that the FMI call returns; if it is not STATUS_OK, the host has
+   been told why. Instances share nothing, so that different threads may use different ones. */
+#ifndef INSTANCE_H
+#define INSTANCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "component.h"
+#include "log.h"
+#include "texts.h"
+
+/* Highest order of an input derivative: that of the polynomial that the nodes of a signal carry. */
+enum { HIGHEST_ORDER = HB_STRIDE - 1 };
+
+typedef enum {
+    PHASE_INSTANTIATED,
+    PHASE_INITIALISATION,
+    PHASE_STEP,       /* co-simulation, between steps */
+    PHASE_EVENT,      /* model exchange */
+    PHASE_CONTINUOUS, /* model exchange */
+    PHASE_TERMINATED
+} Phase;
+
+/* What an FMU state holds besides the texts and the saved part of the memory. */
+typedef struct {
+    double time;      /* end of the last step, or the time that the host set [s] */
+    double last_step; /* length of the last step [s] */
+    uint64_t tables;  /* hash of the tables; 0: no resource is read yet */
+    int32_t phase;
+    uint32_t last_degree; /* degree of the signals in the last step */
+    uint32_t input_order; /* highest order of the input derivatives for the next step; 0: none */
+    uint32_t padding;
+} Moment;
+
+typedef struct FmuState FmuState;
+
+typedef struct {
+    Log log;
+    char *name, *resources;
+    bool model_exchange;
+    bool outdated;       /* outputs must be computed before they are read */
+    bool rates_outdated; /* derivatives of the states, too */
+    Moment now;
+    Texts *texts;
+    FmuState *states; /* those that the host has not freed */
+
+    /* One allocation. The saved part is slopes, previous, and the block up to its tables. */
+    double *slopes;   /* input derivatives for the next step: [inputs][HIGHEST_ORDER] */
+    double *previous; /* outputs and locals at the start of the last step */
+    double *block, *work;
+    double *rates; /* derivatives of the states */
+} Instance;
+
+/* instance.c: life cycle. */
+Instance *instance_new(const char *name, const char *token, const char *resources,
+                       bool model_exchange, const Log *log);
+void instance_free(Instance *instance);
+Status instance_reset(Instance *instance);
+Status instance_terminate(Instance *instance);
+Status instance_set_logging(Instance *instance, bool on, size_t count,
+                            const char *const categories[]);
+
+/* Tell an error with its time; returns the status. */
+Status instance_fail(Instance *instance, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
+/* The same for a call that the present phase does not allow. */
+Status instance_refuse(Instance *instance, const char *call);
+
+/* initialisation.c */
+Status instance_set_time(Instance *instance, double time, const char *what);
+Status instance_enter_initialisation(Instance *instance);
+Status instance_exit_initialisation(Instance *instance);
+/* Read the resource files, if they are not read yet. */
+Status instance_read_resources(Instance *instance);
+/* Compute outdated outputs; outdated derivatives of the states. */
+Status instance_refresh(Instance *instance);
+Status instance_refresh_rates(Instance *instance);
+
+/* values.c: reals and Strings by value reference. */
+Status instance_get(Instance *instance, const uint32_t references[], size_t count,
+                    double values[]);
+Status instance_set(Instance *instance, const uint32_t references[], size_t count,
+                    const double values[]);
+Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
+                          const char *values[]);
+Status instance_set_texts(Instance *instance, const uint32_t references[], size_t count,
+                          const char *const values[]);
+/* Tell that there are no variables of these references and type. */
+Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
+                        size_t count);
+bool instance_is_real(uint32_t reference);
+/* Value reference of a state's derivative; FMI 3: of the time. */
+uint32_t reference_of_rate(uint32_t state);
+uint32_t reference_of_time(void);
+
+/* step.c */
+Status instance_step(Instance *instance, double time, double step_size);
+
+/* derivatives.c: input and output derivatives, an alternative to nodes.
+
+   Input derivatives belong to the values at the start of the next step, and end with it; they need
+   interface_degree = 0. An output derivative holds at the end of the last step: another output
+   where that is the derivative; otherwise the slope of the polynomial through the values of the
+   step, which is 0 before the first step. */
+Status instance_set_input_derivatives(Instance *instance, const uint32_t references[],
+                                      size_t count, const int32_t orders[],
+                                      const double values[]);
+Status instance_get_output_derivatives(Instance *instance, const uint32_t references[],
+                                       size_t count, const int32_t orders[], double values[]);
+/* Write the nodes of all inputs, and forget the derivatives; returns the degree. */
+uint32_t input_derivatives_to_nodes(Instance *instance, double step_size);
+
+/* fmu_state.c */
+Status instance_get_state(Instance *instance, void **state);
+Status instance_set_state(Instance *instance, void *state);
+Status instance_free_state(Instance *instance, void **state);
+Status instance_serialised_size(Instance *instance, void *state, size_t *size);
+Status instance_serialise(Instance *instance, void *state, char bytes[], size_t size);
+Status instance_deserialise(Instance *instance, const char bytes[], size_t size, void **state);
+
+#endif

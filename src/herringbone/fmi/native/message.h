@@ -1,0 +1,20 @@
+/* One line of text that says what went wrong. */
+#ifndef MESSAGE_H
+#define MESSAGE_H
+
+#include <stdarg.h>
+
+#if defined __GNUC__
+#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
+#else
+#define PRINTF_LIKE(text, first)
+#endif
+
+typedef struct {
+    char text[1024];
+} Message;
+
+void message_write(Message *message, const char *format, ...) PRINTF_LIKE(2, 3);
+void message_write_list(Message *message, const char *format, va_list arguments);
+
+#endif

@@ -1,0 +1,81 @@
+#include <math.h>
+#include <string.h>
+
+#include "instance.h"
+
+/* Name of the first entry that is NaN or infinite, hidden states last; NULL if there is none. */
+static const char *first_not_finite(const Instance *instance, double *value, const char **unit) {
+    for (int hidden = 0; hidden < 2; hidden++) {
+        for (uint32_t i = 0; i < hb_component.first_table; i++) {
+            if ((hb_component.access[i] == HB_HIDDEN) == hidden && !isfinite(instance->block[i])) {
+                *value = isnan(instance->block[i]) ? NAN : instance->block[i];
+                *unit = hidden ? "" : hb_component.reals[i].unit;
+                return hidden ? "hidden state" : hb_component.reals[i].name;
+            }
+        }
+    }
+    return NULL;
+}
+
+static Status explain_failure(Instance *instance, double step_size) {
+    double value = NAN;
+    const char *unit = "", *name = first_not_finite(instance, &value, &unit);
+    return instance_fail(instance, STATUS_DISCARD,
+                         "%s.%s = %g%s%s after a step of %g s; "
+                         "reduce the communication step size, or check the inputs",
+                         instance->name, name ? name : "result", value, *unit ? " " : "", unit,
+                         step_size);
+}
+
+static Status refuse_step(Instance *instance, double time, double step_size) {
+    if (instance->now.phase < PHASE_STEP)
+        return instance_fail(instance, STATUS_ERROR, "%s: doStep before the end of initialisation",
+                             instance->name);
+    if (instance->now.phase != PHASE_STEP)
+        return instance_refuse(instance, "doStep");
+    if (!isfinite(time))
+        return instance_set_time(instance, time, "communication point");
+    return instance_fail(instance, STATUS_ERROR,
+                         "%s: step size %g s; it must be 0 or positive, and finite",
+                         instance->name, isnan(step_size) ? NAN : step_size);
+}
+
+static int32_t step(Instance *instance, double time, double step_size) {
+    return hb_component.step(instance->block, instance->work, time, step_size);
+}
+
+/* Input derivatives are told to the kernels as nodes, of the degree of their highest order. */
+static int32_t step_along_derivatives(Instance *instance, double time, double step_size) {
+    double *live = &instance->block[hb_component.degree];
+    instance->now.last_degree = input_derivatives_to_nodes(instance, step_size);
+    *live = instance->now.last_degree;
+    int32_t failed = step(instance, time, step_size);
+    *live = 0.0;
+    return failed;
+}
+
+static Status refuse_two_signals(Instance *instance) {
+    return instance_fail(instance, STATUS_ERROR,
+                         "%s.interface_degree = %g: it must be 0 in a step along input derivatives",
+                         instance->name, instance->block[hb_component.degree]);
+}
+
+Status instance_step(Instance *instance, double time, double step_size) {
+    Moment *now = &instance->now;
+    if (now->phase != PHASE_STEP || !isfinite(time) || !(step_size >= 0.0 && step_size < INFINITY))
+        return refuse_step(instance, time, step_size);
+    now->time = time;
+    if (now->input_order && instance->block[hb_component.degree] != 0.0)
+        return refuse_two_signals(instance);
+    memcpy(instance->previous, instance->block + hb_component.first_output,
+           (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
+    now->last_step = step_size;
+    now->last_degree = (uint32_t)instance->block[hb_component.degree];
+    int32_t failed = now->input_order ? step_along_derivatives(instance, time, step_size)
+                                      : step(instance, time, step_size);
+    instance->rates_outdated = true;
+    if (failed)
+        return explain_failure(instance, step_size);
+    now->time = time + step_size;
+    return STATUS_OK;
+}

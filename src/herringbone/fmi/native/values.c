@@ -1,0 +1,186 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "instance.h"
+
+static bool is_finite(double value) {
+    return value - value == 0.0;
+}
+
+bool instance_is_real(uint32_t reference) {
+    return reference < hb_component.first_table && hb_component.access[reference] != HB_HIDDEN;
+}
+
+uint32_t reference_of_rate(uint32_t state) {
+    return hb_component.size + hb_component.texts_count + state;
+}
+
+uint32_t reference_of_time(void) {
+    return reference_of_rate(hb_component.states);
+}
+
+static bool is_text(uint32_t reference) {
+    return reference - hb_component.size < hb_component.texts_count;
+}
+
+Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
+                        size_t count) {
+    char list[200] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < count && used < sizeof list - 20; i++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%u", used ? ", " : "",
+                                 (unsigned)references[i]);
+    return instance_fail(instance, STATUS_ERROR, "%s: there is no %s with value reference %s",
+                         instance->name, type, list);
+}
+
+/* A real that is no entry of the block: a derivative, or the time. */
+static Status get_other(Instance *instance, uint32_t reference, double *value) {
+    uint32_t state = reference - reference_of_rate(0);
+    if (reference >= reference_of_rate(0) && state < hb_component.states) {
+        Status status = instance->rates_outdated ? instance_refresh_rates(instance) : STATUS_OK;
+        *value = instance->rates[state];
+        return status;
+    }
+    if (reference == reference_of_time()) {
+        *value = instance->now.time;
+        return STATUS_OK;
+    }
+    *value = NAN;
+    return instance_unknown(instance, "Real", &reference, 1);
+}
+
+Status instance_get(Instance *instance, const uint32_t references[], size_t count,
+                    double values[]) {
+    Status worst = instance->outdated ? instance_refresh(instance) : STATUS_OK;
+    const double *block = instance->block;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t reference = references[i];
+        if (instance_is_real(reference)) {
+            values[i] = block[reference];
+        } else {
+            Status status = get_other(instance, reference, &values[i]);
+            worst = status > worst ? status : worst;
+        }
+    }
+    return worst;
+}
+
+static const char *kind_of(uint8_t access) {
+    return access == HB_TUNABLE ? "tunable parameter"
+           : access == HB_FIXED ? "fixed parameter"
+           : access == HB_INPUT ? "continuous input"
+           : access == HB_OUTPUT ? "continuous output"
+                                 : "continuous local";
+}
+
+static Status refuse_value(Instance *instance, uint32_t reference, double value, const char *why) {
+    const HbReal *real = &hb_component.reals[reference];
+    return instance_fail(instance, STATUS_ERROR, "%s.%s = %g %s: %s", instance->name, real->name,
+                         isnan(value) ? NAN : value, real->unit, why);
+}
+
+static Status check_value(Instance *instance, uint32_t reference, double value) {
+    const HbReal *real = &hb_component.reals[reference];
+    uint8_t access = hb_component.access[reference];
+    if (!is_finite(value))
+        return refuse_value(instance, reference, value, "it must be finite");
+    if (access == HB_FIXED || access == HB_TUNABLE) {
+        Message range;
+        message_write(&range, "it must lie between %g and %g", real->minimum, real->maximum);
+        if (value < real->minimum || value > real->maximum)
+            return refuse_value(instance, reference, value, range.text);
+        if (reference == hb_component.degree && value != (int)value)
+            return refuse_value(instance, reference, value, "it must be a whole number");
+    }
+    return STATUS_OK;
+}
+
+static bool may_be_set(const Instance *instance, uint8_t access) {
+    if (access == HB_INPUT || access == HB_TUNABLE)
+        return true;
+    return instance->now.phase < PHASE_STEP && (access == HB_STATE || access == HB_FIXED);
+}
+
+/* Set what is not simply a finite input. */
+static Status set_checked(Instance *instance, uint32_t reference, double value) {
+    if (!instance_is_real(reference))
+        return instance_unknown(instance, "Real", &reference, 1);
+    Status status = check_value(instance, reference, value);
+    if (status != STATUS_OK)
+        return status;
+    uint8_t access = hb_component.access[reference];
+    if (!may_be_set(instance, access)) {
+        Message why;
+        message_write(&why, "a %s cannot be set now", kind_of(access));
+        return refuse_value(instance, reference, value, why.text);
+    }
+    if (instance->block[reference] != value && reference >= hb_component.mutable_size)
+        memset(instance->work, 0, hb_component.work * sizeof *instance->work);
+    instance->block[reference] = value;
+    return STATUS_OK;
+}
+
+Status instance_set(Instance *instance, const uint32_t references[], size_t count,
+                    const double values[]) {
+    if (instance->now.phase == PHASE_TERMINATED)
+        return instance_refuse(instance, "setReal");
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t reference = references[i];
+        if (reference < hb_component.first_table && hb_component.access[reference] == HB_INPUT &&
+            is_finite(values[i])) {
+            instance->block[reference] = values[i];
+        } else {
+            Status status = set_checked(instance, reference, values[i]);
+            worst = status > worst ? status : worst;
+        }
+    }
+    instance->outdated =
+        instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_INSTANTIATED;
+    instance->rates_outdated = true;
+    return worst;
+}
+
+Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
+                          const char *values[]) {
+    for (size_t i = 0; i < count; i++) {
+        if (!is_text(references[i]))
+            return instance_unknown(instance, "String", &references[i], 1);
+        values[i] = instance->texts->values[references[i] - hb_component.size];
+    }
+    return STATUS_OK;
+}
+
+static Status set_text(Instance *instance, uint32_t reference, const char *value) {
+    if (!is_text(reference))
+        return instance_unknown(instance, "String", &reference, 1);
+    uint32_t k = reference - hb_component.size;
+    const char *name = hb_component.texts[k].name;
+    if (!value)
+        return instance_fail(instance, STATUS_ERROR, "%s.%s: it takes a file name",
+                             instance->name, name);
+    if (instance->now.phase >= PHASE_STEP)
+        return instance_fail(instance, STATUS_ERROR, "%s.%s = '%s': it cannot be set now",
+                             instance->name, name, value);
+    if (strcmp(value, instance->texts->values[k]) == 0)
+        return STATUS_OK;
+    Texts *changed = texts_with(instance->texts, k, value);
+    if (!changed)
+        return instance_fail(instance, STATUS_ERROR, "%s: out of memory", instance->name);
+    instance->texts = changed;
+    instance->now.tables = 0;
+    instance->outdated = instance->now.phase == PHASE_INITIALISATION;
+    return STATUS_OK;
+}
+
+Status instance_set_texts(Instance *instance, const uint32_t references[], size_t count,
+                          const char *const values[]) {
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < count; i++) {
+        Status status = set_text(instance, references[i], values[i]);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}

@@ -1,0 +1,15 @@
+/* Value references of the rotor, as its block lies. */
+#ifndef ROTOR_H
+#define ROTOR_H
+
+enum {
+    PHI, W, COUNTER,
+    TAU, TAU1,
+    PHI_OUT = TAU + 5, W_OUT = PHI_OUT + 5, TORQUE = W_OUT + 5,
+    A = TORQUE + 5, STEPS, INERTIA, DEGREE,
+    GAIN, OFFSET,
+    SIZE, INERTIAS = SIZE, SHAPES,
+    DER_PHI, DER_W, DER_COUNTER, TIME
+};
+
+#endif

@@ -1,0 +1,81 @@
+"""The C wrapper of native FMUs around a small hand-made component, under sanitizers and valgrind."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import fmpy
+import pytest
+
+import herringbone.fmi
+
+HERE = Path(__file__).parent
+WRAPPER = Path(herringbone.fmi.__file__).parent / "native"
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+COMPILER = shutil.which("gcc") or shutil.which("clang")
+WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-format-nonliteral")
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
+
+pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler")
+
+INERTIAS = "# units: mass kg, speed rad/s\nside,mass,speed\n"
+FILES = {
+    "inertias.csv": INERTIAS + "left,0.5,1\nright,0.25,1\n",
+    "heavy.csv": INERTIAS + "left,5,1\n",
+    "empty.csv": "",
+    "no_units.csv": "side,mass,speed\nleft,1,1\n",
+    "unit.csv": "# units: mass g, speed rad/s\nside,mass,speed\nleft,1,1\n",
+    "other_unit.csv": "# units: mass kg\nside,mass,speed\nleft,1,1\n",
+    "no_rows.csv": INERTIAS + "\n# nothing\n",
+    "twice.csv": "# units: mass kg, speed rad/s\nside,mass,mass\nleft,1,1\n",
+    "column.csv": "# units: mass kg, speed rad/s\nside,speed,masse\nleft,1,1\n",
+    "extra.csv": "# units: mass kg, speed rad/s\nside,mass,speed,colour\nleft,1,1,3\n",
+    "short.csv": INERTIAS + "left,1,1\n\nleft,1\n",
+    "number.csv": INERTIAS + "left,1,1\nleft,0x10,1\n",
+    "nan.csv": INERTIAS + "left,nan,1\n",
+    "huge.csv": INERTIAS + "left,1e999,1\n",
+    "word.csv": INERTIAS + "top,1,1\n",
+    "quote.csv": INERTIAS + 'left,1,1\n"left,1,1\n',
+    "negative.csv": INERTIAS + "left,1,1\nright,-1,1\n",
+    "excel.csv": '\ufeff# units: speed r/min, mass kg\r\n"speed" , mass ,side\r\n'
+    '"1", 5e-1 ," left "\r\n\r\n2,+.5,"right"',
+    "shapes.csv": "# units: shape kg^-1/2\npoint,m1,m2\na,0.5,-0.25\nb,0.25,0.25\n",
+    "one_shape.csv": "# units: shape kg^-1/2\npoint,m1,m2\na,0.5,-0.25\n",
+}
+"""Resource files of the rotor; the gain is the first mass, ten times as large in r/min."""
+
+
+@pytest.fixture(scope="module")
+def resources(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("resources")
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8", newline="")
+    (folder / "binary.csv").write_bytes(INERTIAS.encode() + b"left,\xff\xfe,1\n")
+    return folder
+
+
+def build(test: str, folder: Path, *flags: str, component: str = "rotor.c") -> Path:
+    program = folder / test
+    sources = [HERE / f"{test}.c", HERE / component, *sorted(WRAPPER.glob("*.c"))]
+    command = [COMPILER, "-std=c11", "-g", "-O1", *WARNINGS, *flags, '-DSOURCES="version1"']
+    command += [f"-I{WRAPPER}", f"-I{HEADERS}", f"-I{HERE}", *map(str, sources), "-o", str(program)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    return program
+
+
+def execute(*command: str | Path) -> None:
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize("test", ["test_co_simulation"])
+def test_under_sanitizers(test: str, resources: Path, tmp_path: Path) -> None:
+    execute(build(test, tmp_path, *SANITIZERS), resources)
+
+
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="valgrind is not installed")
+@pytest.mark.parametrize("test", ["test_co_simulation"])
+def test_under_valgrind(test: str, resources: Path, tmp_path: Path) -> None:
+    program = build(test, tmp_path)
+    execute("valgrind", "-q", "--leak-check=full", "--error-exitcode=9", program, resources)
