@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -22,13 +21,16 @@ from herringbone.cosim.ssp_format import is_ssp
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.fmi.build import build_python_fmus
+from herringbone.fmi.kind import AUTO as AUTO_FMU
+from herringbone.fmi.kind import choose_kind
+from herringbone.fmi.native import build_native_fmus
 from herringbone.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 from herringbone.ssp_import import load_ssp, ssp_scene
 from herringbone.start import started
 
-FmuKind = Literal["python", "in-process"]
+_BUILDERS = {"native": build_native_fmus, "python": build_python_fmus}
 _TINY = 1e-12  # stands for a step [s] that is not yet known
 
 
@@ -69,7 +71,7 @@ def run(
     t_end: float | None = None,
     record_step: float | None = None,
     start: str | None = None,
-    fmu: FmuKind = "python",
+    fmu: str = AUTO_FMU,
     replace_parts: Mapping[str, str | Path] | None = None,
     values: Mapping[str, float | str] | None = None,
     reference: bool = False,
@@ -86,7 +88,8 @@ def run(
         t_end: duration [s]; the scene's if not given.
         record_step: time between records [s]; the scene's if not given.
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.
-        fmu: "python" runs Python FMUs, "in-process" the same kernels without FMU.
+        fmu: "native", "python", "in-process" (the same kernels without FMU), or "auto": native
+            FMUs if there is a C compiler, Python FMUs otherwise.
         replace_parts: FMU files by instance name.
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
@@ -107,6 +110,8 @@ def run(
     structure, notes = started(structure, chosen)
     if reference:
         refuse_foreign_parts(structure)
+    fmu, why = choose_kind(fmu)
+    notes = (*notes, *why)
     parts = open_parts(structure, fmu)
     try:
         if coupling is None:
@@ -153,18 +158,21 @@ def _with_options(
     )
 
 
-def open_parts(system: System, fmu: FmuKind) -> list[Part]:
+def open_parts(system: System, fmu: str) -> list[Part]:
     """Instantiate all parts and set their start values.
+
+    Args:
+        system: the parts.
+        fmu: kind of the parts' FMUs, see `run`.
 
     Raises:
         HerringboneError: an FMU cannot be used, or a value is wrong.
     """
-    if fmu not in ("python", "in-process"):
-        raise ParameterError(f"fmu = {fmu!r}; it must be python or in-process")
+    kind, _ = choose_kind(fmu)
     wanted = {str(spec.component) for spec in system.parts if not spec.foreign}
     for name in wanted:
         component(name)
-    files = build_python_fmus(sorted(wanted)) if fmu == "python" and wanted else {}
+    files = _BUILDERS[kind](sorted(wanted)) if kind in _BUILDERS and wanted else {}
     parts: list[Part] = []
     try:
         for spec in system.parts:

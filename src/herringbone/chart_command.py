@@ -18,9 +18,11 @@ from herringbone.analysis.step_ladder import (
     run_points,
 )
 from herringbone.analysis.work_precision import Reach, WorkPrecision
-from herringbone.api import FmuKind, load_scene, load_system, open_parts
+from herringbone.api import load_scene, load_system, open_parts
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import AUTO, parse_algorithm
+from herringbone.fmi.kind import AUTO as AUTO_FMU
+from herringbone.fmi.kind import choose_kind
 from herringbone.start import started
 
 LEVELS = (1e-2, 1e-3)
@@ -35,7 +37,7 @@ def measure(
     algorithms: Sequence[str] = (),
     steps: Sequence[float] = STEPS,
     t_end: float | None = None,
-    fmu: FmuKind = "python",
+    fmu: str = AUTO_FMU,
     progress: Progress = lambda algorithm, step: None,
 ) -> WorkPrecision:
     """Run algorithms up a ladder of steps, against the monolithic twin.
@@ -46,7 +48,7 @@ def measure(
         algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
         steps: communication step sizes [s].
         t_end: duration of each run [s]; the scene's if not given.
-        fmu: "python" or "in-process".
+        fmu: kind of the parts' FMUs, as in `herringbone.run`.
         progress: called before each run with the algorithm and the step [s].
 
     Raises:
@@ -61,6 +63,8 @@ def measure(
     options = load_scene(folder, scene)
     options = replace(options, t_end=options.t_end if t_end is None else t_end)
     structure, notes = started(structure, options)
+    fmu, why = choose_kind(fmu)
+    notes = (*notes, *why)
     grids = ladder(steps, options.t_end)
     reference = Reference(structure, grids)
     found = list(

@@ -12,6 +12,7 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
+from herringbone import build_command
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 
 EXIT_CODES = {
@@ -22,6 +23,7 @@ EXIT_CODES = {
     OutcomeKind.INTERRUPTED: 130,
 }
 BAD_INPUT = 2
+_FMU = "native, python, in-process, or auto (default): native if there is a C compiler"
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 
 
@@ -69,9 +71,7 @@ def _parser() -> argparse.ArgumentParser:
 
     sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
     sub.add_argument("name", nargs="?", help="component whose variables are shown")
-    sub = add("build", _build, "build the Python FMUs")
-    sub.add_argument("component", nargs="*", help="components; all if none is given")
-    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+    build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
     sub.add_argument("fmu", type=Path)
     _run_options(add("run", _run, "run a system"))
@@ -100,7 +100,7 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--t-end", type=float, help="duration in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
-    sub.add_argument("--fmu", default="python", help="python (default) or in-process")
+    sub.add_argument("--fmu", default="auto", help=_FMU)
     sub.add_argument("--replace", action="append", default=[], metavar=_REPLACE)
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
@@ -119,7 +119,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     _comparison_options(sub)
     sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
-    sub.add_argument("--fmu", default="python", help="python (default) or in-process")
+    sub.add_argument("--fmu", default="auto", help=_FMU)
     sub.add_argument("-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if none")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -226,10 +226,8 @@ def _list(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
-    from herringbone.export import build_fmus  # noqa: PLC0415
-
-    for file in build_fmus(options.component, options.output):
-        _show(str(file))
+    for line in build_command.build(options):
+        _show(line)
     return 0
 
 

@@ -2,7 +2,7 @@
 
 import logging
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp_write import write_ssp
 from herringbone.cosim.system import System
 from herringbone.fmi.build import build_python_fmus
+from herringbone.fmi.native import build_native_fmus
 from herringbone.scenes import Scene
 from herringbone.start import started
 
@@ -22,20 +23,37 @@ in parallel on held inputs; the limit is about 3e-6 s."""
 _log = logging.getLogger(__name__)
 
 
-def build_fmus(components: Iterable[str] = (), folder: Path | None = None) -> list[Path]:
-    """Build Python FMUs.
+def build_fmus(
+    components: Iterable[str] = (),
+    folder: Path | None = None,
+    *,
+    native: bool = False,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
+) -> list[Path]:
+    """Build FMUs.
 
     Args:
         components: names; all components if none is given.
         folder: where they are copied to; if not given they stay in the cache.
+        native: FMUs without Python, instead of Python FMUs.
+        platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
+        fmi: FMI version of native FMUs, 2 or 3.
 
     Returns:
         The FMU files.
 
     Raises:
-        HerringboneError: there is no component of that name, or a file cannot be written.
+        HerringboneError: there is no component or platform of that name, the compiler failed, or
+            a file cannot be written.
     """
-    files = list(build_python_fmus(list(components) or None).values())
+    names = list(components) or None
+    built = (
+        build_native_fmus(names, platforms=platforms, fmi=fmi)
+        if native
+        else build_python_fmus(names)
+    )
+    files = list(built.values())
     if folder is None:
         return files
     try:

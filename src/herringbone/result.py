@@ -29,7 +29,7 @@ class RunInfo:
         communication_step, record_step: [s].
         micro_steps: longest internal step by instance [s].
         algorithm: as on the command line.
-        fmu: "python" or "in-process".
+        fmu: "native", "python" or "in-process".
         macro_steps, passes, rollbacks, wall_s: cost of the loop.
         notes: downgrades and other lines to read.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.

@@ -39,12 +39,13 @@ TOP = {
     "export",
     "ssp_import",
     "chart_command",
+    "build_command",
 }
 """Nothing below may import these; they may import everything."""
 
 ONLY_IN: dict[str, set[str]] = {
-    "numba": {"kernels", "cosim"},
-    "llvmlite": {"cosim/calls.py"},
+    "numba": {"kernels", "cosim", "fmi/native/objects.py"},
+    "llvmlite": {"cosim/calls.py", "fmi/native/objects.py"},
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},

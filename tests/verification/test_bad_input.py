@@ -16,7 +16,7 @@ from support import write_table
 from herringbone.cli import main
 from herringbone.core.paths import resources_folder
 
-KINDS = ("python", "in-process")
+KINDS = ("native", "python", "in-process")
 STRANGER = Path(__file__).parents[1] / "fmus" / "strange_housing.py"
 
 
@@ -175,7 +175,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--algorithm=jacobi:order=7", "jacobi: order=7; it must be 0, 1 or 2"),
         ("--algorithm=jacobi:order=two", "jacobi:order=two"),
         ("--start=nope", "start = 'nope'; it must be one of equilibrium, ramp, rest"),
-        ("--fmu=nope", "fmu = 'nope'; it must be python or in-process"),
+        ("--fmu=nope", "fmu = 'nope'; it must be one of auto, native, python, in-process"),
         ("--replace=nope=x.fmu", "has no part 'nope'"),
         ("--replace=modal_housing=no.fmu", "there is no file no.fmu"),
     ],

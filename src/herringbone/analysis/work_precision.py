@@ -77,7 +77,7 @@ class WorkPrecision:
     Attributes:
         system, scene: names.
         t_end: duration of each run [s].
-        fmu: "python" or "in-process".
+        fmu: "native", "python" or "in-process".
         mode_count: modes of the housing; 0 if the system has none.
         micro_step: shortest internal step of a part [s]; 0 if no part has one.
         points: one per run, by algorithm, then step.

@@ -441,7 +441,8 @@ def _load(
         if refusal:
             return refusal
         stiffness, scratch = s[stiffness_table.GRID :], s[stiffness_table.SCRATCH_SIZE :]
-        force_law.build(s[:loads], stiffness, phases, b, _TABLE[side], scratch)
+        table = _TABLE[0] + side * force_law.TABLE_SIZE
+        force_law.build(s[:loads], stiffness, phases, b, table, scratch)
     return 0
 
 

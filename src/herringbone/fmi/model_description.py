@@ -30,27 +30,37 @@ _CAPABILITIES: Final = {
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
+_NATIVE_CAPABILITIES: Final = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
 
 
-def model_description(component: Component) -> Element:
-    """The root element; it depends on the sources alone, so that a build is reproducible."""
+def identifier(component: Component) -> str:
+    """The guid of FMI 2.0, instantiation token of FMI 3.0."""
+    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}"))
+
+
+def model_description(component: Component, *, native: bool = False) -> Element:
+    """The root element; it depends on the sources alone, so that a build is reproducible.
+
+    Args:
+        component: what is described.
+        native: with what the native FMUs can do besides.
+    """
     declaration = component.declaration
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=component.name,
-        guid=str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}")),
+        guid=identifier(component),
         description=declaration.description,
         version=version("herringbone"),
         license="MIT",
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
     )
-    SubElement(root, "CoSimulation", modelIdentifier=component.name, **_CAPABILITIES)
-    _add_units(root, declaration)
-    categories = SubElement(root, "LogCategories")
-    for name, description in LOG_CATEGORIES.items():
-        SubElement(categories, "Category", name=name, description=description)
+    capabilities = _CAPABILITIES | _NATIVE_CAPABILITIES if native else _CAPABILITIES
+    SubElement(root, "CoSimulation", modelIdentifier=component.name, **capabilities)
+    add_units(root, declaration)
+    add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
     reals = interface.reals(declaration)
@@ -62,12 +72,26 @@ def model_description(component: Component) -> Element:
     return root
 
 
-def _add_units(root: Element, declaration: Declaration) -> None:
+def add_units(root: Element, declaration: Declaration) -> None:
+    """Add the units that the variables carry; the same in FMI 2.0 and 3.0."""
     definitions = SubElement(root, "UnitDefinitions")
     for name in sorted({v.unit for v in declaration.variables}):
         unit = SubElement(definitions, "Unit", name=name)
         exponents = {base: str(n) for base, n in base_exponents(name).items()}
         SubElement(unit, "BaseUnit", exponents)
+
+
+def add_log_categories(root: Element) -> None:
+    """Add the log categories; the same in FMI 2.0 and 3.0."""
+    categories = SubElement(root, "LogCategories")
+    for name, description in LOG_CATEGORIES.items():
+        SubElement(categories, "Category", name=name, description=description)
+
+
+def limits(variable: Variable) -> dict[str, str]:
+    """The attributes of a finite range."""
+    range_ = {"min": variable.minimum, "max": variable.maximum}
+    return {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
 
 
 def _scalar(
@@ -90,10 +114,7 @@ def _real(reference: int, variable: Variable) -> Element:
     exact = variable.state or variable.causality is Causality.PARAMETER
     if variable.causality is not Causality.INPUT:
         scalar.set("initial", "exact" if exact else "calculated")
-    real = SubElement(scalar, "Real", unit=variable.unit)
-    for attribute, limit in (("min", variable.minimum), ("max", variable.maximum)):
-        if math.isfinite(limit):
-            real.set(attribute, repr(float(limit)))
+    real = SubElement(scalar, "Real", unit=variable.unit, **limits(variable))
     if exact or variable.causality is Causality.INPUT:
         real.set("start", repr(float(variable.start)))
     return scalar

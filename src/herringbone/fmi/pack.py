@@ -13,9 +13,7 @@ from pathlib import Path
 from pythonfmu import FmuBuilder
 
 from herringbone.core.paths import component_folder, content_hash, resources_folder
-
-_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
-_PERMISSIONS = 0o644 << 16
+from herringbone.fmi.archive import write_archive
 
 
 def pack(name: str, folder: Path) -> Path:
@@ -36,13 +34,10 @@ def pack(name: str, folder: Path) -> Path:
 
 
 def _rewrite(source: Path, target: Path) -> None:
-    """Copy a zip file with sorted names, one timestamp and compression."""
-    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
-        for name in sorted(old.namelist()):
-            entry = zipfile.ZipInfo(name.replace("\\", "/"), _TIMESTAMP)
-            entry.create_system = 3
-            entry.external_attr = _PERMISSIONS
-            new.writestr(entry, old.read(name), zipfile.ZIP_DEFLATED, compresslevel=9)
+    """Copy a zip file so that it depends on its content alone."""
+    with zipfile.ZipFile(source) as old:
+        content = {name.replace("\\", "/"): old.read(name) for name in old.namelist()}
+    write_archive(target, content)
 
 
 if __name__ == "__main__":

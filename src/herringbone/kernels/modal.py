@@ -51,11 +51,11 @@ def propagator(w: float, zeta: float, h: float, out: np.ndarray, at: int, s: np.
     # The velocity is scaled so that both states have the same size.
     scale = max(w, 1.0 / h)
     norm = max(h * scale, h * w * w / scale + 2.0 * zeta * w * h + 1.0)
-    halvings = 0
+    halvings, r = 0, 1.0
     while norm > 0.5:
         norm *= 0.5
+        r *= 0.5
         halvings += 1
-    r = 0.5**halvings
     m, e, x = 0, _N * _N, 2 * _N * _N
     for i in range(SCRATCH_SIZE):
         s[i] = 0.0

@@ -22,7 +22,6 @@ def periodic_slopes(
         y: values at `y[at + i * stride]`, i < count.
         slopes: written at `slopes[to + i * stride]`.
     """
-    wrap = 1.0 - _ROOT**count
     first = 0.0
     power = 1.0
     for k in range(count):
@@ -30,6 +29,7 @@ def periodic_slopes(
         ahead, behind = (i + 1) % count, (i + count - 1) % count
         first -= power * _ROOT * 3.0 * (y[at + ahead * stride] - y[at + behind * stride])
         power *= _ROOT
+    wrap = 1.0 - power
     value = first / wrap
     slopes[to] = value
     for i in range(1, count):

@@ -27,7 +27,11 @@ _VARIANTS: tuple[dict[str, Any], ...] = (
 _WIDTH, _ROW, _LEGEND = 12.6, 0.15, 2.95  # inch
 _LOWEST = 1e-7
 _PALETTE = 96
-_PARTS = {"python": "Python FMUs", "in-process": "parts in process, without FMU"}
+_PARTS = {
+    "native": "native FMUs",
+    "python": "Python FMUs",
+    "in-process": "parts in process, without FMU",
+}
 Cost = Callable[[Point], float]
 
 

@@ -1,0 +1,50 @@
+"""The command `build`: FMUs of components, Python or native."""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+_ALL = "all"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    sub.add_argument("component", nargs="*", help="components; all if none is given")
+    sub.add_argument("--native", action="store_true", help="without Python at run time")
+    sub.add_argument("--fmi", type=int, default=2, help="FMI version of native FMUs, 2 or 3")
+    sub.add_argument(
+        "--platforms",
+        nargs="+",
+        default=[],
+        metavar="PLATFORM",
+        help="platforms of native FMUs, such as x86_64-windows, or all; this one if not given",
+    )
+    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+
+
+def build(options: argparse.Namespace) -> Iterator[str]:
+    """Build; yields the files and what is to be known of them.
+
+    Raises:
+        HerringboneError: something about the options is wrong, or the build fails.
+    """
+    from herringbone.core import ParameterError  # noqa: PLC0415
+    from herringbone.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
+    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
+
+    if not options.native and (options.platforms or options.fmi != 2):
+        raise ParameterError(
+            "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
+            "and run wherever Python and this package do"
+        )
+    platforms = list(PLATFORMS) if options.platforms == [_ALL] else options.platforms
+    files = build_fmus(
+        options.component,
+        options.output,
+        native=options.native,
+        platforms=platforms,
+        fmi=options.fmi,
+    )
+    yield from map(str, files)
+    if untested := [name for name in platforms if not PLATFORMS[name].tested]:
+        yield f"built, not run: {', '.join(untested)}"

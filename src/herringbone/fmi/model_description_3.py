@@ -1,0 +1,145 @@
+"""modelDescription.xml of a component for FMI 3.0, co-simulation, made from its declaration alone.
+
+A signal with nodes is the scalar X and the array X.node of its NODES values inside the step:
+scalars of other FMUs connect to X. Value references are those of FMI 2.0: indices in the block.
+"""
+
+from dataclasses import replace
+from importlib.metadata import version
+from typing import Final
+from xml.etree.ElementTree import Element, SubElement
+
+from herringbone.core import Component, Declaration, Variable
+from herringbone.core.variable import NODES, Causality
+from herringbone.fmi import interface
+from herringbone.fmi.model_description import (
+    STEP_SIZE,
+    add_log_categories,
+    add_units,
+    identifier,
+    limits,
+)
+
+_CAPABILITIES: Final = {
+    "needsExecutionTool": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "canHandleVariableCommunicationStepSize": "true",
+    "maxOutputDerivativeOrder": "1",
+}
+
+
+def model_description_3(component: Component) -> Element:
+    """The root element; it depends on the sources alone, so that a build is reproducible."""
+    declaration = component.declaration
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="3.0",
+        modelName=component.name,
+        instantiationToken=identifier(component),
+        description=declaration.description,
+        version=version("herringbone"),
+        license="MIT",
+        generationTool=f"herringbone {version('herringbone')}",
+        variableNamingConvention="structured",
+    )
+    SubElement(root, "CoSimulation", modelIdentifier=component.name, **_CAPABILITIES)
+    add_units(root, declaration)
+    add_log_categories(root)
+    SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
+    variables = SubElement(root, "ModelVariables")
+    references = _references(declaration)
+    for reference, (variable, extent) in references.items():
+        variables.append(_float64(reference, variable, extent))
+    for reference, text in interface.texts(declaration).items():
+        string = SubElement(
+            variables,
+            "String",
+            name=text.name,
+            valueReference=str(reference),
+            description=text.description,
+            causality="parameter",
+            variability="fixed",
+        )
+        SubElement(string, "Start", value=text.start)
+    SubElement(
+        variables,
+        "Float64",
+        name="time",
+        valueReference=str(declaration.size + len(declaration.texts) + declaration.state_count),
+        causality="independent",
+        variability="continuous",
+        unit="s",
+    )
+    _add_structure(root, declaration, references)
+    return root
+
+
+def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:
+    """The variables and their lengths by ascending value reference."""
+    found = {}
+    for variable in declaration.variables:
+        first = declaration.index[variable.name]
+        found[first] = variable, 1
+        if variable.nodes:
+            text = f"{variable.description}; nodes of the macro step"
+            nodes = replace(variable, name=f"{variable.name}.node", description=text)
+            found[first + 1] = nodes, NODES
+    return dict(sorted(found.items()))
+
+
+def _float64(reference: int, variable: Variable, extent: int) -> Element:
+    element = Element(
+        "Float64",
+        name=variable.name,
+        valueReference=str(reference),
+        description=variable.description,
+        causality=variable.causality.value,
+        variability=variable.variability.value,
+        unit=variable.unit,
+        **limits(variable),
+    )
+    exact = variable.state or variable.causality is Causality.PARAMETER
+    if variable.causality is not Causality.INPUT:
+        element.set("initial", "exact" if exact else "calculated")
+    if exact or variable.causality is Causality.INPUT:
+        element.set("start", " ".join([repr(float(variable.start))] * extent))
+    if extent > 1:
+        SubElement(element, "Dimension", start=str(extent))
+    return element
+
+
+def _add_structure(
+    root: Element, declaration: Declaration, references: dict[int, tuple[Variable, int]]
+) -> None:
+    """Outputs with their direct feedthrough, and what they depend on at initialisation.
+
+    The latter are the same inputs and every variable whose start value is exact.
+    """
+    structure = SubElement(root, "ModelStructure")
+    exact = [declaration.index[v.name] for v in (*declaration.states, *declaration.parameters)]
+    exact += interface.texts(declaration)
+    unknowns = []
+    for reference, (variable, _) in references.items():
+        if variable.causality is not Causality.OUTPUT:
+            continue
+        scalars = [declaration.index[name] for name in variable.feedthrough]
+        inputs = sorted(at for first in scalars for at in (first, first + 1))
+        output = SubElement(
+            structure, "Output", valueReference=str(reference), dependencies=_join(inputs)
+        )
+        if inputs:
+            output.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
+        unknowns.append(
+            Element(
+                "InitialUnknown",
+                valueReference=str(reference),
+                dependencies=_join(sorted(inputs + exact)),
+            )
+        )
+    structure.extend(unknowns)
+
+
+def _join(references: list[int]) -> str:
+    return " ".join(map(str, references))

@@ -1,0 +1,100 @@
+"""The C compiler that makes the library of a native FMU from the wrapper and the kernels."""
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import fmpy
+
+from herringbone.core import FmuError
+from herringbone.fmi.native.platforms import Platform, own_platform
+
+SOURCES = Path(__file__).parent
+"""Folder of the wrapper's C files."""
+_FLAGS = (
+    "-std=c11", "-O2", "-g0", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off",
+    "-ffunction-sections", "-fdata-sections", "-fno-stack-protector", "-U_FORTIFY_SOURCE",
+)  # fmt: skip
+_LINK = {
+    "so": ("-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
+    "dll": ("-Wl,--gc-sections",),
+    "dylib": ("-Wl,-dead_strip",),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Compiler:
+    """A compiler for one platform.
+
+    Attributes:
+        name: for messages and for the cache.
+        command: how it is called.
+    """
+
+    name: str
+    command: tuple[str, ...]
+
+
+def find_compiler(platform: Platform) -> Compiler | None:
+    """`cc` for the platform of this process, otherwise zig; None if there is neither."""
+    if platform == own_platform() and (cc := shutil.which("cc")):
+        return Compiler("cc", (cc,))
+    if importlib.util.find_spec("ziglang"):
+        command = (sys.executable, "-m", "ziglang", "cc", "-target", platform.zig)
+        return Compiler("zig", command)
+    return None
+
+
+def require_compiler(platform: Platform) -> Compiler:
+    """As `find_compiler`.
+
+    Raises:
+        FmuError: there is none.
+    """
+    found = find_compiler(platform)
+    if found is None:
+        own = "install a C compiler (cc), or " if platform == own_platform() else ""
+        raise FmuError(
+            f"no C compiler for {platform.name} was found: {own}"
+            "install zig with 'pip install herringbone[native]'"
+        )
+    return found
+
+
+def compile_library(
+    compiler: Compiler, platform: Platform, description: Path, kernels: Path, library: Path
+) -> None:
+    """Compile the wrapper with a component's description, and link it with the kernels.
+
+    Args:
+        compiler: for `platform`.
+        platform: what the library is for.
+        description: C file from `component_source`.
+        kernels: object file.
+        library: file that is written.
+
+    Raises:
+        FmuError: the compiler failed.
+    """
+    headers = Path(fmpy.__file__).parent / "c-code"
+    link = list(_LINK[platform.extension])
+    if platform.extension == "dylib":
+        link.append(f"-Wl,-install_name,@rpath/{library.name}")
+    command = [
+        *compiler.command, "-shared", "-s", *_FLAGS, f"-I{SOURCES}", f"-I{headers}",
+        *map(str, sorted(SOURCES.glob("*.c"))), str(description), str(kernels),
+        "-o", str(library), *link,
+    ]  # fmt: skip
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    if run.returncode:
+        raise FmuError(f"{compiler.name} for {platform.name} failed: {_reason(run.stderr)}")
+
+
+def _reason(said: str) -> str:
+    """The line that tells most: the first error of the compiler, else the linker's last words."""
+    lines = [line.strip() for line in said.splitlines() if not line.startswith("collect2")]
+    errors = [line for line in lines if "error:" in line]
+    return next(iter(errors or lines[-1:]), "no message")

@@ -1,0 +1,171 @@
+"""The C file that describes one component to the wrapper; see component.h for every entry."""
+
+import math
+from collections.abc import Iterable
+
+from herringbone.components.resource_loader import ResourceLoader
+from herringbone.core import Component, Declaration, Text, Variable
+from herringbone.core.component import unchanged
+from herringbone.core.paths import content_hash
+from herringbone.core.variable import NODES, Causality, Variability
+from herringbone.fmi import interface
+from herringbone.fmi.model_description import identifier
+
+_RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
+_ENTRY_POINTS = """\
+int32_t hb_step(double *b, double *w, double t, double h);
+void hb_rhs(double *b, double t, double *dx);
+void hb_out(double *b, double t);
+void hb_start(double *b);
+int32_t hb_load(const double *values, const int64_t *shape, double *b, double *scratch,
+                double *report);
+"""
+
+
+def component_source(component: Component) -> str:
+    """C source that defines `hb_component`; it depends on the sources alone."""
+    declaration = component.declaration
+    loader = component.load if isinstance(component.load, ResourceLoader) else None
+    refusals = loader.refusals if loader else ()
+    parts = [
+        f"/* {component.name}: generated from its declaration, not to be edited. */",
+        "#include <math.h>",
+        "#include <stddef.h>",
+        '#include "component.h"',
+        _ENTRY_POINTS,
+        _array("HbReal reals", _reals(declaration)),
+        _array("uint8_t access", _access(declaration)),
+        _array("uint8_t extents", _extents(declaration)),
+        _array("uint32_t rates", _rates(declaration)),
+        *_grammars(declaration.texts),
+        _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
+        _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
+    ]
+    entries = {
+        "name": _string(component.name),
+        "token": _string(identifier(component)),
+        "sources": _string(content_hash()),
+        "states": declaration.state_count,
+        "visible_states": len(declaration.states),
+        "first_input": declaration.first_input,
+        "inputs": len(declaration.inputs),
+        "first_output": declaration.first_output,
+        "node_outputs": len(declaration.node_outputs),
+        "mutable_size": declaration.mutable_size,
+        "first_table": declaration.first_table,
+        "size": declaration.size,
+        "work": max(declaration.work, 1),
+        "degree": declaration.index["interface_degree"],
+        "reals": "reals",
+        "access": "access",
+        "extents": "extents",
+        "rates": "rates",
+        "texts_count": len(declaration.texts),
+        "texts": "texts",
+        "step": "hb_step",
+        "rhs": "hb_rhs",
+        "out": "hb_out",
+        "start": "NULL" if component.start is unchanged else "hb_start",
+        "load": "hb_load" if loader else "NULL",
+        "load_scratch": loader.scratch if loader else 0,
+        "refusals_count": len(refusals),
+        "refusals": "refusals",
+    }
+    rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
+    return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])
+
+
+def _array(name: str, entries: Iterable[object]) -> str:
+    """A C array, or a null pointer if it is empty."""
+    rows = "".join(f"    {entry},\n" for entry in entries)
+    kind, _, plain = name.partition(" ")
+    return (
+        f"static const {name}[] = {{\n{rows}}};\n"
+        if rows
+        else (f"static const {kind} *const {plain} = NULL;\n")
+    )
+
+
+def _string(text: str) -> str:
+    escaped = text.encode("ascii").decode().replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "INFINITY" if value > 0.0 else "-INFINITY"
+    return float(value).hex()
+
+
+def _real(variable: Variable) -> str:
+    numbers = (variable.start, variable.minimum, variable.maximum, 1.0)
+    words = [_string(variable.name), _string(variable.unit), *map(_number, numbers)]
+    return f"{{{', '.join(words)}}}"
+
+
+def _block(declaration: Declaration) -> list[Variable | None]:
+    """The variables by index in the block, parameters included; None: a hidden state."""
+    reals = interface.reals(declaration)
+    return [reals.get(i) for i in range(declaration.first_table)]
+
+
+def _reals(declaration: Declaration) -> Iterable[str]:
+    for variable in _block(declaration):
+        yield _real(variable) if variable else "{NULL, NULL, 0.0, 0.0, 0.0, 1.0}"
+
+
+def _access(declaration: Declaration) -> Iterable[str]:
+    for variable in _block(declaration):
+        if variable is None:
+            yield "HB_HIDDEN"
+        elif variable.state:
+            yield "HB_STATE"
+        elif variable.causality is Causality.INPUT:
+            yield "HB_INPUT"
+        elif variable.causality is Causality.PARAMETER:
+            yield "HB_TUNABLE" if variable.variability is Variability.TUNABLE else "HB_FIXED"
+        else:
+            yield "HB_OUTPUT" if variable.causality is Causality.OUTPUT else "HB_LOCAL"
+
+
+def _extents(declaration: Declaration) -> list[int]:
+    extents = [0] * declaration.first_table
+    for variable in declaration.variables:
+        first = declaration.index[variable.name]
+        extents[first] = 1
+        if variable.nodes:
+            extents[first + 1] = NODES
+    return extents
+
+
+def _rates(declaration: Declaration) -> Iterable[int]:
+    """Index of the output that is an output's time derivative, 0 if there is none.
+
+    Ports name motions by Modelica: s, v, a and phi, w, a.
+    """
+    index = {v.name: declaration.index[v.name] for v in declaration.outputs}
+    for variable in _block(declaration):
+        port, _, quantity = variable.name.rpartition(".") if variable else ("", "", "")
+        kind, *axis = quantity.split("_")
+        rate = "_".join([_RATES.get(kind, ""), *axis])
+        yield index.get(f"{port}.{rate}", 0) if f"{port}.{quantity}" in index else 0
+
+
+def _grammars(texts: Iterable[Text]) -> Iterable[str]:
+    """The columns of each resource file, with their units and words."""
+    for i, text in enumerate(texts):
+        rows = []
+        for k, column in enumerate(text.columns):
+            lists = []
+            for kind, values in (("units", column.units), ("words", column.words)):
+                name = f"{kind}_{i}_{k}"
+                if values:
+                    yield _array(f"char *const {name}", [*map(_string, values), "NULL"])
+                lists.append(name if values else "NULL")
+            flags = f"{int(column.other_words)}, {int(column.rest)}"
+            rows.append(f"{{{_string(column.name)}, {', '.join(lists)}, {flags}}}")
+        yield _array(f"HbColumn columns_{i}", rows)
+
+
+def _text(i: int, text: Text) -> str:
+    return f"{{{_string(text.name)}, {_string(text.start)}, columns_{i}, {len(text.columns)}}}"

@@ -1,0 +1,142 @@
+"""Object code of a component's kernels: `python -m herringbone.fmi.native.objects FOLDER ...`.
+
+numba compiles each kernel behind a C signature; its LLVM code is taken, given another target, and
+optimised with every function but the entry points internal. LLVM then sees that no kernel ever
+reports an error, and drops all of numba's error path: nothing of Python remains. That is checked,
+see `symbols`.
+
+It runs in a process of its own, because numba must be asked for a generic processor before it is
+imported: see `build`.
+"""
+
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import llvmlite.binding as llvm
+from numba import carray, cfunc, types
+from numba.core.ccallback import CFunc
+
+from herringbone.components.registry import component
+from herringbone.components.resource_loader import REPORT, ResourceLoader
+from herringbone.core import Component
+from herringbone.core.component import unchanged
+from herringbone.fmi.native.platforms import Platform, platform_of
+
+_TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
+_OPTIMISATION = 3
+_PASSES = 2
+"""The second one drops what the first one has shown to be unreachable."""
+_UNKNOWN_SIZE = 1  # bounds are not checked
+_REALS = types.CPointer(types.float64)
+_COUNTS = types.CPointer(types.int64)
+_TIME = types.float64
+
+
+def entry_points(of: Component) -> dict[str, CFunc]:
+    """The kernels of a component behind the C signatures of component.h, by symbol.
+
+    The optional ones, `start` and `load`, only if the component has them.
+    """
+    block, kernels = of.declaration.size, of.kernels
+    work, states = max(of.declaration.work, 1), max(of.declaration.state_count, 1)
+
+    def step(b, w, t, h):  # noqa: ANN001, ANN202 (typed by the signature)
+        return types.int32(kernels_step(carray(b, (block,)), carray(w, (work,)), t, h))
+
+    def rhs(b, t, dx):  # noqa: ANN001, ANN202
+        kernels_rhs(carray(b, (block,)), t, carray(dx, (states,)))
+
+    def out(b, t):  # noqa: ANN001, ANN202
+        kernels_out(carray(b, (block,)), t)
+
+    def start(b):  # noqa: ANN001, ANN202
+        kernels_start(carray(b, (block,)))
+
+    def load(values, shape, b, s, report):  # noqa: ANN001, ANN202
+        return types.int32(
+            kernels_load(
+                carray(values, (_UNKNOWN_SIZE,)),
+                carray(shape, (_UNKNOWN_SIZE,)),
+                carray(b, (block,)),
+                carray(s, (scratch,)),
+                carray(report, (REPORT,)),
+            )
+        )
+
+    kernels_step, kernels_rhs, kernels_out = kernels
+    kernels_start = of.start
+    found: dict[str, tuple[object, Callable]] = {
+        "hb_step": (types.int32(_REALS, _REALS, _TIME, _TIME), step),
+        "hb_rhs": (types.void(_REALS, _TIME, _REALS), rhs),
+        "hb_out": (types.void(_REALS, _TIME), out),
+    }
+    if of.start is not unchanged:
+        found["hb_start"] = (types.void(_REALS), start)
+    if isinstance(of.load, ResourceLoader):
+        kernels_load, scratch = of.load.kernel, of.load.scratch
+        found["hb_load"] = (types.int32(_REALS, _COUNTS, _REALS, _REALS, _REALS), load)
+    return {
+        symbol: cfunc(signature, error_model="numpy")(function)
+        for symbol, (signature, function) in found.items()
+    }
+
+
+def _module(
+    symbol: str, compiled: CFunc, target: llvm.TargetMachine, triple: str
+) -> llvm.ModuleRef:
+    """LLVM code of one entry point for a target, everything else internal."""
+    module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
+    module.triple, module.data_layout = triple, str(target.target_data)
+    for function in module.functions:
+        if function.is_declaration:
+            continue
+        if function.name == compiled.native_name:
+            function.name, function.linkage, function.visibility = symbol, "external", "hidden"
+        else:
+            function.linkage = "internal"
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = "internal"
+    return module
+
+
+def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
+    options = llvm.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+    builder = llvm.create_pass_builder(target, options)
+    for _ in range(_PASSES):
+        builder.getModulePassManager().run(module, builder)
+
+
+def object_code(kernels: dict[str, CFunc], platform: Platform) -> bytes:
+    """Object file with all entry points for a platform."""
+    target = llvm.Target.from_triple(platform.triple).create_target_machine(
+        cpu=platform.cpu, features="", opt=_OPTIMISATION, reloc="pic", codemodel="default"
+    )
+    whole = None
+    for symbol, compiled in kernels.items():
+        module = _module(symbol, compiled, target, platform.triple)
+        if whole is None:
+            whole = module
+        else:
+            whole.link_in(module)
+    whole.verify()
+    _optimise(whole, target)
+    return target.emit_object(whole)
+
+
+def main(folder: Path, platforms: list[Platform], names: list[str]) -> None:
+    """Write FOLDER/PLATFORM/COMPONENT.o."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    for name in names:
+        kernels = entry_points(component(name))
+        for platform in platforms:
+            file = folder / platform.name / f"{name}.o"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(object_code(kernels, platform))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), [platform_of(name) for name in sys.argv[2].split(",")], sys.argv[3:])

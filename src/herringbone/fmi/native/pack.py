@@ -1,0 +1,96 @@
+"""Packing a native FMU: description, binaries, resources, documentation."""
+
+import html
+import struct
+from collections.abc import Mapping
+from pathlib import Path
+from xml.etree.ElementTree import Element, indent, tostring
+
+from herringbone.core import Component
+from herringbone.core.paths import resources_folder
+from herringbone.fmi.archive import write_archive
+from herringbone.fmi.model_description import model_description
+from herringbone.fmi.model_description_3 import model_description_3
+from herringbone.fmi.native.platforms import Platform
+
+_UNTESTED = "built, not run"
+_FAT_MAGIC, _FAT_ALIGNMENT = 0xCAFEBABE, 14
+_FAT_CPUS = {"x86_64-darwin": (0x01000007, 3), "aarch64-darwin": (0x0100000C, 0)}
+
+
+def pack_native(
+    component: Component, libraries: Mapping[Platform, Path], fmi: int, folder: Path
+) -> Path:
+    """Pack one component into `folder`; two packs of the same binaries are identical.
+
+    Args:
+        component: what is packed.
+        libraries: its libraries by platform.
+        fmi: FMI version, 2 or 3.
+        folder: where the FMU is written.
+    """
+    description = (
+        model_description(component, native=True) if fmi == 2 else model_description_3(component)
+    )
+    binaries = _by_tuple(component, libraries) if fmi == 3 else _by_system(component, libraries)
+    resources = {
+        f"resources/{file.name}": file.read_bytes()
+        for file in sorted(resources_folder(component.name).glob("*.csv"))
+    }
+    content = {
+        "modelDescription.xml": _xml(description),
+        "documentation/index.html": _documentation(component, list(libraries)),
+        **binaries,
+        **resources,
+    }
+    fmu = folder / f"{component.name}.fmu"
+    write_archive(fmu, content)
+    return fmu
+
+
+def _xml(root: Element) -> bytes:
+    indent(root)
+    return tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _by_tuple(component: Component, libraries: Mapping[Platform, Path]) -> dict[str, bytes]:
+    return {
+        f"binaries/{platform.name}/{component.name}.{platform.extension}": file.read_bytes()
+        for platform, file in libraries.items()
+    }
+
+
+def _by_system(component: Component, libraries: Mapping[Platform, Path]) -> dict[str, bytes]:
+    """FMI 2.0 has one folder for both architectures of macOS: they share a universal file."""
+    grouped: dict[str, dict[Platform, bytes]] = {}
+    for platform, file in libraries.items():
+        name = f"binaries/{platform.folder}/{component.name}.{platform.extension}"
+        grouped.setdefault(name, {})[platform] = file.read_bytes()
+    return {
+        name: _universal(files) if len(files) > 1 else next(iter(files.values()))
+        for name, files in grouped.items()
+    }
+
+
+def _universal(libraries: Mapping[Platform, bytes]) -> bytes:
+    """A macOS universal file (mach-o/fat.h): a table, then the libraries, aligned."""
+    table = struct.pack(">II", _FAT_MAGIC, len(libraries))
+    align = 1 << _FAT_ALIGNMENT
+    body, at = b"", align
+    for platform, data in libraries.items():
+        cpu, subtype = _FAT_CPUS[platform.name]
+        table += struct.pack(">IIIII", cpu, subtype, at, len(data), _FAT_ALIGNMENT)
+        padded = data + b"\0" * (-len(data) % align)
+        body, at = body + padded, at + len(padded)
+    return table + b"\0" * (align - len(table)) + body
+
+
+def _documentation(component: Component, platforms: list[Platform]) -> bytes:
+    rows = "".join(f"<li>{p.name}{'' if p.tested else f' ({_UNTESTED})'}</li>" for p in platforms)
+    text = (
+        f"<!DOCTYPE html><html><head><meta charset='utf-8'><title>{component.name}</title></head>"
+        f"<body><h1>{component.name}</h1><p>{html.escape(component.declaration.description)}.</p>"
+        f"<h2>Binaries</h2><ul>{rows}</ul>"
+        f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
+    )
+    return text.encode()
