@@ -49,6 +49,8 @@ ONLY_IN: dict[str, set[str]] = {
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},
     "pypardiso": {"housing/eigenmodes.py"},
+    "gmsh": {"housing/mesher.py"},
+    "skfem": {"housing/elasticity.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""
 
