@@ -76,17 +76,10 @@ class DualExpressions:
                 return e, None
             case ast.Name(name):
                 if name not in self._local:
-                    value = self._function.__globals__[name]
-                    return ast.Name(
-                        self._program.constant(self._function.__module__, name, value)
-                    ), None
+                    return self._constant(name, self._function.__globals__[name]), None
                 return e, dotted(e) if name in self._active else None
             case ast.Attribute():
-                name = ast.unparse(e).replace(".", "_")
-                value = self._resolve(e)
-                return ast.Name(
-                    self._program.constant(self._function.__module__, name, value)
-                ), None
+                return self._constant(ast.unparse(e).replace(".", "_"), self._resolve(e)), None
             case ast.Subscript(array, index):
                 return self._subscript(array, index)
             case ast.Slice(lower, upper, None):
@@ -109,6 +102,9 @@ class DualExpressions:
             case ast.Call(function, arguments):
                 return self._call(self._resolve(function), e, arguments)
         raise self._unknown(e)
+
+    def _constant(self, name: str, value: object) -> ast.expr:
+        return ast.Name(self._program.constant(self._function.__module__, name, value))
 
     def _subscript(self, array: ast.expr, index: ast.expr) -> Dual:
         base, tangent = self._dual(array)
@@ -182,8 +178,8 @@ class DualExpressions:
 
     def _resolve(self, e: ast.expr) -> object:
         """What a global name, or an attribute of a module, stands for."""
-        if isinstance(e, ast.Attribute):
-            owner = self._resolve(e.value)
+        if isinstance(e, ast.Attribute) and isinstance(e.value, ast.Name):
+            owner = self._function.__globals__.get(e.value.id)
             if isinstance(owner, ModuleType):
                 return getattr(owner, e.attr)
         if isinstance(e, ast.Name):

@@ -77,9 +77,9 @@ class _Program:
 
     def constant(self, owner: str, name: str, value: object) -> str:
         """Name of a constant that stands in the module `owner`."""
-        mangled = f"{owner.rpartition('.')[2]}_{name}"
-        self._constants[mangled] = "math.inf" if value == math.inf else repr(value)
-        return mangled
+        unique = f"{owner.rpartition('.')[2]}_{name}"
+        self._constants[unique] = "math.inf" if value == math.inf else repr(value)
+        return unique
 
     def source(self) -> str:
         """The module's source; callees stand before their callers."""
