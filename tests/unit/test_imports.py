@@ -39,6 +39,8 @@ TOP = {
     "export",
     "ssp_import",
     "chart_command",
+    "housing_command",
+    "output",
 }
 """Nothing below may import these; they may import everything."""
 

@@ -1,25 +1,28 @@
 """Finite elements of the default housing on a coarse mesh: geometry, seats, sensors, modes."""
 
+import json
 import math
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from support_fe import require_gmsh
 
+from herringbone.cli import main
+from herringbone.core import HerringboneError
 from herringbone.core.paths import component_folder
+from herringbone.housing import read_housing
 from herringbone.housing.dimensions import read_design
 from herringbone.housing.eigenmodes import Factorisation, eigenmodes
-
-pytest.importorskip("skfem", reason="scikit-fem is optional (extra fe)")
-try:
-    import gmsh  # noqa: F401
-except (ImportError, OSError) as error:
-    pytest.skip(f"gmsh does not load: {error}", allow_module_level=True)
-
-from herringbone.housing.finite_elements import PLATES, FiniteElements
 from herringbone.housing.mesher import mesh_housing
-from herringbone.housing.mode_shares import mode_shares
 
-DESIGN = read_design(component_folder("modal_housing") / "welded_housing.toml")
+require_gmsh()
+from herringbone.housing.finite_elements import PLATES, FiniteElements  # noqa: E402 (needs both)
+from herringbone.housing.mode_shares import mode_shares  # noqa: E402
+
+FILE = component_folder("modal_housing") / "welded_housing.toml"
+DESIGN = read_design(FILE)
 D = DESIGN.dimensions
 PUBLISHED_HZ = [248.24, 447.29, 608.32, 620.89]
 MESH_SIZE = 0.06
@@ -143,3 +146,101 @@ def test_rigid_translation_radiates(model):
     feet = 4 * 2 * D.foot_length * D.foot_height
     # Ten edges around a bore: its disc is 6 % small, that is 0.4 % of a side.
     assert along_z @ (form @ along_z) == pytest.approx(2 * side + feet, rel=0.006)
+
+
+@pytest.fixture
+def quick_file(tmp_path):
+    """The default housing on the coarse mesh, for a low band."""
+    text = FILE.read_text(encoding="utf-8")
+    text = text.replace("mesh_size = 16.0", "mesh_size = 60.0")
+    file = tmp_path / "quick.toml"
+    file.write_text(text.replace("band_hz = 2000.0", "band_hz = 600.0"), encoding="utf-8")
+    return file
+
+
+def test_build_command(quick_file, tmp_path, monkeypatch, capsys, modes, model):
+    monkeypatch.chdir(tmp_path)
+    assert main(["housing", "build", str(quick_file), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["output"] == "results/quick"
+    housing = read_housing(tmp_path / "results" / "quick")
+    normal = housing.kind.count("normal")
+    assert (
+        housing.frequency_hz[normal - 1]
+        <= 1.5 * 600.0
+        < summary["certificate"]["next_frequency_hz"]
+    )
+    assert housing.kind[normal:] == ("residual",) * 12
+    np.testing.assert_allclose(
+        housing.frequency_hz[:normal], modes.frequency_hz[:normal], rtol=1e-8
+    )
+    assert set(housing.damping_ratio[:normal]) == {0.01}
+    assert set(housing.damping_ratio[normal:]) == {0.05}
+    assert housing.valid_to_hz == 600.0
+    np.testing.assert_allclose(
+        housing.static_compliance(), housing.static, atol=1e-10 * housing.static.max()
+    )
+    # Of a mode the elements give directly; its sign is free.
+    k = 2
+    shape = modes.shapes[:, k]
+    gram = shape @ (model.radiating_form() @ shape)
+    assert housing.gram[k, k] == pytest.approx(gram, rel=1e-6)
+    assert np.linalg.eigvalsh(housing.gram).min() > -1e-12 * housing.gram.max()
+    sensors = np.abs(model.sensor_output() @ shape)
+    np.testing.assert_allclose(np.abs(housing.shapes[12:, k]), sensors, atol=1e-6 * sensors.max())
+    assert summary["modes"][0]["rigid"]["Tz"] == pytest.approx(0.71, abs=0.02)
+
+
+def test_build_prints_what_the_modes_do(quick_file, tmp_path, capsys):
+    assert main(["housing", "build", str(quick_file), "-o", str(tmp_path / "box.zip")]) == 0
+    text = capsys.readouterr().out
+    assert "Housing of 141.9 kg, 27321 unknowns: 6 normal and 12 residual modes" in text
+    assert "Tz 71, Rx 28" in text
+    assert read_housing(tmp_path / "box.zip").frequency_hz.size == 18
+
+
+def test_plates_that_do_not_touch():
+    """What the file's checks let through, the mesher finds."""
+    apart = replace(D, foot_position=D.half_width + 0.02)
+    with pytest.raises(HerringboneError, match="the housing's plates make 2 separate solids"):
+        mesh_housing(apart, MESH_SIZE)
+
+
+def test_mesh_that_fails(monkeypatch, tmp_path, capsys):
+    import gmsh
+
+    def fail(dimension: int) -> None:
+        raise Exception("Invalid boundary mesh")  # noqa: TRY002 (as gmsh does)
+
+    monkeypatch.setattr(gmsh.model.mesh, "generate", fail)
+    monkeypatch.chdir(tmp_path)
+    assert main(["housing", "build"]) == 2
+    assert capsys.readouterr().err == (
+        "herringbone: gmsh cannot mesh the housing: Invalid boundary mesh; change the dimensions "
+        "or the mesh size\n"
+    )
+    assert not list(tmp_path.iterdir())
+    assert not gmsh.isInitialized()
+
+
+@pytest.mark.parametrize(("module", "tool"), [("gmsh", "gmsh"), ("skfem", "scikit-fem")])
+def test_missing_tool(monkeypatch, tmp_path, capsys, module, tool):
+    """One line that says what to install; nothing is written."""
+    monkeypatch.setitem(sys.modules, module, None)
+    for name in ("elasticity", "finite_elements", "mode_shares"):
+        monkeypatch.delitem(sys.modules, f"herringbone.housing.{name}", raising=False)
+    monkeypatch.chdir(tmp_path)
+    assert main(["housing", "build"]) == 2
+    line = capsys.readouterr().err
+    assert tool in line
+    assert "pip install 'herringbone[fe]'" in line
+    assert line.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_bad_mesh_size(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["housing", "build", "--mesh-size", "16"]) == 2
+    assert capsys.readouterr().err == (
+        "herringbone: --mesh-size: mesh size 16 m: it must be from 0.005 to 0.2 m\n"
+    )

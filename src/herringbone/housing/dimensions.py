@@ -4,6 +4,7 @@ A box of plates on four feet on a base plate: floor, cover, two end walls, two s
 bored bosses and ribs, a flange at the height of the shafts (its halves bonded), bolt holes in the
 base plate. Origin on the pinion axis at mid plane, x toward the wheel, y up, z axial.
 
+description = "..."
 length_unit = "mm"               # or "m"; holds for [dimensions] and mesh_size
 mesh_size = 16.0                 # largest edge of a tetrahedron
 
@@ -240,8 +241,15 @@ class Sensors:
 
 @dataclass(frozen=True)
 class HousingDesign:
-    """All that `herringbone housing build` needs; `mesh_size` in m."""
+    """All that `herringbone housing build` needs.
 
+    Attributes:
+        description: for people.
+        mesh_size: largest edge of a tetrahedron [m].
+        dimensions, material, modes, sensors: see there.
+    """
+
+    description: str
     mesh_size: float
     dimensions: Dimensions
     material: Material
@@ -262,7 +270,15 @@ def read_design(file: Path) -> HousingDesign:
         data = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ParameterError(f"cannot read {file}: {error}") from error
-    known = {"length_unit", "mesh_size", "dimensions", "material", "modes", "sensors"}
+    known = {
+        "description",
+        "length_unit",
+        "mesh_size",
+        "dimensions",
+        "material",
+        "modes",
+        "sensors",
+    }
     _check_keys(data, known, str(file))
     unit = data["length_unit"]
     if unit not in _UNITS:
@@ -270,8 +286,11 @@ def read_design(file: Path) -> HousingDesign:
             f"{file}: length_unit = {unit!r}; it must be one of {', '.join(_UNITS)}"
         )
     scale = _UNITS[unit]
+    if not isinstance(data["description"], str):
+        raise ParameterError(f"{file}: description = {data['description']!r}: it takes a text")
     mesh_size = scale * _number(data["mesh_size"], "mesh_size", str(file))
     return HousingDesign(
+        data["description"],
         check_mesh_size(mesh_size, str(file)),
         _table(Dimensions, data["dimensions"], f"{file}, [dimensions]", scale),
         _table(Material, data["material"], f"{file}, [material]"),

@@ -7,6 +7,7 @@ are coupled by products of inertia, which are small here, are half and half.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -29,6 +30,8 @@ class ModeShares:
         base: (m,) of the kinetic energy, in the base plate.
         strain: by plate, (m,) of the strain energy.
     """
+
+    motions: ClassVar[tuple[str, ...]] = RIGID_MOTIONS
 
     frequency_hz: np.ndarray
     rigid: np.ndarray
