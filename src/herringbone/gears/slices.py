@@ -81,7 +81,7 @@ _CORNER_REACH = 0.3
 """How far corner contact is followed outside the path of contact, in base pitches."""
 
 
-class _Slices(NamedTuple):
+class Slices(NamedTuple):
     """Slices of all contact lines; arrays (phases, lines * slices).
 
     Attributes:
@@ -136,7 +136,7 @@ class SliceMesh:
             ParameterError: loads not ascending, or a relief so large that at the largest load
                 the contact ratio falls below 1.
         """
-        forces = _checked(loads)
+        forces = checked_loads(loads)
         at = np.arange(phases) / phases
         slices, touching = self._slices(at), self._touching_stiffness(at)
         deflection = np.empty((forces.size, phases))
@@ -146,7 +146,7 @@ class SliceMesh:
                 deflection[i], tangent[i] = self._loaded(slices, force)
             else:
                 deflection[i], tangent[i] = self._least_gap(slices), touching
-        self._check_contact_ratio(forces[-1], deflection[-1].max())
+        self.check_contact_ratio(forces[-1], deflection[-1].max())
         return MeshStiffness(
             self.pair,
             self.modification,
@@ -182,10 +182,23 @@ class SliceMesh:
         """Stiffness [N/m] of one tooth pair at the path's start, loaded over the full face."""
         length = self.pair.face_width / math.cos(self.pair.base_helix_angle)
         slices = self._at(np.zeros((1, 1)), np.full((1, 1), 0.5 * self.pair.face_width), length)
-        contact, _ = self._contact(slices, np.full((1, 1), force / length))
+        contact, _ = self.contact(slices, np.full((1, 1), force / length))
         return length / float(slices.compliance[0, 0] + contact[0, 0])
 
     # Geometry of the contact lines
+
+    def lines(self, phase: float) -> list[tuple[np.ndarray, np.ndarray, Slices]]:
+        """Lines in contact at a phase: positions on path and face [m] and slices, each (n,)."""
+        path, face, share = self._positions(np.array([phase]), *self._limits())
+        length = share * self.pair.face_width / self.slices / math.cos(self.pair.base_helix_angle)
+        slices = self._at(path, face, length)
+        found = []
+        for number in range(path.size // self.slices):
+            here = np.arange(number * self.slices, (number + 1) * self.slices)
+            here = here[slices.length[0, here] > 0.0]
+            if here.size:
+                found.append((path[0, here], face[0, here], Slices(*(v[0, here] for v in slices))))
+        return found
 
     def _limits(self) -> tuple[float, float]:
         """Where lines may touch, on the path of contact [m]."""
@@ -217,7 +230,7 @@ class SliceMesh:
 
     def _slices(
         self, phases: np.ndarray, low: float | None = None, high: float | None = None
-    ) -> _Slices:
+    ) -> Slices:
         begin, end = self._limits()
         path, face, share = self._positions(
             phases, begin if low is None else low, end if high is None else high
@@ -225,7 +238,7 @@ class SliceMesh:
         width = self.pair.face_width / self.slices
         return self._at(path, face, share * width / math.cos(self.pair.base_helix_angle))
 
-    def _at(self, path: np.ndarray, face: np.ndarray, length: np.ndarray) -> _Slices:
+    def _at(self, path: np.ndarray, face: np.ndarray, length: np.ndarray) -> Slices:
         pair = self.pair
         on_path = np.clip(path, 0.0, pair.length_of_path_of_contact)
         compliance, logarithm = self._along_path
@@ -236,7 +249,7 @@ class SliceMesh:
             for gear, distance in ((1, -outside), (0, outside)):
                 out = distance > 0.0
                 gap[out] += normal * corner_separation(pair, gear, distance[out])
-        return _Slices(length * np.ones_like(path), compliance(on_path), logarithm(on_path), gap)
+        return Slices(length * np.ones_like(path), compliance(on_path), logarithm(on_path), gap)
 
     @cached_property
     def _along_path(self) -> tuple[CubicSpline, CubicSpline]:
@@ -257,8 +270,13 @@ class SliceMesh:
 
     # Equilibrium
 
-    def _contact(self, slices: _Slices, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Secant and tangent compliance [m/(N/m)] of the contact at line loads [N/m]."""
+    def contact(self, slices: Slices, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Secant and tangent compliance [m/(N/m)] of the contact at line loads [N/m].
+
+        Args:
+            slices: whose contact it is.
+            load: of each slice, same shape [N/m].
+        """
         unit = 2.0 * (1.0 - self.pair.poissons_ratio**2) / (math.pi * self.pair.youngs_modulus)
         if self.hertz == "yang-sun":
             constant = np.full_like(load, 2.0 * unit)
@@ -268,23 +286,23 @@ class SliceMesh:
         return unit * secant, unit * (secant - load / above)
 
     def _line_loads(
-        self, slices: _Slices, load: np.ndarray, deflection: np.ndarray
+        self, slices: Slices, load: np.ndarray, deflection: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Line loads [N/m] at a deflection, and the tangent stiffness [N/m] of all slices."""
         pressed = np.maximum(0.0, deflection[:, None] - slices.gap)
         for _ in range(_NEWTON):
-            secant, slope = self._contact(slices, load)
+            secant, slope = self.contact(slices, load)
             excess = load * (slices.compliance + secant) - pressed
             load = np.maximum(0.0, load - excess / (slices.compliance + slope))
             if np.abs(excess).max() <= _TOLERANCE * pressed.max():
                 break
-        _, slope = self._contact(slices, load)
+        _, slope = self.contact(slices, load)
         stiffness = (pressed > 0.0) * slices.length / (slices.compliance + slope)
         return load, stiffness.sum(axis=1)
 
-    def _loaded(self, slices: _Slices, force: float) -> tuple[np.ndarray, np.ndarray]:
+    def _loaded(self, slices: Slices, force: float) -> tuple[np.ndarray, np.ndarray]:
         """Deflection [m] and tangent stiffness [N/m] at a force, for every phase."""
-        contact, _ = self._contact(slices, np.zeros_like(slices.gap))
+        contact, _ = self.contact(slices, np.zeros_like(slices.gap))
         whole = np.sum(slices.length / (slices.compliance + contact), axis=1)
         deflection = self._least_gap(slices) + force / whole
         load = np.zeros_like(slices.gap)
@@ -299,7 +317,7 @@ class SliceMesh:
             f"no equilibrium of the teeth at a load of {force:g} N; it is too large for the pair"
         )
 
-    def _check_contact_width(self, slices: _Slices, load: np.ndarray, force: float) -> None:
+    def _check_contact_width(self, slices: Slices, load: np.ndarray, force: float) -> None:
         """The contact's formula holds while it is narrow against the teeth's depth."""
         if np.any(slices.logarithm - np.log(load + _LEAST_LINE_LOAD) < _NARROW):
             raise ParameterError(
@@ -308,7 +326,7 @@ class SliceMesh:
             )
 
     @staticmethod
-    def _least_gap(slices: _Slices) -> np.ndarray:
+    def _least_gap(slices: Slices) -> np.ndarray:
         """Deflection [m] at which the first slice touches, for every phase."""
         return np.where(slices.length > 0.0, slices.gap, np.inf).min(axis=1)
 
@@ -319,10 +337,19 @@ class SliceMesh:
             return np.zeros(len(phases))
         pinion, wheel = (modification.relief_length if c else 0.0 for c in modification.tip_relief)
         slices = self._slices(phases, wheel, pair.length_of_path_of_contact - pinion)
-        contact, _ = self._contact(slices, np.zeros_like(slices.gap))
+        contact, _ = self.contact(slices, np.zeros_like(slices.gap))
         return np.sum(slices.length / (slices.compliance + contact), axis=1)
 
-    def _check_contact_ratio(self, force: float, deflection: float) -> None:
+    def check_contact_ratio(self, force: float, deflection: float) -> None:
+        """Refuse a relief that leaves a loaded contact ratio below 1.
+
+        Args:
+            force: largest load [N].
+            deflection: largest deflection at that load [m].
+
+        Raises:
+            ParameterError: see above.
+        """
         pair = self.pair
         path = np.linspace(0.0, pair.length_of_path_of_contact, 1001)
         middle = np.full_like(path, 0.5 * pair.face_width)
@@ -344,7 +371,12 @@ class SliceMesh:
         )
 
 
-def _checked(loads: Sequence[float]) -> np.ndarray:
+def checked_loads(loads: Sequence[float]) -> np.ndarray:
+    """Loads [N] as an array.
+
+    Raises:
+        ParameterError: not finite, not ascending, or none above zero.
+    """
     forces = np.asarray(loads, dtype=float)
     if forces.ndim != 1 or forces.size == 0 or not np.all(np.isfinite(forces)):
         raise ParameterError(f"loads {loads} N must be finite numbers, at least one")

@@ -9,8 +9,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from herringbone.core import ResourceError
 from herringbone.housing.file_format import (
     COMPLIANCES,
@@ -85,7 +83,11 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
     files = {MODES: _modes_text(housing), SHAPES: _shapes_text(housing)}
     for attribute, name in COMPLIANCES.items():
         if (matrix := getattr(housing, attribute)) is not None:
-            files[name] = compliance_text(matrix)
+            files[name] = _table(
+                "compliance m/N",
+                ("point", "dof", *SEAT_COLUMNS),
+                ((*dof, *row) for dof, row in zip(SEAT_DOFS, matrix, strict=True)),
+            )
     if housing.gram is not None:
         files[GRAM] = _table(
             "mode 1, gram kg^-1.m2",
@@ -94,15 +96,6 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
         )
     files[HEAD] = json.dumps(_head(housing, files), indent=1, ensure_ascii=False) + "\n"
     return files
-
-
-def compliance_text(matrix: np.ndarray) -> str:
-    """A matrix (12, 12) of static or residual compliance [m/N] as the text of its file."""
-    return _table(
-        "compliance m/N",
-        ("point", "dof", *SEAT_COLUMNS),
-        ((*dof, *row) for dof, row in zip(SEAT_DOFS, matrix, strict=True)),
-    )
 
 
 def _mode_names(housing: ModalHousing) -> list[str]:
