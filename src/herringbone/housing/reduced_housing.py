@@ -13,6 +13,8 @@ from herringbone.housing.reduction import choose_modes, make_certificate, residu
 
 RESIDUAL_DAMPING = 0.05
 """Damping ratio of residual pseudo modes: assumed; above the band it hardly shows."""
+_STATIC_DIGITS = 1e-3
+"""Negative part of a residual, over the largest compliance, that is taken for rounding."""
 _ABOVE = 2.0
 """Frequency of the pseudo modes of a residual matrix, over the highest normal mode."""
 
@@ -149,3 +151,24 @@ def with_residual_modes(
         residual=None,
         gram=None if housing.gram is None else la.block_diag(housing.gram, no_motion),
     )
+
+
+def with_static_compliance(housing: ModalHousing, static: np.ndarray) -> ModalHousing:
+    """Add pseudo modes for what the modes miss of a known static compliance.
+
+    Args:
+        housing: modes, without residual ones.
+        static: (12, 12) compliance at the seats, measured or computed [m/N].
+
+    Raises:
+        HerringboneError: the modes have more compliance than the whole: the scales differ.
+    """
+    missing = (static + static.T) / 2.0 - housing.static_compliance()
+    values, directions = la.eigh(missing)
+    if values[0] < -_STATIC_DIGITS * np.abs(static).max():
+        raise HerringboneError(
+            "the modes are softer than the static compliance, by "
+            f"{-values[0]:.3g} m/N in one direction; are the shapes mass-normalised in these units?"
+        )
+    residual = (directions * np.maximum(values, 0.0)) @ directions.T
+    return replace(with_residual_modes(replace(housing, residual=residual)), static=static)
