@@ -1,8 +1,6 @@
-"""Command line: list, build, check, run, chart, stability, export."""
+"""Command line: list, build, check, run, chart, stability, export, housing."""
 
 import argparse
-import sys
-import tempfile
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -12,8 +10,9 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
-from herringbone import build_command
+from herringbone import build_command, housing_command
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.output import check_writable, say, show
 
 EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
@@ -33,21 +32,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return options.command(options)
     except HerringboneError as error:
-        _say(f"herringbone: {error}")
+        say(f"herringbone: {error}")
         if options.debug:
             traceback.print_exc()
         return BAD_INPUT
     except KeyboardInterrupt:
-        _say("herringbone: interrupted")
+        say("herringbone: interrupted")
         return EXIT_CODES[OutcomeKind.INTERRUPTED]
-
-
-def _say(text: str) -> None:
-    sys.stderr.write(text + "\n")
-
-
-def _show(text: str) -> None:
-    sys.stdout.write(text + "\n")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -83,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--step", type=float, default=2e-6, help="communication step size in s")
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("-o", "--output", type=Path, help="file; SYSTEM.ssp if not given")
+    housing_command.register(commands)
     return parser
 
 
@@ -154,23 +146,11 @@ def _values(items: Sequence[str]) -> dict[str, float | str]:
     return found
 
 
-def _check_writable(folder: Path) -> None:
-    """Refuse before a run what would fail after it; leaves nothing behind."""
-    there = next(f for f in (folder, *folder.absolute().parents) if f.exists())
-    try:
-        with tempfile.TemporaryDirectory(dir=there):
-            pass
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
-
-
 def _run(options: argparse.Namespace) -> int:
     from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.report import summary_text, write_report  # noqa: PLC0415
 
-    _check_writable(options.output or Path("results"))
+    check_writable(options.output or Path("results"))
     optional = {
         name: value
         for name in ("scene", "algorithm", "step", "t_end", "record_step", "start")
@@ -189,9 +169,9 @@ def _run(options: argparse.Namespace) -> int:
     name = Path(options.system).stem
     folder = options.output or Path("results") / f"{name}-{result.info.scene}"
     result = write_report(result, folder, parquet=options.parquet)
-    _show(result.to_json() if options.json else summary_text(result))
+    show(result.to_json() if options.json else summary_text(result))
     if result.outcome.message:
-        _say(f"herringbone: {result.outcome.kind.value}: {result.outcome.message}")
+        say(f"herringbone: {result.outcome.kind.value}: {result.outcome.message}")
     return EXIT_CODES[result.outcome.kind]
 
 
@@ -221,13 +201,13 @@ class _Bar:
 def _list(options: argparse.Namespace) -> int:
     from herringbone.listing import describe_component, overview  # noqa: PLC0415
 
-    _show(describe_component(options.name) if options.name else overview())
+    show(describe_component(options.name) if options.name else overview())
     return 0
 
 
 def _build(options: argparse.Namespace) -> int:
     for line in build_command.build(options):
-        _show(line)
+        show(line)
     return 0
 
 
@@ -236,8 +216,8 @@ def _check(options: argparse.Namespace) -> int:
 
     problems = check_fmu(options.fmu)
     for problem in problems:
-        _show(problem)
-    _show(
+        show(problem)
+    show(
         f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
     )
     return 1 if problems else 0
@@ -246,7 +226,7 @@ def _check(options: argparse.Namespace) -> int:
 def _chart(options: argparse.Namespace) -> int:
     from herringbone.chart_command import chart  # noqa: PLC0415 (numba: only when something runs)
 
-    _check_writable(options.output or Path("results"))
+    check_writable(options.output or Path("results"))
     given = {"algorithms": options.algorithm, "steps": options.steps, "t_end": options.t_end}
     text, outcome = chart(
         options.system,
@@ -256,7 +236,7 @@ def _chart(options: argparse.Namespace) -> int:
         fmu=options.fmu,
         **{name: value for name, value in given.items() if value is not None},
     )
-    _show(text)
+    show(text)
     return EXIT_CODES[outcome]
 
 
@@ -270,7 +250,7 @@ def _stability(options: argparse.Namespace) -> int:
 
     output = options.output or (Path("results") if options.atlas else None)
     if output:
-        _check_writable(output)
+        check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     structure, folder = api.load_system(options.system)
     scene = api.load_scene(folder, options.scene)
@@ -293,7 +273,7 @@ def _stability(options: argparse.Namespace) -> int:
         from herringbone.plotting.stability_atlas import atlas_picture  # noqa: PLC0415
 
         atlas_picture(panels).savefig(output / "stability_atlas.png")
-    _show(report.stability_json(found) if options.json else report.stability_text(found))
+    show(report.stability_json(found) if options.json else report.stability_text(found))
     return 0
 
 
@@ -304,5 +284,5 @@ def _export(options: argparse.Namespace) -> int:
     export_ssp(
         options.system, file, scene=options.scene, step=options.step, values=_values(options.set)
     )
-    _show(str(file))
+    show(str(file))
     return 0

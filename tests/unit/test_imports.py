@@ -40,6 +40,8 @@ TOP = {
     "ssp_import",
     "chart_command",
     "build_command",
+    "housing_command",
+    "output",
 }
 """Nothing below may import these; they may import everything."""
 
@@ -50,6 +52,8 @@ ONLY_IN: dict[str, set[str]] = {
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},
     "pypardiso": {"housing/eigenmodes.py"},
+    "gmsh": {"housing/mesher.py"},
+    "skfem": {"housing/elasticity.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""
 

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 from herringbone.analysis import atlas
-from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis.amplification import GROWTH, Amplification, Growth
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.stability import step_limits, warn_if_unstable
+from herringbone.analysis.step_map import MappedPart
 from herringbone.analysis.step_scan import unstable_bands
 from herringbone.components.in_process import InProcessPart
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi
+from herringbone.cosim.calls import do_step
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
@@ -56,7 +58,7 @@ def rig():
 @cache
 def predicted(algorithm):
     amplification = Amplification(*linear_network(rig()), algorithm)
-    return unstable_bands(amplification.radius, *RANGES[algorithm])[0][0]
+    return unstable_bands(amplification.growth, *RANGES[algorithm])[0][0]
 
 
 def growth(algorithm, step, count):
@@ -150,6 +152,31 @@ def test_map_is_affine():
     assert np.abs(deviation).max() < 1e-7
 
 
+@pytest.mark.parametrize("degree", [0, 3])
+def test_mapped_step_is_the_part_s_own_step(degree):
+    """Far away from where the map was measured, to the rounding of its differences."""
+    _, instances = linear_network(rig())
+    gear = next(i for i in instances if i.name == "gear_mesh")
+    part, random = MappedPart(gear), np.random.default_rng(0)
+    part.prepare(1e-4, degree)
+    size, outputs = part.values.size, part._results(degree)
+    found = []
+    for scale in (0.0, 100.0):
+        values = part._operating_point.copy()
+        entries, changes = part._entries(degree)
+        values[entries] += scale * np.multiply(changes, random.standard_normal(len(entries)))
+        part.values[:] = gear.block[:size] = values
+        addresses = part.addresses
+        assert do_step(addresses.do_step, addresses.component, 0.0, 1e-4) == 0
+        assert gear.step(0.0, 1e-4) == 0
+        found.append((part.values[outputs].copy(), gear.block[outputs].copy()))
+    (mapped_base, base), (mapped, own) = found
+    assert np.array_equal(mapped_base, base)
+    moved = np.abs(own - base)
+    assert (np.abs(mapped - own) <= 1e-6 * moved + 1e-12 * np.abs(own)).all()
+    assert moved.max() > 0.0
+
+
 def test_stiffer_mesh_has_a_higher_tangent():
     tangents = []
     for stiffness in MeshStiffness:
@@ -162,6 +189,11 @@ def test_stiffer_mesh_has_a_higher_tangent():
     assert tangents[0] < tangents[1] < tangents[2]
 
 
+def grows_by(radius):
+    """Growth of a known spectral radius, all of it fast."""
+    return lambda step: Growth(radius(step), 0.0, radius(step))
+
+
 def test_bands_of_a_known_radius():
     """An unstable island below the last limit is found, and its edges to 0.5 %."""
 
@@ -169,9 +201,24 @@ def test_bands_of_a_known_radius():
         bad = 20e-6 < step < 24e-6 or step > 31e-6
         return 1.1 if bad else 1.0 + 0.5 * GROWTH
 
-    bands = unstable_bands(radius)
+    bands = unstable_bands(grows_by(radius))
     assert np.ravel(bands)[:3] == pytest.approx([20e-6, 24e-6, 31e-6], rel=0.006)
     assert bands[-1][1] == np.inf
+
+
+@pytest.mark.parametrize("centre", [20e-6, 20.17e-6, 20.3e-6])
+def test_band_narrower_than_the_scan(centre):
+    """A resonance 0.8 % wide, between the steps of a scan by 2.5 %, wherever it lies."""
+
+    def radius(step):
+        resonance = 0.03 / (1.0 + ((step / centre - 1.0) / 0.006) ** 2)
+        return max(0.98 + resonance, step / 31e-6)
+
+    half = 0.006 * np.sqrt(0.03 / 0.02 - 1.0)
+    bands = unstable_bands(grows_by(radius))
+    assert len(bands) == 2
+    assert bands[0] == pytest.approx((centre * (1.0 - half), centre * (1.0 + half)), rel=0.006)
+    assert bands[1][0] == pytest.approx(31e-6, rel=0.006)
 
 
 def test_warning_of_a_run():

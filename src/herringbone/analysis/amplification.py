@@ -10,14 +10,15 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from herringbone.analysis.step_map import CHANGE, OTHER_CHANGE, linear_part, state_changes
 from herringbone.core import HerringboneError, Instance
-from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.loop import DONE, get_all
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import HISTORY, Chunk, record_names
@@ -27,15 +28,12 @@ RIGID = 1e-5
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
-_DOUBTFUL = 1e-4
-_SQUARINGS = 21
+_SLOW = 0.3
+"""Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
 _ROWS = HISTORY - 1
 _START = HISTORY
 """A macro step by which all history is there."""
 _NEVER = 1 << 40
-_CHANGE = {"m": 1e-9, "m/s": 1e-6, "rad": 1e-7, "rad/s": 1e-3, "N": 1e-2, "N.m": 1e-3}
-"""Differences by unit: small against the mesh deflection (1e-6 m), large against rounding."""
-_HIDDEN_CHANGE = (1e-9, 1e-6)
 
 
 @dataclass(frozen=True)
@@ -45,10 +43,13 @@ class Growth:
     Attributes:
         radius: largest magnitude of an eigenvalue, rigid rotation left out.
         frequency: of that motion [Hz], at most half the rate of communication points.
+        fast_radius: the same of motions that are not slow against the step. Slow ones decay by
+            next to nothing in a step at any step; these tell when an unstable band is near.
     """
 
     radius: float
     frequency: float
+    fast_radius: float
 
 
 class Amplification:
@@ -66,12 +67,12 @@ class Amplification:
     def __init__(
         self, network: Network, instances: Sequence[Instance], algorithm: Algorithm
     ) -> None:
-        self.network, self.instances, self.algorithm = network, tuple(instances), algorithm
-        self._blocks = [
-            i.block[: i.component.declaration.mutable_size].copy() for i in self.instances
-        ]
-        self._counts = [i.component.declaration.state_count for i in self.instances]
-        plan = algorithm.prepare(network).plan
+        self._parts = [linear_part(i) for i in instances]
+        self.network = replace(network, parts=tuple(self._parts))
+        self.algorithm = algorithm
+        self._start = [part.values.copy() for part in self._parts]
+        self._counts = [part.declaration.state_count for part in self._parts]
+        plan = algorithm.prepare(self.network).plan
         self._outputs = plan.output_reference.size
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
         self._base = np.zeros((HISTORY, self._outputs))
@@ -82,39 +83,31 @@ class Amplification:
 
     def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each entry of z."""
-        found: list[float] = []
-        for instance in self.instances:
-            declaration = instance.component.declaration
-            found += [_CHANGE.get(v.unit, 1e-6) for v in declaration.states]
-            for change in _HIDDEN_CHANGE:
-                found += [change] * (declaration.hidden_states // 2)
+        found = [change for part in self._parts for change in state_changes(part.instance)]
         signals: list[float] = []
-        for p, part in enumerate(self.network.parts):
+        for p, part in enumerate(self._parts):
             units = {v.reference: v.unit for v in part.variables.values() if v.is_real}
             signals += [
-                _CHANGE.get(units[int(r)] or "", 1e-6) for r in references[first[p] : first[p + 1]]
+                CHANGE.get(units[int(r)] or "", OTHER_CHANGE)
+                for r in references[first[p] : first[p + 1]]
             ]
         return np.array(found + signals * _ROWS)
 
-    def radius(self, step: float) -> float:
-        """Growth per macro step [s] of what grows fastest; 1 if nothing grows.
-
-        From powers of the matrix, which takes half the time of its eigenvalues; these decide where
-        the growth is so slow that it may be the free rotation's rounding.
-        """
-        found = _growth_of_powers(self.matrix(step), self._change[self._used])
-        if GROWTH < found - 1.0 < _DOUBTFUL:
-            found = self.growth(step).radius
-        return max(1.0, found)
-
     def growth(self, step: float) -> Growth:
-        """The fastest growing motion at a macro step [s], from the eigenvalues."""
+        """The fastest growing motion at a macro step [s], from the eigenvalues.
+
+        Raises:
+            HerringboneError: a part fails at this step.
+        """
         eigenvalues = np.linalg.eigvals(self.matrix(step))
         eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
-        if eigenvalues.size == 0:
-            return Growth(0.0, 0.0)
-        largest = eigenvalues[np.argmax(np.abs(eigenvalues))]
-        return Growth(float(abs(largest)), float(abs(np.angle(largest)) / (2.0 * np.pi * step)))
+        sizes = np.abs(eigenvalues)
+        if sizes.size == 0:
+            return Growth(0.0, 0.0, 0.0)
+        largest = int(np.argmax(sizes))
+        frequency = float(abs(np.angle(eigenvalues[largest])) / (2.0 * np.pi * step))
+        fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
+        return Growth(float(sizes[largest]), frequency, fast)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -129,11 +122,16 @@ class Amplification:
 
     def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
         prepared = self.algorithm.prepare(self.network)
-        degrees = [(i, i.component.declaration.index.get(INTERFACE_DEGREE)) for i in self.instances]
-        before = [i.block[at] for i, at in degrees if at is not None]
-        for (instance, at), degree in zip(degrees, prepared.degree, strict=True):
-            if at is not None:
-                instance.block[at] = degree
+        degrees = [part.instance.block[part.degree_index] for part in self._parts]
+        try:
+            for part, degree in zip(self._parts, prepared.degree, strict=True):
+                part.prepare(step, degree)
+            return self._columns(prepared, step, used)
+        finally:
+            for part, degree in zip(self._parts, degrees, strict=True):
+                part.instance.block[part.degree_index] = degree
+
+    def _columns(self, prepared: PreparedRun, step: float, used: np.ndarray) -> np.ndarray:
         history = self._base.copy()
 
         def advance(entry: int | None) -> np.ndarray:
@@ -143,7 +141,7 @@ class Amplification:
             chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
             status, _, culprit = prepared.run(history, chunk)
             if status != DONE:
-                name = self.network.parts[culprit].name if culprit >= 0 else "the coupling"
+                name = self._parts[culprit].name if culprit >= 0 else "the coupling"
                 raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
             return self._vector(history)[used]
 
@@ -153,45 +151,25 @@ class Amplification:
         for column, entry in enumerate(used):
             matrix[:, column] = (advance(int(entry)) - base) / self._change[entry]
         self._restore(history)
-        known = [(i, at) for i, at in degrees if at is not None]
-        for (instance, at), degree in zip(known, before, strict=True):
-            instance.block[at] = degree
         return matrix
 
     def _restore(self, history: np.ndarray) -> None:
         history[:] = self._base
-        for instance, values in zip(self.instances, self._blocks, strict=True):
-            instance.block[: values.size] = values
+        for part, start in zip(self._parts, self._start, strict=True):
+            part.values[:] = start
 
     def _perturb(self, history: np.ndarray, entry: int) -> None:
         change, rest = self._change[entry], entry
-        for instance, count in zip(self.instances, self._counts, strict=True):
+        for part, count in zip(self._parts, self._counts, strict=True):
             if rest < count:
-                instance.block[rest] += change
+                part.values[rest] += change
                 return
             rest -= count
         history[rest // self._outputs, rest % self._outputs] += change
 
     def _vector(self, history: np.ndarray) -> np.ndarray:
-        states = [i.block[:count] for i, count in zip(self.instances, self._counts, strict=True)]
+        states = [p.values[:count] for p, count in zip(self._parts, self._counts, strict=True)]
         return np.concatenate([*states, history[:_ROWS].ravel()])
-
-
-def _growth_of_powers(matrix: np.ndarray, scale: np.ndarray) -> float:
-    """|A^(2 N)| / |A^N| to the power 1 / N, for a large N."""
-    power = matrix * scale[None, :] / scale[:, None]
-    before = after = 0.0
-    for k in range(_SQUARINGS + 1):
-        if k:
-            power = power @ power
-        norm = float(np.abs(power).sum(axis=0).max())
-        if not np.isfinite(norm):
-            return np.inf
-        if norm == 0.0:
-            return 0.0
-        power /= norm
-        before, after = after, 2.0 * after + np.log(norm)
-    return float(np.exp((after - before) / 2.0 ** (_SQUARINGS - 1)))
 
 
 def _coupled(matrix: np.ndarray) -> np.ndarray:

@@ -126,9 +126,9 @@ def _panel(
             progress(name)
             network, instances = linear_network(system)
             frequency = highest_frequency(network, instances)
-            radius = Amplification(network, instances, algorithm).radius
+            growth = Amplification(network, instances, algorithm).growth
             smallest = 1e-2 / frequency
-            bands = unstable_bands(radius, smallest, 20.0 / frequency)
+            bands = unstable_bands(growth, smallest, 20.0 / frequency)
             limit = bands[0][0] if bands else np.inf
             found.append(limit * frequency)
             if run:

@@ -6,14 +6,15 @@ maximum mesh stiffness. Not covered: teeth that separate, and parametric excitat
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
-from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis.amplification import GROWTH, Amplification, Growth
 from herringbone.analysis.bonds import Bond, bond_table, highest_frequency
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.recommendation import Recommendation, recommend
-from herringbone.analysis.step_scan import first_unstable_near, unstable_bands
+from herringbone.analysis.step_scan import GrowthOf, first_unstable_near, unstable_bands
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
@@ -21,6 +22,7 @@ from herringbone.cosim.system import System
 
 Progress = Callable[[str], None]
 """Called after every matrix, with the name of the algorithm."""
+_BEYOND = 1.01
 
 
 @dataclass(frozen=True)
@@ -121,25 +123,26 @@ def step_limits(
 ) -> StepLimits:
     """Unstable steps of an algorithm at mean mesh stiffness, and its limit at all stiffnesses."""
 
-    def unstable(stiffness: MeshStiffness) -> tuple[Amplification, Callable[[float], float]]:
+    def growth_at(stiffness: MeshStiffness) -> GrowthOf:
         amplification = Amplification(*linear_network(system, stiffness), algorithm)
 
-        def radius(step: float) -> float:
+        @cache
+        def growth(step: float) -> Growth:
             if progress:
                 progress(str(algorithm))
-            return amplification.radius(step)
+            return amplification.growth(step)
 
-        return amplification, radius
+        return growth
 
-    amplification, radius = unstable(MeshStiffness.MEAN)
-    bands = unstable_bands(radius)
+    growth = growth_at(MeshStiffness.MEAN)
+    bands = unstable_bands(growth)
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
-    frequency = amplification.growth(1.01 * first).frequency if bands else np.nan
+    frequency = growth(_BEYOND * first).frequency if bands else np.nan
     has_mesh = any(part.component == GEAR_MESH.name for part in system.parts)
     for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
         if has_mesh and bands:
-            found[extreme.value] = first_unstable_near(unstable(extreme)[1], first)
+            found[extreme.value] = first_unstable_near(growth_at(extreme), first)
     return StepLimits(str(algorithm), bands, found, frequency)
 
 

@@ -14,6 +14,8 @@ from herringbone.cosim.network import Network
 
 _HEADER = '''"""Monolithic twin of {name}; generated, not to be edited."""
 
+import numpy as np
+
 from herringbone.components.registry import COMPONENTS
 from herringbone.kernels.jit import kernel
 
@@ -67,20 +69,21 @@ def twin_source(name: str, network: Network, instances: list[Instance], layout: 
     lines = [_HEADER.format(name=name)]
     lines += [f'{n}_rhs = COMPONENTS["{n}"].kernels.rhs\n' for n in names]
     lines += [f'{n}_out = COMPONENTS["{n}"].kernels.out\n' for n in names]
-    lines.append("\n\n@kernel\ndef scatter(b, x):\n")
+    lines.append("\n\n@kernel\ndef scatter(b: np.ndarray, x: np.ndarray) -> None:\n")
     for p, instance in enumerate(instances):
         first, count = layout.state_first[p], instance.component.declaration.state_count
         if count:
             lines.append(f"    for i in range({count}):\n")
             lines.append(f"        b[{layout.block_first[p]} + i] = x[{first} + i]\n")
-    lines.append("    return\n\n\n@kernel\ndef propagate(b, t):\n")
+    lines.append("    return\n\n\n@kernel\ndef propagate(b: np.ndarray, t: float) -> None:\n")
     for p in (*network.sources, *network.bodies, *network.elements):
         if p in network.elements:
             lines += [_copy(c, index) for c in network.inputs(p)]
         lines.append(f"    {instances[p].component.name}_out({block(p)}, t)\n")
     for p in network.bodies:
         lines += [_copy(c, index) for c in network.inputs(p)]
-    lines.append("    return\n\n\n@kernel\ndef rhs(b, x, t, dx):\n")
+    lines.append("    return\n\n\n@kernel\n")
+    lines.append("def rhs(b: np.ndarray, x: np.ndarray, t: float, dx: np.ndarray) -> None:\n")
     lines.append("    scatter(b, x)\n    propagate(b, t)\n")
     for p, instance in enumerate(instances):
         first, end = layout.state_first[p], layout.state_first[p + 1]

@@ -418,6 +418,16 @@ def _out(b: np.ndarray, t: float) -> None:
     _accelerations(b, t)
 
 
+@kernel
+def _indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
+    """Contact of each mesh: deflection on the drive side, and past the backlash."""
+    cos_b, sin_b = cosine(b[_BETA]), sine(b[_BETA])
+    eps, eps_rate = _axial_offset(b)
+    for side in range(2):
+        deflection, _ = _deflection(b, side, cos_b, sin_b, eps, eps_rate)
+        z[2 * side], z[2 * side + 1] = deflection, deflection + b[_BACKLASH]
+
+
 _advance = steppers.body_stepper(_rhs, _out, _d)
 
 
@@ -459,4 +469,12 @@ _LOADER = ResourceLoader(
     stiffness_table.SCRATCH_SIZE + force_law.SCRATCH_SIZE,
 )
 
-GEAR_MESH = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_LOADER, guess=_guess)
+GEAR_MESH = Component(
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    load=_LOADER,
+    guess=_guess,
+    indicators=_indicators,
+    indicator_count=4,
+)

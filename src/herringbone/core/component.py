@@ -52,6 +52,9 @@ class Component:
         guess: puts the states where steady rotation is searched from, when the inputs are set:
             inside the limits of a controller, where the equations are not flat.
         breakpoints: times [s] at which the right-hand side is not smooth.
+        indicators: kernel (b, t, z) that writes the event indicators of model exchange: the
+            right-hand side is not smooth where one of them changes its sign.
+        indicator_count: how many there are.
     """
 
     declaration: Declaration
@@ -61,6 +64,8 @@ class Component:
     start: Callable[[np.ndarray], None] = unchanged
     guess: Callable[[np.ndarray], None] = unchanged
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
+    indicators: Callable[[np.ndarray, float, np.ndarray], None] | None = None
+    indicator_count: int = 0
 
     @property
     def name(self) -> str:

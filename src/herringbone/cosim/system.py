@@ -104,6 +104,26 @@ class System:
             ),
         )
 
+    def without(self, *instances: str) -> "System":
+        """The same system without some parts and what is connected to them.
+
+        Raises:
+            StructureError: there is no such instance, or nothing is left.
+        """
+        for instance in instances:
+            self.part(instance)
+        parts = tuple(part for part in self.parts if part.name not in instances)
+        if not parts:
+            raise StructureError(f"system '{self.name}': no part is left")
+        kept = {part.name for part in parts}
+        inside = lambda path: path.partition(".")[0] in kept  # noqa: E731
+        return replace(
+            self,
+            parts=parts,
+            connections=tuple(c for c in self.connections if all(map(inside, c))),
+            ports={name: path for name, path in self.ports.items() if inside(path)},
+        )
+
     @property
     def foreign_parts(self) -> tuple[str, ...]:
         """Names of parts of which only the FMI interface is known."""

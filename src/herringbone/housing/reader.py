@@ -64,7 +64,7 @@ def read_housing(path: str | Path) -> ModalHousing:
         str(head.get("boundary", "")),
         head.get("source", {}),
         frame,
-        **{name: _read_compliance(root / file, hashes) for name, file in COMPLIANCES.items()},
+        **{name: _optional_compliance(root / file, hashes) for name, file in COMPLIANCES.items()},
         gram=_read_gram(root / GRAM, hashes),
         certificate=head.get("certificate", {}),
     )
@@ -199,9 +199,12 @@ def _in_order(
     return values[[where[dof] for dof in wanted]]
 
 
-def _read_compliance(file: Path | zipfile.Path, hashes: Mapping[str, str]) -> np.ndarray | None:
-    if file.name not in hashes:
-        return None
+def _optional_compliance(file: Path | zipfile.Path, hashes: Mapping[str, str]) -> np.ndarray | None:
+    return read_compliance(file) if file.name in hashes else None
+
+
+def read_compliance(file: Path | zipfile.Path) -> np.ndarray:
+    """Read a matrix (12, 12) of static or residual compliance [m/N]; raises ResourceError."""
     table, units = read_flat_csv(file, ("point", "dof"), {}, more="compliance")  # type: ignore[arg-type]
     if units.get("compliance") != "m/N":
         raise ResourceError(f"{file}: unit '{units.get('compliance', 'none')}'; it must be m/N")

@@ -143,7 +143,7 @@ def housing_warnings(housing: ModalHousing) -> list[str]:
     found = []
     normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
     highest, needed = float(normal.max(initial=0.0)), BAND_OF_MODES * housing.valid_to_hz
-    following = float(housing.certificate.get("next_frequency_hz", 0.0))
+    following = float(housing.certificate.get("next_frequency_hz") or 0.0)
     if max(highest, following) < needed:
         found.append(
             f"normal modes end at {highest:.0f} Hz; valid_to_hz = {housing.valid_to_hz:g} Hz asks "

@@ -9,6 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from herringbone.core import ResourceError
 from herringbone.housing.file_format import (
     COMPLIANCES,
@@ -83,11 +85,7 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
     files = {MODES: _modes_text(housing), SHAPES: _shapes_text(housing)}
     for attribute, name in COMPLIANCES.items():
         if (matrix := getattr(housing, attribute)) is not None:
-            files[name] = _table(
-                "compliance m/N",
-                ("point", "dof", *SEAT_COLUMNS),
-                ((*dof, *row) for dof, row in zip(SEAT_DOFS, matrix, strict=True)),
-            )
+            files[name] = compliance_text(matrix)
     if housing.gram is not None:
         files[GRAM] = _table(
             "mode 1, gram kg^-1.m2",
@@ -96,6 +94,15 @@ def _texts(housing: ModalHousing) -> dict[str, str]:
         )
     files[HEAD] = json.dumps(_head(housing, files), indent=1, ensure_ascii=False) + "\n"
     return files
+
+
+def compliance_text(matrix: np.ndarray) -> str:
+    """A matrix (12, 12) of static or residual compliance [m/N] as the text of its file."""
+    return _table(
+        "compliance m/N",
+        ("point", "dof", *SEAT_COLUMNS),
+        ((*dof, *row) for dof, row in zip(SEAT_DOFS, matrix, strict=True)),
+    )
 
 
 def _mode_names(housing: ModalHousing) -> list[str]:

@@ -95,6 +95,7 @@ class PreparedNodes(PreparedRun):
         self.plan = build_plan(network, stages, degrees, parallel=False)
         self._outputs = connected_outputs(network)
         self.nodes = self._node_plan(degree)
+        self._same_unit = self._units_agree()
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
         self._next_refresh = 0
@@ -187,18 +188,23 @@ class PreparedNodes(PreparedRun):
             if status != DONE or done >= end:
                 return status, done, culprit
 
+    def _units_agree(self) -> np.ndarray:
+        """Which unknowns have the same unit, (unknowns, unknowns)."""
+        units = np.array(
+            [
+                str(part.variables[n].unit)
+                for part, names in zip(self.network.parts, self._outputs, strict=True)
+                for n in names
+            ]
+        )[self.nodes.unknown]
+        return units[:, None] == units[None, :]
+
     def _update_scale(self) -> None:
         """Sizes of the unknowns: the largest signal of the same unit so far."""
-        buffers = self._buffers
-        units = [
-            part.variables[n].unit
-            for part, names in zip(self.network.parts, self._outputs, strict=True)
-            for n in names
-        ]
-        now = np.abs(buffers.history[0])
-        for k, i in enumerate(self.nodes.unknown):
-            same = [now[j] for j in self.nodes.unknown if units[j] == units[i]]
-            buffers.scale[k] = max([*same, buffers.scale[k] if self.jacobians else 1e-3])
+        now = np.abs(self._buffers.history[0, self.nodes.unknown])
+        largest = np.where(self._same_unit, now, 0.0).max(axis=1, initial=0.0)
+        before = self._buffers.scale if self.jacobians else 1e-3
+        self._buffers.scale[:] = np.maximum(largest, before)
 
     def _refresh(self, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""

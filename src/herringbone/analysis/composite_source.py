@@ -1,0 +1,149 @@
+"""Source of the kernels of a system as one component: the twin's, inside one block.
+
+The component's table part holds the blocks of all parts, one behind the other, as the twin does.
+"""
+
+from dataclasses import dataclass
+
+from herringbone.core import Instance
+
+
+@dataclass(frozen=True)
+class BlockMap:
+    """Pairs of places: in the component's block, in the blocks of the parts.
+
+    Attributes:
+        first: start of the parts' blocks in the component's block.
+        states: number of states.
+        inputs, outputs, parameters: pairs of places.
+    """
+
+    first: int
+    states: int
+    inputs: tuple[tuple[int, int], ...]
+    outputs: tuple[tuple[int, int], ...]
+    parameters: tuple[tuple[int, int], ...]
+
+
+_KERNELS = """
+
+@kernel
+def refresh(b: np.ndarray) -> None:
+    blocks = b[{first}:]
+    for i in range({parameters}):
+        blocks[PARAMETER_TO[i]] = b[PARAMETER_FROM[i]]
+
+
+@kernel
+def place(b: np.ndarray) -> None:
+    blocks = b[{first}:]
+{inputs}
+
+@kernel
+def system_rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    place(b)
+    rhs(b[{first}:], b[:{states}], t, dx)
+
+
+@kernel
+def system_out(b: np.ndarray, t: float) -> None:
+    blocks = b[{first}:]
+    place(b)
+    scatter(blocks, b[:{states}])
+    propagate(blocks, t)
+    propagate(blocks, t)
+    for i in range({outputs}):
+        b[OUTPUT_TO[i]] = blocks[OUTPUT_FROM[i]]
+
+
+@kernel
+def system_start(b: np.ndarray) -> None:
+    blocks = b[{first}:]
+    refresh(b)
+    scatter(blocks, b[:{states}])
+{starts}    return
+
+
+@kernel
+def system_load(
+    values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
+) -> int:
+    blocks = b[{first}:]
+    at = 0
+{loads}    return 0
+"""
+
+
+def composite_source(
+    twin: str,
+    instances: list[Instance],
+    blocks: tuple[int, ...],
+    states: tuple[int, ...],
+    m: BlockMap,
+) -> str:
+    """Generate the module: the twin's source, then the component's kernels.
+
+    Args:
+        twin: source of the system's twin.
+        instances: the parts.
+        blocks, states: where each part's block and states begin in the twin; totals at the end.
+        m: where the component's variables lie.
+    """
+    loading = [i for i in instances if i.component.declaration.texts]
+    starting = {i.component.name for i in instances if hasattr(i.component.start, "py_func")}
+    lines = [twin]
+    lines += [f'\n{n}_start = COMPONENTS["{n}"].start' for n in sorted(starting)]
+    names = sorted({i.component.name for i in loading})
+    lines += [f'\n{n}_load = COMPONENTS["{n}"].load.kernel' for n in names]
+    for name, pairs in (("OUTPUT", m.outputs), ("PARAMETER", m.parameters)):
+        ends = ("TO", "FROM") if name == "OUTPUT" else ("FROM", "TO")
+        lines += [f"\n{name}_{end} = {tuple(p[k] for p in pairs)!r}" for k, end in enumerate(ends)]
+    text = _KERNELS.format(
+        first=m.first,
+        states=m.states,
+        parameters=len(m.parameters),
+        outputs=len(m.outputs),
+        inputs="".join(f"    blocks[{to}] = b[{at}]\n" for at, to in m.inputs) or "    return\n",
+        starts=_starts(instances, blocks, states, starting),
+        loads=_loads(instances, blocks),
+    )
+    return "".join([*lines, "\n", text])
+
+
+def _starts(
+    instances: list[Instance], blocks: tuple[int, ...], states: tuple[int, ...], starting: set[str]
+) -> str:
+    lines = []
+    for p, instance in enumerate(instances):
+        if instance.component.name in starting:
+            count = states[p + 1] - states[p]
+            lines.append(
+                f"    {instance.component.name}_start(blocks[{blocks[p]}:{blocks[p + 1]}])\n"
+                f"    for i in range({count}):\n"
+                f"        b[{states[p]} + i] = blocks[{blocks[p]} + i]\n"
+            )
+    return "".join(lines)
+
+
+def _loads(instances: list[Instance], blocks: tuple[int, ...]) -> str:
+    """Each part's load kernel gets its own files; refusals are numbered part after part."""
+    lines, file, refusals = [], 0, 0
+    for p, instance in enumerate(instances):
+        texts = instance.component.declaration.texts
+        if not texts:
+            continue
+        lines.append("    size = 0\n")
+        for k, text in enumerate(texts):
+            at = 2 * (file + k)
+            lines.append(f"    size += {len(text.columns)} + shape[{at}] * shape[{at + 1}]\n")
+        lines.append(
+            f"    status = {instance.component.name}_load(values[at : at + size], "
+            f"shape[{2 * file}:{2 * (file + len(texts))}], blocks[{blocks[p]}:{blocks[p + 1]}], "
+            f"s, report)\n"
+            "    if status != 0:\n"
+            f"        return {refusals} + status\n"
+            "    at += size\n"
+        )
+        file += len(texts)
+        refusals += len(instance.component.load.refusals)
+    return "".join(lines)

@@ -1,0 +1,60 @@
+"""Mesh stiffness of one half over phase and load, as every method of computing it gives it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.modification import Modification
+
+
+@dataclass(frozen=True)
+class MeshStiffness:
+    """Mesh stiffness of one half of a pair; both halves have the same.
+
+    Attributes:
+        pair: gear pair.
+        modification: of its flanks.
+        method: how it was computed, in one line.
+        loads: (n,) normal forces of the half [N], ascending, the first may be zero.
+        phases: (m,) mesh periods, i / m.
+        deflection: (n, m) approach of the gears normal to the flank [m].
+        tangent: (n, m) tangent stiffness d(load)/d(deflection) [N/m].
+        zero_load_secant: (m,) limit of load / deflection at zero load [N/m].
+    """
+
+    pair: GearPair
+    modification: Modification
+    method: str
+    loads: np.ndarray
+    phases: np.ndarray
+    deflection: np.ndarray
+    tangent: np.ndarray
+    zero_load_secant: np.ndarray
+
+    @cached_property
+    def secant(self) -> np.ndarray:
+        """(n, m) secant stiffness load / deflection [N/m]; at zero load its limit."""
+        secant = np.broadcast_to(self.zero_load_secant, self.deflection.shape).copy()
+        loaded = self.loads > 0.0
+        secant[loaded] = self.loads[loaded, None] / self.deflection[loaded]
+        return secant
+
+    @cached_property
+    def transmission_error(self) -> np.ndarray:
+        """(n, m) static transmission error of the half, along the line of action [m]."""
+        return self.deflection / np.cos(self.pair.base_helix_angle)
+
+    def mean(self, load: float) -> float:
+        """Mean secant stiffness of one half at a load [N/m], between loads by interpolation."""
+        return float(np.interp(load, self.loads, self.secant.mean(axis=1)))
+
+    def harmonics(self) -> np.ndarray:
+        """(n, m//2) amplitudes of the secant's mesh harmonics 1 to m//2, over its mean.
+
+        Zero where the stiffness is.
+        """
+        amplitudes = np.abs(np.fft.rfft(self.secant, axis=1))[:, 1:] * 2.0 / self.phases.size
+        mean = self.secant.mean(axis=1, keepdims=True)
+        return np.divide(amplitudes, mean, out=np.zeros_like(amplitudes), where=mean > 0.0)

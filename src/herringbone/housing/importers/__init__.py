@@ -1,0 +1,91 @@
+"""Importers of housings, one file each; the kind of a file follows from its suffix."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from herringbone.core import ResourceError
+from herringbone.housing.importers.dmig import read_dmig
+from herringbone.housing.importers.frd import read_frd
+from herringbone.housing.importers.matrix_market import read_matrix_market
+from herringbone.housing.importers.op4 import read_op4
+from herringbone.housing.importers.uff import read_uff
+from herringbone.housing.matrix_model import MatrixModel, housing_from_matrices
+from herringbone.housing.modal_model import ModalHousing
+from herringbone.housing.mode_set import housing_from_modes
+from herringbone.housing.reader import read_compliance
+from herringbone.housing.reduced_housing import with_static_compliance
+from herringbone.housing.seat_file import SeatFile, read_seats
+
+_MATRICES: dict[str, Callable[[Path], MatrixModel]] = {
+    ".op4": read_op4,
+    ".bdf": read_dmig,
+    ".dat": read_dmig,
+    ".nas": read_dmig,
+    ".pch": read_dmig,
+}
+_ADVICE = {
+    ".op2": "export DMIG cards (.pch) or matrices by ASCII OUTPUT4 (.op4)",
+    ".rst": "export modes as a universal file (.unv) or matrices (HBMAT) as Matrix Market",
+    ".odb": "export modes as a universal file (.unv), or matrices as Matrix Market (.mtx)",
+    ".fil": "export modes as a universal file (.unv), or matrices as Matrix Market (.mtx)",
+}
+
+
+def import_housing(
+    files: Sequence[str | Path],
+    seats: str | Path | None,
+    *,
+    band_hz: float,
+    tolerance: float,
+    most_modes: int,
+    progress: Callable[[str], None] = lambda what: None,
+) -> ModalHousing:
+    """Import a housing.
+
+    Args:
+        files: one file; for Matrix Market stiffness, mass and perhaps the seat input.
+        seats: file of seats, see `seat_file`; needed but for Matrix Market with seat input.
+        band_hz, tolerance, most_modes: of the reduction of matrices, see `reduce_model`; modes are
+            taken as they are.
+        progress: called with what begins.
+
+    Raises:
+        HerringboneError: unknown kind of file, or see the importers.
+    """
+    paths = [Path(file) for file in files]
+    suffix = paths[0].suffix.lower()
+    where = read_seats(seats) if seats is not None else None
+    if suffix == ".mtx" or suffix in _MATRICES:
+        read = _MATRICES.get(suffix)
+        model = read(_only(paths)) if read else read_matrix_market(paths)
+        return housing_from_matrices(
+            model, where, band_hz=band_hz, tolerance=tolerance, most_modes=most_modes,
+            progress=progress,
+        )  # fmt: skip
+    if suffix not in {".frd", ".uff", ".unv"}:
+        known = ", ".join([".mtx", ".frd", ".uff", ".unv", *_MATRICES])
+        raise ResourceError(
+            f"{paths[0]}: '{suffix}' cannot be imported; "
+            + _ADVICE.get(suffix, f"it takes {known}")
+        )
+    if where is None:
+        raise ResourceError(f"{paths[0]}: where are the seats? Give --seats SEATS.toml")
+    return _from_modes(_only(paths), suffix, where)
+
+
+def _only(paths: Sequence[Path]) -> Path:
+    if len(paths) > 1:
+        raise ResourceError(f"{paths[0]} and {paths[1]}: only Matrix Market takes several files")
+    return paths[0]
+
+
+def _from_modes(path: Path, suffix: str, seats: SeatFile) -> ModalHousing:
+    if not seats.valid_to_hz > 0.0:
+        raise ResourceError(
+            f"{seats.path}: valid_to_hz is missing: up to where are the modes good?"
+        )
+    modes = read_frd(path) if suffix == ".frd" else read_uff(path, seats)
+    housing = housing_from_modes(modes, seats)
+    if seats.static is None:
+        return housing
+    return with_static_compliance(housing, read_compliance(seats.static))

@@ -1,0 +1,132 @@
+"""Importer of Nastran DMIG cards (bulk data or punch file), with GRID cards for coordinates.
+
+Small, large and free field formats are read; real matrices only. pyNastran would read more, but it
+asks for numpy below 2.
+
+Source: MSC Nastran Quick Reference Guide, bulk data entries DMIG and GRID, and format of entries.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse as sp
+
+from herringbone.core import ResourceError
+from herringbone.housing.matrix_model import MatrixModel, Row, only_name
+
+_SYMMETRIC = 6
+_REAL = {1, 2}
+_SHORT, _LONG = 8, 16
+_BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
+
+
+def read_dmig(path: str | Path) -> MatrixModel:
+    """Read a stiffness matrix (name begins with K) and a mass matrix (name begins with M).
+
+    Raises:
+        ResourceError: not readable, malformed, complex, not symmetric by form, or not exactly one
+            matrix of each kind.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="ascii", errors="replace")
+    except OSError as error:
+        raise ResourceError(f"cannot read {path}: {error}") from error
+    entries: dict[str, dict[tuple[Row, Row], float]] = {}
+    coordinates: dict[int, np.ndarray] = {}
+    try:
+        for card in _cards(text):
+            if card[0] == "DMIG":
+                _read_dmig(card[1:], entries)
+            elif card[0] == "GRID":
+                coordinates[int(card[1])] = _position(card)
+    except ResourceError as error:
+        raise ResourceError(f"{path}: {error}") from None
+    except (ValueError, IndexError) as error:
+        raise ResourceError(f"{path}: a DMIG or GRID card is malformed: {error}") from error
+    stiffness, mass = (entries[only_name(list(entries), letter, path)] for letter in "KM")
+    rows = sorted({row for matrix in (stiffness, mass) for pair in matrix for row in pair})
+    return MatrixModel(
+        _assemble(stiffness, rows), _assemble(mass, rows), tuple(rows), coordinates, None,
+        {"tool": "Nastran DMIG", "file": path.name},
+    )  # fmt: skip
+
+
+def _cards(text: str) -> Iterator[list[str]]:
+    """Fields of each DMIG and GRID entry, continuations joined."""
+    card: list[str] = []
+    for raw in text.splitlines():
+        line = raw.split("$")[0].rstrip()
+        if not line:
+            continue
+        fields = _fields(line)
+        if fields[0] in {"", "+", "*"} or fields[0][0] in "+*":
+            card += fields[1:]
+            continue
+        if card and card[0] in {"DMIG", "GRID"}:
+            yield card
+        card = [fields[0].rstrip("*").upper(), *fields[1:]]
+    if card and card[0] in {"DMIG", "GRID"}:
+        yield card
+
+
+def _fields(line: str) -> list[str]:
+    """Name and the data fields of a line: 8 in small or free format, 4 in large format."""
+    if "," in line:
+        fields = [field.strip() for field in line.split(",")]
+        count = 5 if "*" in fields[0] else 9
+        return (fields + [""] * count)[:count]
+    line = line.expandtabs(8).ljust(80)
+    name = line[:_SHORT].strip()
+    width, count = (_LONG, 4) if "*" in name else (_SHORT, 8)
+    return [name, *(line[_SHORT + width * k :][:width].strip() for k in range(count))]
+
+
+def _integer(field: str) -> int:
+    return int(field) if field else 0
+
+
+def _real(field: str) -> float:
+    """A Nastran real: 1.5, 1.5E+3, 1.5D+3, 1.5+3; an empty field is 0."""
+    if not field:
+        return 0.0
+    text = field.upper().replace("D", "E")
+    return float(text if "E" in text else _BARE_EXPONENT.sub(r"E\1", text))
+
+
+def _position(grid: list[str]) -> np.ndarray:
+    # Fields: GRID, label, coordinate system of the position, x, y, z, that of the displacements.
+    if _integer(grid[2]) or _integer(grid[6]):
+        raise ResourceError(f"GRID {grid[1]} has its own coordinate system; use the basic one")
+    return np.array([_real(x) for x in grid[3:6]])
+
+
+def _read_dmig(fields: list[str], entries: dict[str, dict[tuple[Row, Row], float]]) -> None:
+    name = fields[0].upper()
+    if fields[1] == "0":
+        form, kind = _integer(fields[2]), _integer(fields[3])
+        if form != _SYMMETRIC or kind not in _REAL:
+            raise ResourceError(
+                f"DMIG {name} has form {form}, type {kind}; form 6 (symmetric) and type 1 or 2 "
+                "(real) are read"
+            )
+        entries.setdefault(name, {})
+        return
+    if name not in entries:
+        raise ResourceError(f"DMIG {name} has no header card (second field 0)")
+    column = (int(fields[1]), _integer(fields[2]))
+    for at in range(4, len(fields) - 2, 4):
+        if fields[at]:
+            row = (int(fields[at]), _integer(fields[at + 1]))
+            entries[name][row, column] = _real(fields[at + 2])
+
+
+def _assemble(matrix: dict[tuple[Row, Row], float], rows: list[Row]) -> sp.csr_array:
+    """The full matrix; symmetric entries are given once, on either side of the diagonal."""
+    at = {row: i for i, row in enumerate(rows)}
+    found = sp.dok_array((len(rows), len(rows)))
+    for (row, column), value in matrix.items():
+        found[at[row], at[column]] = found[at[column], at[row]] = value
+    return found.tocsr()

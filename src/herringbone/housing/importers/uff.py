@@ -1,0 +1,175 @@
+"""Importer of universal files with modes: nodes 15 or 2411, shapes 55 or 2414, units 164.
+
+Reading is done by pyuff (extra `import`). It drops a last data set that does not end; this is
+checked here.
+
+Source: Universal File Formats for Modal Analysis Testing, University of Cincinnati, SDRL.
+"""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from herringbone.core import HerringboneError, ResourceError
+from herringbone.housing.mode_set import (
+    ModeSet,
+    check_modal_mass,
+    mass_of_complex_mode,
+    real_shape,
+)
+from herringbone.housing.seat_file import SeatFile
+
+_NORMAL, _COMPLEX = 2, 3
+_DISPLACEMENT = (0, 1, 8)
+"""Specific data types that can be displacements: unknown, general, displacement."""
+_DIGITS = 1e-4
+
+
+def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
+    """Read the modes of a universal file.
+
+    Args:
+        path: the file.
+        seats: its units are compared with those of data set 164.
+
+    Raises:
+        ResourceError: pyuff is missing, not readable, truncated, without nodes or modes, unscaled,
+            complex, or the units disagree.
+    """
+    path = Path(path)
+    sets = _read_sets(path)
+    units = [s for s in sets if s.get("type") == 164]
+    try:
+        if units:
+            _check_units(units[-1], seats)
+        node, coordinates = _nodes(sets)
+        modes = _modes(sets)
+        shapes = [_in_order(node, labels, shape) for _, _, labels, shape in modes]
+    except ResourceError as error:
+        raise ResourceError(f"{path}: {error}") from None
+    return ModeSet(
+        node,
+        coordinates,
+        np.array([frequency for frequency, *_ in modes]),
+        np.array([zeta for _, zeta, *_ in modes]),
+        np.stack(shapes, axis=-1),
+        {"tool": "universal file", "file": path.name},
+    )
+
+
+def _read_sets(path: Path) -> list[dict[str, Any]]:
+    try:
+        import pyuff  # noqa: PLC0415 (optional)
+    except ImportError as error:
+        raise HerringboneError(
+            "universal files need pyuff: pip install 'herringbone[import]'"
+        ) from error
+    try:
+        lines = path.read_bytes().splitlines()
+    except OSError as error:
+        raise ResourceError(f"cannot read {path}: {error}") from error
+    marks = sum(line.rstrip() == b"    -1" for line in lines)
+    if marks == 0:
+        raise ResourceError(f"{path} is no universal file: it has no mark '    -1'")
+    if marks % 2:
+        raise ResourceError(f"{path} is truncated: the last data set does not end with '    -1'")
+    file = pyuff.UFF(str(path))
+    found = []
+    for n, kind in enumerate(file.get_set_types()):
+        if kind in {15, 55, 164, 2411, 2414}:
+            try:
+                found.append(file.read_sets(n))
+            except Exception as error:  # pyuff raises bare Exception for every defect
+                raise ResourceError(f"{path}: data set {n + 1} ({kind}) is malformed") from error
+    return found
+
+
+def _check_units(units: Mapping[str, Any], seats: SeatFile) -> None:
+    length, force = 1.0 / units["length"], 1.0 / units["force"]  # of one unit, in SI
+    mass = force / length  # the time unit of a universal file is 1 s
+    given = (seats.length, seats.mass, seats.time)
+    if not np.allclose(given, (length, mass, 1.0), rtol=_DIGITS):
+        raise ResourceError(
+            f"data set 164 says that a unit of length is {length:g} m and of mass {mass:g} kg; "
+            f"{seats.path} says {seats.length:g} m, {seats.mass:g} kg, {seats.time:g} s"
+        )
+
+
+def _nodes(sets: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray]:
+    for item in sets:
+        if item["type"] in {15, 2411}:
+            systems = np.unique(np.asarray(item["disp_cs"]))
+            if systems.size > 1:
+                raise ResourceError(
+                    "nodes have several displacement coordinate systems; export global directions"
+                )
+            return (
+                np.asarray(item["node_nums"]).astype(int),
+                np.column_stack([item["x"], item["y"], item["z"]]),
+            )
+    raise ResourceError("no data set 15 or 2411 holds nodes")
+
+
+def _modes(sets: list[dict[str, Any]]) -> list[tuple[float, float, np.ndarray, np.ndarray]]:
+    if modes := [m for m in map(_mode, sets) if m is not None]:
+        return modes
+    raise ResourceError("no data set 55 or 2414 holds normal modes at nodes")
+
+
+def _mode(item: Mapping[str, Any]) -> tuple[float, float, np.ndarray, np.ndarray] | None:
+    """Frequency, damping ratio (NaN if none), labels and shape (k, 3); None if it is no mode."""
+    if item["type"] == 55:
+        return _mode_55(item)
+    if item["type"] == 2414 and item["analysis_type"] == _NORMAL:
+        return _mode_2414(item)
+    return None
+
+
+def _damping(viscous: float, hysteretic: float) -> float:
+    return viscous or 0.5 * hysteretic or math.nan
+
+
+def _mode_55(item: Mapping[str, Any]) -> tuple[float, float, np.ndarray, np.ndarray] | None:
+    kind, where = item["analysis_type"], f"mode {item.get('mode_n', '')}"
+    if kind not in {_NORMAL, _COMPLEX} or item["spec_data_type"] not in _DISPLACEMENT:
+        return None
+    labels = np.asarray(item["node_nums"]).astype(int)
+    shape = np.column_stack([item["r1"], item["r2"], item["r3"]])
+    if shape.shape[0] != labels.size:
+        raise ResourceError(f"{where}: {labels.size} nodes, {shape.shape[0]} values")
+    factor = 1.0 + 0.0j
+    if np.iscomplexobj(shape):
+        shape, factor = real_shape(shape, where)
+    if kind == _NORMAL:
+        mass = check_modal_mass(item["modal_m"], where)
+        zeta = _damping(item["modal_damp_vis"], item["modal_damp_his"])
+        return item["freq"], zeta, labels, shape / math.sqrt(mass)
+    eigenvalue = complex(item["eig"])
+    mass = mass_of_complex_mode(item["modal_a"], factor, abs(eigenvalue.imag), where)
+    w = abs(eigenvalue)
+    return w / (2.0 * math.pi), -eigenvalue.real / w, labels, shape / math.sqrt(mass)
+
+
+def _mode_2414(item: Mapping[str, Any]) -> tuple[float, float, np.ndarray, np.ndarray]:
+    """Record 12 holds time, frequency, eigenvalue, modal mass, viscous and hysteretic damping."""
+    where = f"mode {item['record10_field6']}"
+    if item["dataset_location"] != 1 or item["data_type"] not in {2, 4}:
+        raise ResourceError(f"{where}: data set 2414 must hold real data at nodes")
+    shape = np.array([values[:3] for values in item["data_at_node"]])
+    mass = check_modal_mass(item["record12_field4"], where)
+    zeta = _damping(item["record12_field5"], item["record12_field6"])
+    labels = np.asarray(item["node_nums"]).astype(int)
+    return item["record12_field2"], zeta, labels, shape / math.sqrt(mass)
+
+
+def _in_order(node: np.ndarray, labels: np.ndarray, shape: np.ndarray) -> np.ndarray:
+    """Shape in the order of the nodes; 0 where the data set leaves a node out."""
+    rows = {int(label): i for i, label in enumerate(node)}
+    if unknown := [int(label) for label in labels if int(label) not in rows]:
+        raise ResourceError(f"a mode has the node {unknown[0]}, which has no coordinates")
+    found = np.zeros((node.size, 3))
+    found[[rows[int(label)] for label in labels]] = shape
+    return found

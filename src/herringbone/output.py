@@ -1,0 +1,33 @@
+"""Where the command line writes: lines for people, and folders that are checked beforehand."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from herringbone.core import HerringboneError
+
+
+def say(text: str) -> None:
+    """A line about the course of a command: an error, a note."""
+    sys.stderr.write(text + "\n")
+
+
+def show(text: str) -> None:
+    """What a command was asked for."""
+    sys.stdout.write(text + "\n")
+
+
+def check_writable(folder: Path) -> None:
+    """Refuse before a run what would fail after it; leaves nothing behind.
+
+    Raises:
+        HerringboneError: the folder cannot be made or written.
+    """
+    there = next(f for f in (folder, *folder.absolute().parents) if f.exists())
+    try:
+        with tempfile.TemporaryDirectory(dir=there):
+            pass
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from error
