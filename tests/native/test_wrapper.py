@@ -1,7 +1,8 @@
-"""The C wrapper of native FMUs around a small hand-made component, under sanitizers and valgrind."""
+"""The C wrapper of native FMUs around a hand-made component, under sanitizers and valgrind."""
 
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import fmpy
@@ -14,7 +15,7 @@ WRAPPER = Path(herringbone.fmi.__file__).parent / "native"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 COMPILER = shutil.which("gcc") or shutil.which("clang")
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-format-nonliteral")
-SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler")
 
@@ -54,28 +55,38 @@ def resources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def build(test: str, folder: Path, *flags: str, component: str = "rotor.c") -> Path:
-    program = folder / test
-    sources = [HERE / f"{test}.c", HERE / component, *sorted(WRAPPER.glob("*.c"))]
-    command = [COMPILER, "-std=c11", "-g", "-O1", *WARNINGS, *flags, '-DSOURCES="version1"']
-    command += [f"-I{WRAPPER}", f"-I{HEADERS}", f"-I{HERE}", *map(str, sources), "-o", str(program)]
+def compile_c(*arguments: str | Path) -> None:
+    command = [COMPILER, "-std=c11", "-g", "-O1", "-pthread", *WARNINGS, '-DSOURCES="version1"']
+    command += [f"-I{WRAPPER}", f"-I{HEADERS}", f"-I{HERE}", *map(str, arguments)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    return program
 
 
-def execute(*command: str | Path) -> None:
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stdout + run.stderr
+@pytest.fixture(scope="module", params=["sanitizers", "valgrind"])
+def run(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, resources: Path
+) -> Callable[[str], None]:
+    """Compile a test against the wrapper and run it."""
+    sanitize = request.param == "sanitizers"
+    if not sanitize and not shutil.which("valgrind"):
+        pytest.skip("valgrind is not installed")
+    flags = SANITIZERS if sanitize else ()
+    guard = () if sanitize else ("valgrind", "-q", "--leak-check=full", "--error-exitcode=9")
+    folder = tmp_path_factory.mktemp(request.param)
+    library = folder / "rotor.o"
+    compile_c(*flags, "-r", *sorted(WRAPPER.glob("*.c")), HERE / "rotor.c", "-o", library)
+
+    def run_test(test: str) -> None:
+        compile_c(*flags, HERE / f"{test}.c", library, "-o", folder / test)
+        command = [*guard, folder / test, resources]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert run.returncode == 0, run.stdout + run.stderr
+
+    return run_test
 
 
-@pytest.mark.parametrize("test", ["test_co_simulation"])
-def test_under_sanitizers(test: str, resources: Path, tmp_path: Path) -> None:
-    execute(build(test, tmp_path, *SANITIZERS), resources)
-
-
-@pytest.mark.skipif(not shutil.which("valgrind"), reason="valgrind is not installed")
-@pytest.mark.parametrize("test", ["test_co_simulation"])
-def test_under_valgrind(test: str, resources: Path, tmp_path: Path) -> None:
-    program = build(test, tmp_path)
-    execute("valgrind", "-q", "--leak-check=full", "--error-exitcode=9", program, resources)
+@pytest.mark.parametrize(
+    "test", ["test_co_simulation", "test_fmi3", "test_model_exchange", "test_threads", "fuzz_csv"]
+)
+def test_wrapper(run: Callable[[str], None], test: str) -> None:
+    run(test)

@@ -97,19 +97,12 @@ static double output_derivative(const Instance *instance, uint32_t reference) {
     return end_slope(values, degree, instance->now.last_step);
 }
 
-static bool is_output(uint32_t reference) {
-    if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
-        return false;
-    uint32_t place = reference - hb_component.first_output;
-    return place >= hb_component.node_outputs * HB_STRIDE || place % HB_STRIDE == 0;
-}
-
 Status instance_get_output_derivatives(Instance *instance, const uint32_t references[],
                                        size_t count, const int32_t orders[], double values[]) {
     if (instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_TERMINATED)
         return instance_refuse(instance, "getRealOutputDerivatives");
     for (size_t i = 0; i < count; i++) {
-        if (!is_output(references[i]))
+        if (!instance_is_output(references[i]))
             return instance_unknown(instance, "output", &references[i], 1);
         if (orders[i] != 1)
             return instance_fail(instance, STATUS_ERROR,

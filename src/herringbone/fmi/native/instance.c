@@ -125,6 +125,7 @@ void instance_free(Instance *instance) {
         instance_free_state(instance, &state);
     }
     texts_release(instance->texts);
+    free(instance->direction);
     free(instance->slopes);
     free(instance->resources);
     free(instance->name);

@@ -53,6 +53,8 @@ typedef struct {
     double *previous; /* outputs and locals at the start of the last step */
     double *block, *work;
     double *rates; /* derivatives of the states */
+
+    double *direction; /* of directional derivatives; NULL until one is asked for */
 } Instance;
 
 /* instance.c: life cycle. */
@@ -92,6 +94,8 @@ Status instance_set_texts(Instance *instance, const uint32_t references[], size_
 Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
                         size_t count);
 bool instance_is_real(uint32_t reference);
+/* An output itself, none of its nodes. */
+bool instance_is_output(uint32_t reference);
 /* Value reference of a state's derivative; FMI 3: of the time. */
 uint32_t reference_of_rate(uint32_t state);
 uint32_t reference_of_time(void);
@@ -120,5 +124,23 @@ Status instance_free_state(Instance *instance, void **state);
 Status instance_serialised_size(Instance *instance, void *state, size_t *size);
 Status instance_serialise(Instance *instance, void *state, char bytes[], size_t size);
 Status instance_deserialise(Instance *instance, const char bytes[], size_t size, void **state);
+
+/* model_exchange.c */
+Status instance_enter_event_mode(Instance *instance);
+Status instance_enter_continuous_mode(Instance *instance);
+Status instance_update_discrete_states(Instance *instance);
+Status instance_complete_integrator_step(Instance *instance);
+Status instance_move_time(Instance *instance, double time);
+Status instance_set_continuous_states(Instance *instance, const double states[], size_t count);
+Status instance_get_continuous_states(Instance *instance, double states[], size_t count);
+Status instance_get_nominals(Instance *instance, double nominals[], size_t count);
+Status instance_get_rates(Instance *instance, double rates[], size_t count);
+Status instance_get_indicators(Instance *instance, double indicators[], size_t count);
+
+/* tangent.c */
+Status instance_directional_derivative(Instance *instance, const uint32_t unknowns[],
+                                       size_t unknown_count, const uint32_t knowns[],
+                                       size_t known_count, const double seed[],
+                                       double sensitivity[]);
 
 #endif

@@ -12,6 +12,13 @@ bool instance_is_real(uint32_t reference) {
     return reference < hb_component.first_table && hb_component.access[reference] != HB_HIDDEN;
 }
 
+bool instance_is_output(uint32_t reference) {
+    if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
+        return false;
+    uint32_t place = reference - hb_component.first_output;
+    return place >= hb_component.node_outputs * HB_STRIDE || place % HB_STRIDE == 0;
+}
+
 uint32_t reference_of_rate(uint32_t state) {
     return hb_component.size + hb_component.texts_count + state;
 }

@@ -1,0 +1,107 @@
+/* Model exchange in FMI 2.0 and 3.0: modes, states, derivatives, event indicators. */
+#include <math.h>
+
+#include "check.h"
+#include "rotor.h"
+
+static const char *folder;
+
+static void test_fmi2(void) {
+    fmi2Component c = fmi2Instantiate("m", fmi2ModelExchange, "{token}", folder, &functions2, 0, 0);
+    double x[3] = {0.0, 0.0, 0.0}, dx[3], z[1], value;
+    fmi2EventInfo info;
+    fmi2Boolean event = 1, terminate = 1;
+    fmi2ValueReference tau = TAU, a = A, der_w = DER_W;
+    REFUSED(fmi2GetDerivatives(c, dx, 3), "getDerivatives before initialisation");
+    OK(fmi2SetupExperiment(c, 0, 0, 0, 0, 0));
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2SetReal(c, &tau, 1, &(double){2.0}));
+    OK(fmi2GetDerivatives(c, dx, 3));
+    CHECK(dx[1] == 2.0);
+    REFUSED(fmi2EnterContinuousTimeMode(c), "in initialisation mode");
+    OK(fmi2ExitInitializationMode(c));
+    REFUSED(fmi2DoStep(c, 0, 1e-3, 1), "doStep in event mode");
+    REFUSED(fmi2CompletedIntegratorStep(c, 1, &event, &terminate), "in event mode");
+    OK(fmi2NewDiscreteStates(c, &info));
+    CHECK(!info.newDiscreteStatesNeeded && !info.nextEventTimeDefined);
+    OK(fmi2EnterContinuousTimeMode(c));
+    OK(fmi2GetContinuousStates(c, x, 3));
+    CHECK(x[0] == 0.0);
+    double nominal[3];
+    OK(fmi2GetNominalsOfContinuousStates(c, nominal, 3));
+    CHECK(nominal[0] == 1.0 && nominal[1] == 100.0 && nominal[2] == 10.0); /* the hidden one, too */
+    REFUSED(fmi2GetContinuousStates(c, x, 2), "2 states; there are 3");
+    REFUSED(fmi2GetEventIndicators(c, z, 2), "2 event indicators; there are 1");
+    x[0] = 1.5, x[1] = 4.0;
+    OK(fmi2SetTime(c, 0.5));
+    OK(fmi2SetContinuousStates(c, x, 3));
+    OK(fmi2SetReal(c, &tau, 1, &(double){6.0}));
+    OK(fmi2GetDerivatives(c, dx, 3));
+    CHECK(dx[0] == 4.0 && dx[1] == 6.0);
+    OK(fmi2GetEventIndicators(c, z, 1));
+    CHECK(z[0] == 0.5);
+    OK(fmi2GetReal(c, &a, 1, &value)); /* outputs follow states and inputs */
+    CHECK(value == 6.0);
+    OK(fmi2GetReal(c, &der_w, 1, &value));
+    CHECK(value == 6.0);
+    OK(fmi2CompletedIntegratorStep(c, 1, &event, &terminate));
+    CHECK(!event && !terminate);
+    x[1] = NAN;
+    GIVES(fmi2Discard, fmi2SetContinuousStates(c, x, 3), "m: w = nan; reduce the integrator's step");
+    OK(fmi2GetDerivatives(c, dx, 3));
+    CHECK(dx[0] == 4.0); /* the states are as before */
+    REFUSED(fmi2SetTime(c, NAN), "time nan s");
+    OK(fmi2EnterEventMode(c));
+    REFUSED(fmi2EnterEventMode(c), "enterEventMode in event mode");
+    fmi2Integer order = 1;
+    REFUSED(fmi2SetRealInputDerivatives(c, &tau, 1, &order, x), "setRealInputDerivatives in event");
+    fmi2FMUstate state = NULL;
+    OK(fmi2GetFMUstate(c, &state));
+    OK(fmi2EnterContinuousTimeMode(c));
+    x[1] = 9.0;
+    OK(fmi2SetContinuousStates(c, x, 3));
+    OK(fmi2SetFMUstate(c, state));
+    OK(fmi2GetContinuousStates(c, x, 3));
+    CHECK(x[1] == 4.0);
+    REFUSED(fmi2EnterEventMode(c), "enterEventMode in event mode"); /* the mode came back, too */
+    double seed = 1.0, sensitivity;
+    OK(fmi2GetDirectionalDerivative(c, &der_w, 1, &tau, 1, &seed, &sensitivity));
+    CHECK(sensitivity == 1.0);
+    OK(fmi2Terminate(c));
+    OK(fmi2GetContinuousStates(c, x, 3));
+    REFUSED(fmi2SetTime(c, 1.0), "setTime after terminate");
+    fmi2FreeInstance(c);
+}
+
+static void test_fmi3(void) {
+    fmi3Instance c = fmi3InstantiateModelExchange("m", "{token}", folder, 0, 0, NULL, logger3);
+    bool needed = true, terminate, nominals, states, defined;
+    double next, x[3] = {2.0, 3.0, 0.0}, dx[3], z[1];
+    size_t count;
+    OK(fmi3EnterInitializationMode(c, false, 0, 0.0, false, 0));
+    OK(fmi3ExitInitializationMode(c));
+    OK(fmi3UpdateDiscreteStates(c, &needed, &terminate, &nominals, &states, &defined, &next));
+    CHECK(!needed && !terminate && !nominals && !states && !defined);
+    OK(fmi3GetNumberOfContinuousStates(c, &count));
+    CHECK(count == 3);
+    OK(fmi3GetNumberOfEventIndicators(c, &count));
+    CHECK(count == 1);
+    OK(fmi3EnterContinuousTimeMode(c));
+    OK(fmi3SetContinuousStates(c, x, 3));
+    OK(fmi3GetContinuousStateDerivatives(c, dx, 3));
+    CHECK(dx[0] == 3.0 && dx[1] == 0.0);
+    OK(fmi3GetEventIndicators(c, z, 1));
+    CHECK(z[0] == 1.0);
+    REFUSED(fmi3GetContinuousStates(c, x, 4), "4 states; there are 3");
+    OK(fmi3CompletedIntegratorStep(c, true, &needed, &terminate));
+    OK(fmi3EnterEventMode(c));
+    OK(fmi3Terminate(c));
+    fmi3FreeInstance(c);
+}
+
+int main(int count, char **arguments) {
+    folder = count > 1 ? arguments[1] : ".";
+    test_fmi2();
+    test_fmi3();
+    return report();
+}
