@@ -5,7 +5,7 @@ The value reference of a real is its index in the block, that of a String lies a
 
 from dataclasses import replace
 
-from herringbone.core import Declaration, Text, Variable
+from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.declaration import node_name
 from herringbone.core.variable import NODES, Causality, Variability
 
@@ -35,6 +35,12 @@ def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
     for name in variable.feedthrough:
         names += [name, *(node_name(name, node) for node in range(1, NODES + 1))]
     return [name for name in names if name in declaration.index]
+
+
+def has_model_exchange(component: Component) -> bool:
+    """True if the component's native FMUs offer model exchange: all its states are variables."""
+    declaration = component.declaration
+    return bool(declaration.states) and not declaration.hidden_states
 
 
 def settable(variable: Variable, *, initialised: bool) -> bool:

@@ -72,10 +72,10 @@ def model_description(component: Component, *, native: bool = False) -> Element:
     return root
 
 
-def add_units(root: Element, declaration: Declaration) -> None:
-    """Add the units that the variables carry; the same in FMI 2.0 and 3.0."""
+def add_units(root: Element, declaration: Declaration, *further: str) -> None:
+    """Add the units that the variables carry, and further ones; the same in FMI 2.0 and 3.0."""
     definitions = SubElement(root, "UnitDefinitions")
-    for name in sorted({v.unit for v in declaration.variables}):
+    for name in sorted({v.unit for v in declaration.variables}.union(further)):
         unit = SubElement(definitions, "Unit", name=name)
         exponents = {base: str(n) for base, n in base_exponents(name).items()}
         SubElement(unit, "BaseUnit", exponents)

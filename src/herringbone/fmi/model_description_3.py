@@ -20,6 +20,7 @@ from herringbone.fmi.model_description import (
     limits,
 )
 
+_TIME_UNIT: Final = "s"
 _CAPABILITIES: Final = {
     "needsExecutionTool": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
@@ -45,7 +46,7 @@ def model_description_3(component: Component) -> Element:
         variableNamingConvention="structured",
     )
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **_CAPABILITIES)
-    add_units(root, declaration)
+    add_units(root, declaration, _TIME_UNIT)
     add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
@@ -70,7 +71,7 @@ def model_description_3(component: Component) -> Element:
         valueReference=str(declaration.size + len(declaration.texts) + declaration.state_count),
         causality="independent",
         variability="continuous",
-        unit="s",
+        unit=_TIME_UNIT,
     )
     _add_structure(root, declaration, references)
     return root

@@ -7,11 +7,12 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from herringbone.components.registry import COMPONENTS, component
+from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.paths import cache_folder
 from herringbone.fmi.native.compiler import compile_library, require_compiler
 from herringbone.fmi.native.component_source import component_source
+from herringbone.fmi.native.model import Model, registered_model
 from herringbone.fmi.native.pack import pack_native
 from herringbone.fmi.native.platforms import Platform, own_platform, platform_of
 from herringbone.fmi.native.symbols import check_library, check_object
@@ -29,7 +30,7 @@ VERSIONS = (2, 3)
 def build_native_fmus(
     names: Iterable[str] | None = None, *, platforms: Sequence[str] = (), fmi: int = 2
 ) -> dict[str, Path]:
-    """Build native FMUs, or take those that these sources gave before.
+    """Build native FMUs of components, or take those that these sources gave before.
 
     Args:
         names: components; all if not given.
@@ -43,25 +44,48 @@ def build_native_fmus(
         StructureError, ParameterError: there is no such component, platform or FMI version.
         FmuError: there is no compiler, it failed, or a binary would need more than libc.
     """
+    models = [registered_model(name) for name in (COMPONENTS if names is None else names)]
+    return build_models(models, platforms=platforms, fmi=fmi)
+
+
+def build_models(
+    models: Sequence[Model], *, platforms: Sequence[str] = (), fmi: int = 2
+) -> dict[str, Path]:
+    """As `build_native_fmus`, for any models; all must have the same factory."""
     if fmi not in VERSIONS:
         raise ParameterError(f"FMI version {fmi}; it must be 2 or 3")
     chosen = _chosen(platforms)
-    kinds = [component(name) for name in (COMPONENTS if names is None else names)]
-    folder = cache_folder("native") / f"fmi{fmi}" / "+".join(p.name for p in chosen)
-    folder.mkdir(parents=True, exist_ok=True)
-    fmus = {kind.name: folder / f"{kind.name}.fmu" for kind in kinds}
-    missing = [kind for kind in kinds if not fmus[kind.name].is_file()]
-    if missing:
-        libraries = _libraries([kind.name for kind in missing], chosen)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            for kind in missing:
-                built = pack_native(kind, libraries[kind.name], fmi, Path(scratch))
-                built.replace(fmus[kind.name])
+    fmus = {
+        model.name: _folder(model)
+        / f"fmi{fmi}"
+        / "+".join(p.name for p in chosen)
+        / f"{model.name}.fmu"
+        for model in models
+    }
+    missing = [model for model in models if not fmus[model.name].is_file()]
+    _make_libraries(missing, chosen)
+    for model in missing:
+        fmu = fmus[model.name]
+        fmu.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=fmu.parent) as scratch:
+            libraries = {platform: _library(model, platform) for platform in chosen}
+            pack_native(model, libraries, fmi, Path(scratch) / fmu.name).replace(fmu)
     return fmus
 
 
+def _folder(model: Model) -> Path:
+    return cache_folder("native") / f"{model.name}-{model.key}"
+
+
+def _library(model: Model, platform: Platform) -> Path:
+    """Where the library of a model lies in the cache."""
+    compiler = require_compiler(platform)
+    folder = _folder(model) / f"{platform.name}-{compiler.name}"
+    return folder / f"{model.name}.{platform.extension}"
+
+
 def _chosen(platforms: Sequence[str]) -> list[Platform]:
-    """The platforms in the order of `PLATFORMS`, each once."""
+    """The platforms, each once."""
     if platforms:
         return sorted({platform_of(name) for name in platforms}, key=lambda p: p.name)
     own = own_platform()
@@ -70,45 +94,41 @@ def _chosen(platforms: Sequence[str]) -> list[Platform]:
     return [own]
 
 
-def _libraries(names: list[str], platforms: list[Platform]) -> dict[str, dict[Platform, Path]]:
-    """The libraries by component and platform; what is not in the cache is made."""
-    compilers = {platform: require_compiler(platform) for platform in platforms}
-    folder = cache_folder("native") / "libraries"
-    found = {
-        name: {
-            p: folder / f"{p.name}-{compilers[p].name}" / f"{name}.{p.extension}" for p in platforms
-        }
-        for name in names
-    }
-    missing = {n: [p for p in platforms if not found[n][p].is_file()] for n in names}
-    wanted = [name for name in names if missing[name]]
+def _make_libraries(models: list[Model], platforms: list[Platform]) -> None:
+    """Make the libraries that are not in the cache."""
+    missing = [p for p in platforms if any(not _library(m, p).is_file() for m in models)]
+    wanted = [m for m in models if any(not _library(m, p).is_file() for p in platforms)]
     if not wanted:
-        return found
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder) as scratch:
-        _compile_kernels(Path(scratch), platforms, wanted)
-        for name in wanted:
-            description = Path(scratch) / f"{name}.c"
-            description.write_text(component_source(component(name)), encoding="ascii")
-            for platform in missing[name]:
-                kernels = Path(scratch) / platform.name / f"{name}.o"
-                check_object(kernels.read_bytes(), platform, name)
-                library = Path(scratch) / f"{name}.{platform.extension}"
-                compile_library(compilers[platform], platform, description, kernels, library)
-                check_library(library.read_bytes(), platform, name)
-                found[name][platform].parent.mkdir(exist_ok=True)
-                library.replace(found[name][platform])
-    return found
+        return
+    with tempfile.TemporaryDirectory(dir=cache_folder("native")) as scratch:
+        folder = Path(scratch)
+        _compile_kernels(folder, missing, wanted)
+        for model in wanted:
+            description = folder / f"{model.name}.c"
+            description.write_text(component_source(model.component), encoding="ascii")
+            for platform in missing:
+                kernels = folder / platform.name / f"{model.name}.o"
+                check_object(kernels.read_bytes(), platform, model.name)
+                target = _library(model, platform)
+                library = folder / target.name
+                compiler = require_compiler(platform)
+                compile_library(compiler, platform, description, kernels, library)
+                check_library(library.read_bytes(), platform, model.name)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                library.replace(target)
 
 
-def _compile_kernels(folder: Path, platforms: list[Platform], names: list[str]) -> None:
+def _compile_kernels(folder: Path, platforms: list[Platform], models: list[Model]) -> None:
     command = [
-        sys.executable, "-m", "herringbone.fmi.native.objects",
-        str(folder), ",".join(p.name for p in platforms), *names,
+        sys.executable, "-m", "herringbone.fmi.native.objects", str(folder),
+        ",".join(p.name for p in platforms), models[0].factory, *(m.argument for m in models),
     ]  # fmt: skip
     run = subprocess.run(
         command, capture_output=True, text=True, check=False, env={**os.environ, **_ENVIRONMENT}
     )
     if run.returncode:
-        lines = run.stderr.strip().splitlines() or [f"exit code {run.returncode}"]
-        raise FmuError(f"the kernels of {', '.join(names)} could not be compiled: {lines[-1]}")
+        names = ", ".join(model.name for model in models)
+        lines = run.stderr.splitlines()
+        errors = [line for line in lines if "Error: " in line] or lines[-1:]
+        why = errors[-1].strip() if errors else f"exit code {run.returncode}"
+        raise FmuError(f"the kernels of {names} could not be compiled: {why}")

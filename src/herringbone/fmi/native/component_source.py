@@ -19,6 +19,8 @@ void hb_out(double *b, double t);
 void hb_start(double *b);
 int32_t hb_load(const double *values, const int64_t *shape, double *b, double *scratch,
                 double *report);
+void hb_tangent(double *b, double t, double *d, double *dx);
+void hb_indicators(double *b, double t, double *z);
 """
 
 
@@ -70,6 +72,10 @@ def component_source(component: Component) -> str:
         "load_scratch": loader.scratch if loader else 0,
         "refusals_count": len(refusals),
         "refusals": "refusals",
+        "model_exchange": int(interface.has_model_exchange(component)),
+        "indicators_count": component.indicator_count,
+        "indicators": "hb_indicators" if component.indicators else "NULL",
+        "tangent": "hb_tangent",
     }
     rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
     return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])

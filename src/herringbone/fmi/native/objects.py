@@ -1,4 +1,4 @@
-"""Object code of a component's kernels: `python -m herringbone.fmi.native.objects FOLDER ...`.
+"""Object code of kernels: `python -m herringbone.fmi.native.objects FOLDER PLATFORMS FACTORY ...`.
 
 numba compiles each kernel behind a C signature; its LLVM code is taken, given another target, and
 optimised with every function but the entry points internal. LLVM then sees that no kernel ever
@@ -18,10 +18,11 @@ import llvmlite.binding as llvm
 from numba import carray, cfunc, types
 from numba.core.ccallback import CFunc
 
-from herringbone.components.registry import component
 from herringbone.components.resource_loader import REPORT, ResourceLoader
+from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
 from herringbone.core.component import unchanged
+from herringbone.fmi.native.model import made_component
 from herringbone.fmi.native.platforms import Platform, platform_of
 
 _TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
@@ -37,9 +38,9 @@ _TIME = types.float64
 def entry_points(of: Component) -> dict[str, CFunc]:
     """The kernels of a component behind the C signatures of component.h, by symbol.
 
-    The optional ones, `start` and `load`, only if the component has them.
+    The optional ones, `start`, `load` and `indicators`, only if the component has them.
     """
-    block, kernels = of.declaration.size, of.kernels
+    block, kernels, count = of.declaration.size, of.kernels, of.indicator_count
     work, states = max(of.declaration.work, 1), max(of.declaration.state_count, 1)
 
     def step(b, w, t, h):  # noqa: ANN001, ANN202 (typed by the signature)
@@ -65,18 +66,28 @@ def entry_points(of: Component) -> dict[str, CFunc]:
             )
         )
 
+    def tangent(b, t, d, dx):  # noqa: ANN001, ANN202
+        kernels_tangent(carray(b, (block,)), t, carray(d, (block,)), carray(dx, (2 * states,)))
+
+    def indicators(b, t, z):  # noqa: ANN001, ANN202
+        kernels_indicators(carray(b, (block,)), t, carray(z, (count,)))
+
     kernels_step, kernels_rhs, kernels_out = kernels
-    kernels_start = of.start
+    kernels_start, kernels_indicators = of.start, of.indicators
+    kernels_tangent = tangent_kernel(of)
     found: dict[str, tuple[object, Callable]] = {
         "hb_step": (types.int32(_REALS, _REALS, _TIME, _TIME), step),
         "hb_rhs": (types.void(_REALS, _TIME, _REALS), rhs),
         "hb_out": (types.void(_REALS, _TIME), out),
+        "hb_tangent": (types.void(_REALS, _TIME, _REALS, _REALS), tangent),
     }
     if of.start is not unchanged:
         found["hb_start"] = (types.void(_REALS), start)
     if isinstance(of.load, ResourceLoader):
         kernels_load, scratch = of.load.kernel, of.load.scratch
         found["hb_load"] = (types.int32(_REALS, _COUNTS, _REALS, _REALS, _REALS), load)
+    if of.indicators is not None:
+        found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
     return {
         symbol: cfunc(signature, error_model="numpy")(function)
         for symbol, (signature, function) in found.items()
@@ -126,17 +137,19 @@ def object_code(kernels: dict[str, CFunc], platform: Platform) -> bytes:
     return target.emit_object(whole)
 
 
-def main(folder: Path, platforms: list[Platform], names: list[str]) -> None:
-    """Write FOLDER/PLATFORM/COMPONENT.o."""
+def main(folder: Path, platforms: list[Platform], factory: str, arguments: list[str]) -> None:
+    """Write FOLDER/PLATFORM/COMPONENT.o for the components that a factory makes."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    for name in names:
-        kernels = entry_points(component(name))
+    for argument in arguments:
+        component = made_component(factory, argument)
+        kernels = entry_points(component)
         for platform in platforms:
-            file = folder / platform.name / f"{name}.o"
+            file = folder / platform.name / f"{component.name}.o"
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(object_code(kernels, platform))
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), [platform_of(name) for name in sys.argv[2].split(",")], sys.argv[3:])
+    wanted = [platform_of(name) for name in sys.argv[2].split(",")]
+    main(Path(sys.argv[1]), wanted, sys.argv[3], sys.argv[4:])

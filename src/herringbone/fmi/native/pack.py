@@ -7,10 +7,10 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, indent, tostring
 
 from herringbone.core import Component
-from herringbone.core.paths import resources_folder
 from herringbone.fmi.archive import write_archive
 from herringbone.fmi.model_description import model_description
 from herringbone.fmi.model_description_3 import model_description_3
+from herringbone.fmi.native.model import Model
 from herringbone.fmi.native.platforms import Platform
 
 _UNTESTED = "built, not run"
@@ -18,32 +18,27 @@ _FAT_MAGIC, _FAT_ALIGNMENT = 0xCAFEBABE, 14
 _FAT_CPUS = {"x86_64-darwin": (0x01000007, 3), "aarch64-darwin": (0x0100000C, 0)}
 
 
-def pack_native(
-    component: Component, libraries: Mapping[Platform, Path], fmi: int, folder: Path
-) -> Path:
-    """Pack one component into `folder`; two packs of the same binaries are identical.
+def pack_native(model: Model, libraries: Mapping[Platform, Path], fmi: int, fmu: Path) -> Path:
+    """Pack a model as FMU; two packs of the same binaries are identical.
 
     Args:
-        component: what is packed.
+        model: what is packed.
         libraries: its libraries by platform.
         fmi: FMI version, 2 or 3.
-        folder: where the FMU is written.
+        fmu: file that is written.
     """
+    component = model.component
     description = (
         model_description(component, native=True) if fmi == 2 else model_description_3(component)
     )
     binaries = _by_tuple(component, libraries) if fmi == 3 else _by_system(component, libraries)
-    resources = {
-        f"resources/{file.name}": file.read_bytes()
-        for file in sorted(resources_folder(component.name).glob("*.csv"))
-    }
+    resources = {f"resources/{name}": file.read_bytes() for name, file in model.resources.items()}
     content = {
         "modelDescription.xml": _xml(description),
         "documentation/index.html": _documentation(component, list(libraries)),
         **binaries,
         **resources,
     }
-    fmu = folder / f"{component.name}.fmu"
     write_archive(fmu, content)
     return fmu
 

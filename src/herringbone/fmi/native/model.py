@@ -1,0 +1,62 @@
+"""What a native FMU is built from."""
+
+import hashlib
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from herringbone.components.registry import component
+from herringbone.core import Component
+from herringbone.core.paths import resources_folder
+from herringbone.fmi.native.component_source import component_source
+
+_REGISTRY = "herringbone.components.registry:component"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A component, and how the process that compiles its kernels gets it.
+
+    Attributes:
+        component: the component.
+        factory: "package.module:function"; called with `argument` it returns the component.
+        argument: text for the factory.
+        resources: the files that lie in the FMU's resources folder, by name.
+        identity: what else decides on the kernels, such as the wiring of a system.
+    """
+
+    component: Component
+    factory: str
+    argument: str
+    resources: Mapping[str, Path]
+    identity: str = ""
+
+    @property
+    def name(self) -> str:
+        """FMI model identifier."""
+        return self.component.name
+
+    @cached_property
+    def key(self) -> str:
+        """Hash of all that decides on the FMU, besides the sources of the package."""
+        digest = hashlib.sha256()
+        for text in (self.factory, self.argument, self.identity, component_source(self.component)):
+            digest.update(text.encode() + b"\0")
+        for name, file in sorted(self.resources.items()):
+            digest.update(name.encode() + b"\0" + file.read_bytes())
+        return digest.hexdigest()[:16]
+
+
+def registered_model(name: str) -> Model:
+    """The model of a component of the package; raises StructureError if there is none."""
+    found = component(name)
+    files = sorted(resources_folder(name).glob("*.csv"))
+    return Model(found, _REGISTRY, name, {file.name: file for file in files})
+
+
+def made_component(factory: str, argument: str) -> Component:
+    """The component that a factory makes."""
+    module, _, function = factory.partition(":")
+    return getattr(importlib.import_module(module), function)(argument)
