@@ -40,6 +40,7 @@ TOP = {
     "ssp_import",
     "chart_command",
     "housing_command",
+    "housing_data_command",
     "output",
 }
 """Nothing below may import these; they may import everything."""
@@ -52,6 +53,7 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"plotting"},
     "pypardiso": {"housing/eigenmodes.py"},
     "gmsh": {"housing/mesher.py"},
+    "pyuff": {"housing/importers/uff.py"},
     "skfem": {"housing/elasticity.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""
