@@ -19,7 +19,7 @@ ALLOWED: dict[str, set[str]] = {
     "scenes": {"core", "kernels", "components", "cosim", "analysis"},
     "result": {"core", "plotting"},
     "start": {"core", "components", "cosim", "analysis", "scenes"},
-    "plotting": {"core", "components", "analysis", "result"},
+    "plotting": {"core", "components", "gears", "analysis", "result"},
 }
 """What a package or module may import of this package, besides itself; the rest stands on top."""
 
@@ -39,6 +39,8 @@ TOP = {
     "export",
     "ssp_import",
     "chart_command",
+    "gear_command",
+    "gear_report",
     "housing_command",
     "housing_data_command",
     "output",
