@@ -1,4 +1,4 @@
-"""Command line: list, build, check, run, chart, stability, export, housing."""
+"""Command line: list, build, check, run, chart, stability, export, gear, housing."""
 
 import argparse
 import traceback
@@ -10,7 +10,7 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
-from herringbone import build_command, housing_command
+from herringbone import build_command, gear_command, housing_command
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
 
@@ -74,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--step", type=float, default=2e-6, help="communication step size in s")
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
     sub.add_argument("-o", "--output", type=Path, help="file; SYSTEM.ssp if not given")
+    gear_command.register(commands)
     housing_command.register(commands)
     return parser
 

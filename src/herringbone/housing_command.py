@@ -1,4 +1,4 @@
-"""`herringbone housing`: make a housing."""
+"""`herringbone housing`: make, reduce, import a housing."""
 
 import argparse
 import json
@@ -34,6 +34,38 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub.add_argument("--mesh-size", type=float, help="largest edge of an element in m")
     sub.add_argument("-o", "--output", type=Path, help="folder or .zip file; results/FILE if none")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
+    sub = add("reduce", _reduce, "keep the modes that a band needs, with a certified error")
+    sub.add_argument("data", type=Path, help="folder or .zip file of the format modal-housing")
+    _band_options(sub)
+    sub = add("import", _import, "make modal data of another program's matrices or modes")
+    sub.add_argument(
+        "file", nargs="+", type=Path,
+        help=".frd, .unv, .uff, .op4, .pch, .bdf; or K.mtx M.mtx and perhaps the seat input B.mtx",
+    )  # fmt: skip
+    sub.add_argument("--seats", type=Path, help="TOML file: units, frame, nodes of the seats")
+    _band_options(sub)
+
+
+def _band_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("--band", type=float, default=2000.0, help="highest frequency of use in Hz")
+    sub.add_argument(
+        "--tolerance", type=float, default=0.05,
+        help="error of the receptance at the seats, relative to the static compliance",
+    )  # fmt: skip
+    sub.add_argument("-o", "--output", type=Path, help="folder or .zip file; under results if none")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _reduce(options: argparse.Namespace) -> int:
+    from herringbone.housing_data_command import reduce_command  # noqa: PLC0415 (numba)
+
+    return reduce_command(options)
+
+
+def _import(options: argparse.Namespace) -> int:
+    from herringbone.housing_data_command import import_command  # noqa: PLC0415 (numba)
+
+    return import_command(options)
 
 
 def _build(options: argparse.Namespace) -> int:

@@ -37,6 +37,10 @@ TABLES = {
     "shipped": lambda: read_stiffness_table(SHIPPED)[0],
     "64 phases": lambda: synthetic(64),
     "20 phases": lambda: synthetic(20),
+    "from zero load": lambda: (
+        np.array([0.0, 100.0, 1e4]),
+        np.full((3, 8), 1e9) * [[0.7], [0.8], [1]],
+    ),
     "2 loads": lambda: (np.array([100.0, 1e4]), np.full((2, 8), 1e9) * [[0.8], [1.0]]),
 }
 

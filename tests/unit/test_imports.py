@@ -19,7 +19,7 @@ ALLOWED: dict[str, set[str]] = {
     "scenes": {"core", "kernels", "components", "cosim", "analysis"},
     "result": {"core", "plotting"},
     "start": {"core", "components", "cosim", "analysis", "scenes"},
-    "plotting": {"core", "components", "analysis", "result"},
+    "plotting": {"core", "components", "gears", "analysis", "result"},
 }
 """What a package or module may import of this package, besides itself; the rest stands on top."""
 
@@ -40,7 +40,10 @@ TOP = {
     "ssp_import",
     "chart_command",
     "build_command",
+    "gear_command",
+    "gear_report",
     "housing_command",
+    "housing_data_command",
     "output",
 }
 """Nothing below may import these; they may import everything."""
@@ -53,6 +56,7 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"plotting"},
     "pypardiso": {"housing/eigenmodes.py"},
     "gmsh": {"housing/mesher.py"},
+    "pyuff": {"housing/importers/uff.py"},
     "skfem": {"housing/elasticity.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""

@@ -1,5 +1,7 @@
 """The reader of stiffness tables: good tables, and the message for each kind of bad one."""
 
+import re
+
 import numpy as np
 import pytest
 from support import write_table
@@ -104,8 +106,24 @@ def test_stiffness_must_be_positive(lines, message, value):
     assert f"stiffness {float(value):g} N/m at load 10 N, phase 0.375 must be positive" in text
 
 
-def test_load_must_be_positive(lines, message):
-    assert "load -10 N must be positive" in message(replace(lines, ",10.0,", ",-10.0,"))
+def test_load_must_not_be_negative(lines, message):
+    assert "load -10 N must not be negative" in message(replace(lines, ",10.0,", ",-10.0,"))
+
+
+def test_zero_load_and_zero_stiffness_there(tmp_path, lines):
+    """Unloaded flanks may have a gap: secant 0 at load 0; below zero it is refused."""
+    file = tmp_path / "zero.csv"
+    changed = [
+        re.sub(r",10\.0,(.*),.*", r",0.0,\1,0.0", line) if ",10.0," in line else line
+        for line in lines
+    ]
+    file.write_text("\n".join(changed))
+    for loads, grid in read_stiffness_table(file):
+        assert loads[0] == 0.0
+        assert not grid[0].any()
+    file.write_text("\n".join(changed).replace(",0.0,0.125,0.0", ",0.0,0.125,-1.0"))
+    with pytest.raises(ResourceError, match=r"stiffness -1 N/m at load 0 N, phase 0\.125 "):
+        read_stiffness_table(file)
 
 
 def test_wrong_unit(lines, message):

@@ -1,7 +1,8 @@
 """The stiffness table: secant stiffness of each half over load and phase, and what is refused.
 
 Columns: side (left, right), load [N] (normal force of the own side), phase [mesh periods],
-stiffness [N/m] (secant, normal direction).
+stiffness [N/m] (secant, normal direction). At zero load, which a table may have, the stiffness is
+the limit; it is zero there if the unloaded flanks have a gap.
 """
 
 from pathlib import Path
@@ -25,7 +26,7 @@ _ROWS = 2 * LOADS * (PHASES + 1)
 _PHASES_AT, GRID = _ROWS, 2 * _ROWS
 SCRATCH_SIZE = 3 * _ROWS
 """Length of the scratch space of `collect`."""
-_PERIODIC, _EQUIDISTANT = 1e-6, 1e-5
+_PERIODIC, _EQUIDISTANT, _LEAST = 1e-6, 1e-5, 1e-300
 
 (
     _TOO_LONG, _NO_GRID, _NOT_POSITIVE, _NO_LOAD, _NOT_PERIODIC, _NOT_EQUIDISTANT, _TOO_LARGE,
@@ -35,7 +36,7 @@ _OF_SIDE = (
     "%g rows are no full grid of %g loads x %g phases; give every load at every phase "
     "(at least 2 x 4)",
     "stiffness %g N/m at load %g N, phase %g must be positive",
-    "load %g N must be positive",
+    "load %g N must not be negative",
     "not periodic: stiffness at phase 1 differs from phase 0 by %.3g %%",
     "phases must be equidistant from 0 to below 1 (one mesh period); they run from %g to %g",
     f"%g loads x %g phases; at most {LOADS} x {PHASES}",
@@ -109,11 +110,12 @@ def _check_values(
 ) -> int:
     for row in range(rows):
         at = _WIDTH * (row + 1)
-        if values[at] == side and values[at + 3] <= 0.0:
+        least = 0.0 if values[at + 1] == 0.0 else _LEAST
+        if values[at] == side and not values[at + 3] >= least:
             report[0], report[1], report[2] = values[at + 3], values[at + 1], values[at + 2]
             return _NOT_POSITIVE
     report[0] = s[0]
-    return _NO_LOAD if s[0] <= 0.0 else 0
+    return _NO_LOAD if s[0] < 0.0 else 0
 
 
 @kernel
@@ -123,7 +125,8 @@ def _one_period(s: np.ndarray, loads: int, phases: int, report: np.ndarray) -> t
         jump = 0.0
         for i in range(loads):
             row = GRID + i * phases
-            jump = max(jump, abs(s[row + phases - 1] / s[row] - 1.0))
+            if s[row] > 0.0:
+                jump = max(jump, abs(s[row + phases - 1] / s[row] - 1.0))
         if jump > _PERIODIC:
             report[0] = 100.0 * jump
             return _NOT_PERIODIC, phases
@@ -143,7 +146,8 @@ def _check_monotone(s: np.ndarray, loads: int, phases: int, report: np.ndarray) 
     for i in range(loads - 1):
         for j in range(phases):
             here = GRID + i * phases + j
-            if s[i + 1] / s[here + phases] <= s[i] / s[here]:
+            deflection = s[i] / s[here] if s[i] > 0.0 else 0.0
+            if s[i + 1] / s[here + phases] <= deflection:
                 report[0], report[1], report[2] = s[i], s[i + 1], s[_PHASES_AT + j]
                 return _NOT_MONOTONE
     return 0
@@ -162,10 +166,10 @@ def collect(
         report: numbers of a refusal.
 
     Returns:
-        0 or the number of a refusal (too long, no full grid, stiffness or load not positive, not
-        periodic, phases not equidistant from 0, too large, force not rising with deflection);
-        numbers of loads and of phases. The loads [N] then stand at `s[0:]`, ascending, and the
-        stiffness [N/m] at `s[GRID + load * phases + phase]`, phases i / n.
+        0 or the number of a refusal (too long, no full grid, stiffness not positive, load
+        negative, not periodic, phases not equidistant from 0, too large, force not rising with
+        deflection); numbers of loads and of phases. The loads [N] then stand at `s[0:]`,
+        ascending, and the stiffness [N/m] at `s[GRID + load * phases + phase]`, phases i / n.
     """
     if rows > _ROWS:
         report[0] = rows

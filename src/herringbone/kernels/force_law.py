@@ -50,7 +50,7 @@ def build(
     """Make the table part at `b[at:]`.
 
     Args:
-        loads: normal forces [N], ascending, at most LOADS.
+        loads: normal forces [N], ascending from zero or above, at most LOADS.
         stiffness: secant stiffness [N/m], `stiffness[load * phases + phase]`.
         phases: equidistant phases in a mesh period, at most PHASES.
         b, at: block and start of the table part (TABLE_SIZE long).
@@ -60,7 +60,8 @@ def build(
     limit, smallest = math.inf, 0.0
     for i in range(phases):
         limit = min(limit, loads[count - 1] / stiffness[(count - 1) * phases + i])
-        smallest = max(smallest, loads[0] / stiffness[i])
+        if loads[0] > 0.0:
+            smallest = max(smallest, loads[0] / stiffness[i])
     b[at], b[at + 1] = limit, smallest
     u, k, m = s[:LOADS], s[LOADS : 2 * LOADS], s[2 * LOADS : 3 * LOADS]
     column, slope = s[4 * LOADS : 4 * LOADS + PHASES], s[4 * LOADS + PHASES :]
@@ -70,7 +71,9 @@ def build(
             for i in range(phases):
                 for n in range(count):
                     k[n] = stiffness[n * phases + i]
-                    u[n] = math.sqrt(loads[n] / (k[n] * limit)) * (DEFLECTIONS - 1)
+                    u[n] = 0.0
+                    if loads[n] > 0.0:
+                        u[n] = math.sqrt(loads[n] / (k[n] * limit)) * (DEFLECTIONS - 1)
                 monotone_slopes(u, k, count, m)
                 column[i] = _at(u, k, m, count, j, what)
             periodic_slopes(column, 0, 1, phases, slope, 0)

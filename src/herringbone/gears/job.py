@@ -1,0 +1,85 @@
+"""What is asked about a pair: its gears, modification, load, and how the table is made."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from herringbone.core import ParameterError
+from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.methods import Task
+from herringbone.gears.modification import Modification
+from herringbone.gears.slices import PHASES, SLICES
+
+FULL_SPECIFIC_LOAD = 1e5
+"""F_t / b [N/m] at which ISO 6336-1 takes teeth as fully loaded: the torque if none is given."""
+OVERLOAD = 25.0
+"""Largest load of a table over that of the torque."""
+_SHARES = (0.0, 0.001, 0.004, 0.01, 0.02, 0.04, 0.08, 0.2, 0.4, 1.0)
+"""Loads of a table over its largest."""
+
+
+@dataclass(frozen=True)
+class GearJob:
+    """A pair and what to compute.
+
+    Attributes:
+        pair: gear pair.
+        modification: of its flanks.
+        torque: of the pinion [N m]; None: at 100 N/mm of tangential load per face width.
+        loads: normal forces of one half [N]; None: ten from zero to 25 times that of the torque.
+        phases: of the table.
+        calibration: factor on the teeth's compliance, of the slice method.
+        slices: across the face, of the slice method.
+        corner_contact: follow tip corners outside the path of contact.
+    """
+
+    pair: GearPair
+    modification: Modification = field(default_factory=Modification)
+    torque: float | None = None
+    loads: Sequence[float] | None = None
+    phases: int = PHASES
+    calibration: float = 1.0
+    slices: int = SLICES
+    corner_contact: bool = False
+
+    @property
+    def pinion_torque(self) -> float:
+        """Torque of the pinion [N m], given or by the specific load."""
+        if self.torque is not None:
+            return self.torque
+        width = self.pair.halves * self.pair.face_width
+        return FULL_SPECIFIC_LOAD * width * self.pair.reference_radius[0]
+
+    def task(self) -> Task:
+        """The task of a method.
+
+        Raises:
+            ParameterError: torque not positive; loads that do not begin at zero, or do not reach
+                the load of the torque; too few phases.
+        """
+        if not self.pinion_torque > 0.0:
+            raise ParameterError(f"torque {self.pinion_torque:g} N m must be positive")
+        if not 4 <= self.phases <= 128:
+            raise ParameterError(f"phases = {self.phases} must lie between 4 and 128")
+        needed = self.pair.tooth_forces(self.pinion_torque).normal
+        loads = self.loads
+        if loads is None:
+            loads = [share * OVERLOAD * needed for share in _SHARES]
+        if len(loads) < 2 or loads[0] != 0.0:
+            raise ParameterError(
+                "loads of the stiffness table must begin with zero and go on, in N per half; "
+                f"they begin with {loads[0] if loads else 'nothing'}"
+            )
+        if loads[-1] < needed:
+            raise ParameterError(
+                f"largest load {loads[-1]:g} N of the stiffness table is below the {needed:.6g} N "
+                f"per half of {self.pinion_torque:g} N m; give larger loads or none"
+            )
+        return Task(
+            self.pair,
+            loads,
+            self.modification,
+            self.phases,
+            self.calibration,
+            self.slices,
+            self.corner_contact,
+        )
