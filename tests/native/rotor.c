@@ -1,7 +1,9 @@
 /* A component made by hand, small enough to know its results in closed form: a rotor with two
    resource files.
 
-       J gain w' = tau,   phi' = w,   and a hidden counter of steps
+       J gain w' = ratio tau,   phi' = w,   and a hidden counter of steps
+
+   The work space caches ratio / (J gain).
 
    `gain` is the first number of the table `inertias`, the unit of `speed` there scales it, and
    `shapes` has a further column for each number that is summed into `offset`. */
@@ -27,6 +29,7 @@ static const HbReal reals[] = {
     {"flange.a", "rad/s2", 0, -1e300, 1e300, 1},
     {"steps", "1", 0, -1e300, 1e300, 1},
     {"inertia", "kg.m2", 2, 1e-9, 1e9, 1},
+    {"ratio", "1", 1, -1e9, 1e9, 1},
     {"interface_degree", "1", 0, 0, 4, 1},
 };
 static const uint8_t access_of[] = {
@@ -35,10 +38,10 @@ static const uint8_t access_of[] = {
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
-    HB_OUTPUT, HB_LOCAL, HB_FIXED, HB_TUNABLE,
+    HB_OUTPUT, HB_LOCAL, HB_FIXED, HB_TUNABLE, HB_TUNABLE,
 };
 static const uint8_t extents[] = {1, 1, 0, 1, 4, 0, 0, 0, 1, 4, 0, 0, 0, 1, 4,
-                                  0, 0, 0, 1, 4, 0, 0, 0, 1, 1, 1, 1};
+                                  0, 0, 0, 1, 4, 0, 0, 0, 1, 1, 1, 1, 1};
 static const uint32_t rates[GAIN] = {[PHI] = W, [PHI_OUT] = W_OUT, [W_OUT] = A};
 
 static const char *const side_words[] = {"left", "right", NULL};
@@ -65,11 +68,14 @@ static double signal_at(const double *nodes, int degree, double c) {
     return value[0];
 }
 
+static double acceleration(const double *b) {
+    return b[RATIO] * b[TAU] / (b[INERTIA] * b[GAIN]);
+}
+
 static void rhs(double *b, double t, double *dx) {
-    (void)t;
     dx[PHI] = b[W];
-    dx[W] = b[TAU] / (b[INERTIA] * b[GAIN]);
-    dx[COUNTER] = 0.0;
+    dx[W] = acceleration(b);
+    dx[COUNTER] = t; /* so that the time shows */
 }
 
 static void out(double *b, double t) {
@@ -77,19 +83,20 @@ static void out(double *b, double t) {
     b[PHI_OUT] = b[PHI];
     b[W_OUT] = b[W];
     b[TORQUE] = b[TAU] + b[OFFSET];
-    b[A] = b[TAU] / (b[INERTIA] * b[GAIN]);
+    b[A] = acceleration(b);
 }
 
 /* Exact for a torque that is at most linear in time. */
 static int32_t step(double *b, double *w, double t, double h) {
     int degree = (int)b[DEGREE];
     int intervals = degree ? degree : 1;
-    double kept = b[TAU], inertia = b[INERTIA] * b[GAIN];
-    w[0] += 1.0;
+    double kept = b[TAU];
+    if (w[0] == 0.0)
+        w[0] = b[RATIO] / (b[INERTIA] * b[GAIN]);
     for (int node = 1; node <= intervals; node++) {
         double hs = h / intervals, a[3];
         for (int k = 0; k < 3; k++)
-            a[k] = signal_at(b + TAU, degree, (node - 1 + 0.5 * k) / intervals) / inertia;
+            a[k] = w[0] * signal_at(b + TAU, degree, (node - 1 + 0.5 * k) / intervals);
         b[PHI] += hs * b[W] + hs * hs * (a[0] + 2.0 * a[1]) / 6.0;
         b[W] += hs * (a[0] + 4.0 * a[1] + a[2]) / 6.0;
         b[TAU] = signal_at(b + TAU, degree, (double)node / intervals);
@@ -137,7 +144,7 @@ static void tangent(double *b, double t, double *d, double *dx) {
     rhs(b, t, dx);
     out(b, t);
     dx[3 + PHI] = d[W];
-    dx[3 + W] = d[TAU] / (b[INERTIA] * b[GAIN]);
+    dx[3 + W] = b[RATIO] * d[TAU] / (b[INERTIA] * b[GAIN]);
     dx[3 + COUNTER] = 0.0;
     d[PHI_OUT] = d[PHI];
     d[W_OUT] = d[W];

@@ -64,6 +64,10 @@ static void test_values(void) {
     OK(fmi2DoStep(c, 2.5, 0.0, fmi2True));
     OK(fmi2DoStep(c, 2.5, 1e-16, fmi2True));
     CHECK(get(c, STEPS) == 3.0);
+    CHECK(get(c, DER_PHI) == get(c, W_OUT));
+    OK(fmi2DoStep(c, 2.5, 0.5, fmi2True));
+    CHECK(get(c, DER_PHI) == get(c, W_OUT));
+    OK(fmi2DoStep(c, 2.5, 1e-16, fmi2True));
     double last;
     OK(fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &last));
     CHECK(last == 2.5 + 1e-16);
@@ -91,6 +95,8 @@ static void test_refused_values(void) {
     REFUSED(set(c, DEGREE, 1.5), "it must be a whole number");
     REFUSED(set(c, W_OUT, 1.0), "a continuous output cannot be set now");
     REFUSED(set(c, STEPS, 1.0), "a continuous local cannot be set now");
+    fmi2ValueReference two[] = {INERTIA, RATIO};
+    REFUSED(fmi2SetReal(c, two, 2, (double[]){-1.0, 0.5}), "it must lie between");
     CHECK(get(c, INERTIA) == 2.0 && get(c, TAU) == 0.0 && get(c, DEGREE) == 0.0);
     fmi2ValueReference zero = 0;
     fmi2Integer integer = 1;
@@ -229,6 +235,7 @@ static void test_resources(void) {
     refused_file("word.csv", "word.csv: side 'top' is none of left, right");
     refused_file("binary.csv", "binary.csv: it is no UTF-8 text");
     refused_file("quote.csv", "line 4: a quote is not closed");
+    refused_file("quotes.csv", "line 4: mass = '0\"5,' is not a finite number");
     refused_file("negative.csv", "negative.csv: mass -1 kg in row 2 must be positive");
     fmi2Component c = make("r");
     OK(name_file(c, INERTIAS, "excel.csv")); /* byte order mark, CRLF, quotes, another order, r/min */
@@ -236,10 +243,41 @@ static void test_resources(void) {
     OK(set(c, TAU, 10.0));
     CHECK(get(c, A) == 1.0);
     OK(name_file(c, INERTIAS, "inertias.csv")); /* read again at the next get */
-    CHECK(get(c, A) == 10.0);
+    CHECK(get(c, A) == 10.0 && get(c, TORQUE) == 10.75);
+    CHECK(get(c, DER_W) == 10.0);
+    OK(set(c, TAU, 20.0));
+    CHECK(get(c, DER_W) == 20.0);
+    OK(name_file(c, INERTIAS, "heavy.csv"));
+    CHECK(get(c, DER_W) == 2.0);
     OK(name_file(c, SHAPES, "one_shape.csv"));
     REFUSED(fmi2ExitInitializationMode(c), "one_shape.csv: 1 rows, 2 expected");
     fmi2FreeInstance(c);
+}
+
+/* A URI as of FMI 2.0, with an encoded letter: the resources are found in its folder. */
+static void test_location(void) {
+    char uri[4096];
+    snprintf(uri, sizeof uri, "file://localhost%.*s%%%02X", (int)strlen(folder) - 1, folder,
+             (unsigned)folder[strlen(folder) - 1]);
+    fmi2Component c =
+        fmi2Instantiate("r", fmi2CoSimulation, "{token}", uri, &functions2, fmi2False, fmi2False);
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2ExitInitializationMode(c));
+    fmi2FreeInstance(c);
+}
+
+static void test_long_message(void) {
+    static char name[2001];
+    memset(name, '\xA9', 2000);
+    for (int shift = 0; shift < 2; shift++) {
+        for (int i = shift; i < 2000; i += 2)
+            name[i] = '\xC3';
+        name[0] = shift ? '-' : name[0];
+        fmi2Component c = make(name);
+        GIVES(fmi2Error, fmi2DoStep(c, 0, 1, 1), "\xA9 (t = 0 s)"); /* the last letter is whole */
+        fmi2FreeInstance(c);
+        memset(name, '\xA9', 2000);
+    }
 }
 
 static void test_derivatives(void) {
@@ -289,6 +327,38 @@ static void test_derivatives(void) {
     CHECK(fabs(get(c, W_OUT) - 0.0625) < 1e-15);
     OK(fmi2GetRealOutputDerivatives(c, outputs + 2, 1, orders, slopes));
     CHECK(fabs(slopes[0] - 12.0 * 0.25) < 1e-13); /* the nodes carry the cubic exactly */
+    OK(fmi2SetRealInputDerivatives(c, &tau, 1, &first, &(double){0.0}));
+    double w = get(c, W_OUT);
+    OK(fmi2DoStep(c, 0.5, 0.5, 1));
+    CHECK(get(c, W_OUT) == w); /* the former derivative is forgotten */
+    OK(set(c, DEGREE, 1.0));
+    OK(fmi2DoStep(c, 1.0, 0.5, 1));
+    fmi2FreeInstance(c);
+}
+
+/* The kernels cache functions of the parameters and tables. */
+static void test_work_space(void) {
+    fmi2Component c = make("r");
+    fmi2FMUstate fresh = NULL, stepped = NULL;
+    OK(set(c, TAU, 1.0));
+    OK(fmi2GetFMUstate(c, &fresh));
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2ExitInitializationMode(c));
+    OK(fmi2DoStep(c, 0, 1.0, 1));
+    OK(fmi2GetFMUstate(c, &stepped));
+    CHECK(get(c, W_OUT) == 1.0);
+    OK(set(c, RATIO, 2.0));
+    OK(fmi2DoStep(c, 1, 1.0, 1));
+    CHECK(get(c, W_OUT) == 3.0);
+    OK(fmi2SetFMUstate(c, stepped)); /* with the former ratio */
+    OK(fmi2DoStep(c, 1, 1.0, 1));
+    CHECK(get(c, W_OUT) == 2.0);
+    OK(fmi2SetFMUstate(c, fresh)); /* before the files were read */
+    OK(name_file(c, INERTIAS, "heavy.csv"));
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2ExitInitializationMode(c));
+    OK(fmi2DoStep(c, 0, 1.0, 1));
+    CHECK(fabs(get(c, W_OUT) - 0.1) < 1e-15);
     fmi2FreeInstance(c);
 }
 
@@ -319,6 +389,9 @@ int main(int count, char **arguments) {
     test_fmu_state();
     test_resources();
     test_derivatives();
+    test_work_space();
+    test_location();
+    test_long_message();
     test_logging();
     return report();
 }

@@ -170,6 +170,13 @@ static void test_derivatives(void) {
     OK(fmi3GetDirectionalDerivative(c, of, 1, NULL, 0, NULL, 0, sensitivity, 1));
     CHECK(sensitivity[0] == 0.0);
     fmi3FreeInstance(c);
+    c = make(); /* the first thing that is asked for: the resources are read */
+    REFUSED(fmi3GetDirectionalDerivative(c, of, 1, by, 1, seed, 1, sensitivity, 1),
+            "getDirectionalDerivative before initialisation");
+    OK(fmi3EnterInitializationMode(c, false, 0, 0.0, false, 0));
+    OK(fmi3GetDirectionalDerivative(c, of, 1, by, 1, seed, 1, sensitivity, 1));
+    CHECK(sensitivity[0] == 3.0);
+    fmi3FreeInstance(c);
 }
 
 int main(int count, char **arguments) {

@@ -44,6 +44,12 @@ static void test_fmi2(void) {
     CHECK(value == 6.0);
     OK(fmi2GetReal(c, &der_w, 1, &value));
     CHECK(value == 6.0);
+    OK(fmi2SetTime(c, 0.75));
+    OK(fmi2GetDerivatives(c, dx, 3));
+    CHECK(dx[2] == 0.75);
+    OK(fmi2SetReal(c, &tau, 1, &(double){7.0}));
+    OK(fmi2GetDerivatives(c, dx, 3));
+    CHECK(dx[1] == 7.0);
     OK(fmi2CompletedIntegratorStep(c, 1, &event, &terminate));
     CHECK(!event && !terminate);
     x[1] = NAN;

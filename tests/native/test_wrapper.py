@@ -37,6 +37,7 @@ FILES = {
     "huge.csv": INERTIAS + "left,1e999,1\n",
     "word.csv": INERTIAS + "top,1,1\n",
     "quote.csv": INERTIAS + 'left,1,1\n"left,1,1\n',
+    "quotes.csv": INERTIAS + 'left,1,1\nleft,"0""5,",1\n',
     "negative.csv": INERTIAS + "left,1,1\nright,-1,1\n",
     "excel.csv": '\ufeff# units: speed r/min, mass kg\r\n"speed" , mass ,side\r\n'
     '"1", 5e-1 ," left "\r\n\r\n2,+.5,"right"',

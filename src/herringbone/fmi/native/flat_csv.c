@@ -4,118 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "csv_table.h"
 #include "platform.h"
-
-typedef struct {
-    size_t line, first, count; /* line in the file; fields[first ... first + count - 1] */
-} Row;
-
-typedef struct {
-    const char *file;
-    char *text;
-    char *units; /* what follows "# units:" */
-    char **fields;
-    Row *rows; /* the first one is the header */
-    size_t field_count, row_count;
-} Table;
-
-static const char SPACE[] = " \t\v\f";
-
-/* Cut spaces off both ends, in place. */
-static char *trim(char *text) {
-    text += strspn(text, SPACE);
-    size_t end = strlen(text);
-    while (end > 0 && strchr(SPACE, text[end - 1]))
-        text[--end] = '\0';
-    return text;
-}
-
-/* End the line that starts here; returns the start of the next one, NULL at the end of the text. */
-static char *end_line(char *line) {
-    char *end = line + strcspn(line, "\r\n");
-    if (*end == '\0')
-        return NULL;
-    char *next = end + (end[0] == '\r' && end[1] == '\n' ? 2 : 1);
-    *end = '\0';
-    return *next ? next : NULL;
-}
-
-/* End the field that starts at *cursor and move to the next one (NULL after the last one); quotes
-   are taken off. NULL if a quote is not closed. */
-static char *cut_field(char **cursor) {
-    char *field = *cursor, *from = field, *to = field;
-    if (*from == '"') {
-        for (from++; *from != '"' || from[1] == '"'; *to++ = *from++) {
-            if (*from == '\0')
-                return NULL;
-            from += *from == '"';
-        }
-        from++;
-    }
-    while (*from && *from != ',')
-        *to++ = *from++;
-    *cursor = *from ? from + 1 : NULL;
-    *to = '\0';
-    return field;
-}
-
-static bool cut_row(Table *table, char *line, size_t number, Message *message) {
-    Row *row = &table->rows[table->row_count++];
-    *row = (Row){.line = number, .first = table->field_count};
-    for (char *cursor = line; cursor;) {
-        char *field = cut_field(&cursor);
-        if (!field) {
-            message_write(message, "%s, line %zu: a quote is not closed", table->file, number);
-            return false;
-        }
-        table->fields[table->field_count++] = field;
-        row->count++;
-    }
-    return true;
-}
-
-static size_t count_of(const char *text, const char *characters) {
-    size_t count = 0;
-    for (; (text = strpbrk(text, characters)); text++)
-        count++;
-    return count;
-}
-
-static bool allocate(Table *table, Message *message) {
-    size_t lines = count_of(table->text, "\r\n") + 1;
-    table->rows = malloc(lines * sizeof *table->rows);
-    table->fields = malloc((lines + count_of(table->text, ",")) * sizeof *table->fields);
-    if (table->rows && table->fields)
-        return true;
-    message_write(message, "cannot read %s: out of memory", table->file);
-    return false;
-}
-
-static bool cut_units(Table *table, Message *message) {
-    static const char mark[] = "# units:";
-    char *found = strstr(table->text, mark);
-    char *first_end = table->text + strcspn(table->text, "\r\n");
-    if (!found || found > first_end || found + strlen(mark) == first_end) {
-        message_write(message, "%s: the first line must be '# units: <column> <unit>, ...'",
-                      table->file);
-        return false;
-    }
-    table->units = found + strlen(mark);
-    return true;
-}
-
-static bool cut(Table *table, Message *message) {
-    if (!cut_units(table, message))
-        return false;
-    char *next = end_line(table->text);
-    for (size_t number = 2; next; number++) {
-        char *line = next;
-        next = end_line(line);
-        if (*line && *line != '#' && !cut_row(table, line, number, message))
-            return false;
-    }
-    return true;
-}
 
 /* Index of the unit that the file gives for a column; -1 with a message if it takes no such unit. */
 static int unit_index(const Table *table, const HbColumn *column, Message *message) {
@@ -124,11 +14,11 @@ static int unit_index(const Table *table, const HbColumn *column, Message *messa
         size_t length = strcspn(item, ",");
         char copy[128];
         snprintf(copy, sizeof copy, "%.*s", (int)(length < sizeof copy ? length : sizeof copy), item);
-        char *name = trim(copy), *rest = name + strcspn(name, SPACE);
+        char *name = csv_trim(copy), *rest = name + strcspn(name, CSV_SPACE);
         if (*rest) {
             *rest = '\0';
             if (strcmp(name, column->name) == 0)
-                snprintf(unit, sizeof unit, "%.*s", (int)sizeof unit - 1, trim(rest + 1));
+                snprintf(unit, sizeof unit, "%.*s", (int)sizeof unit - 1, csv_trim(rest + 1));
         }
         item += length;
     }
@@ -230,7 +120,7 @@ static bool read_row(const Table *table, const Row *row, const HbText *grammar,
         char *field = table->fields[row->first + i];
         double *value = &values[place[i]];
         if (column && column->words) {
-            if (!read_word(table->file, column, trim(field), value, message))
+            if (!read_word(table->file, column, csv_trim(field), value, message))
                 return false;
         } else if (!platform_number(field, value)) {
             message_write(message, "%s, line %zu: %s = '%.64s' is not a finite number",
@@ -279,7 +169,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
         return false;
     }
     for (size_t i = 0; i < table->rows->count; i++)
-        table->fields[i] = trim(table->fields[i]);
+        table->fields[i] = csv_trim(table->fields[i]);
     if (!check_header(table, grammar, message))
         return false;
     size_t declared = grammar->column_count, rows = table->row_count - 1;
@@ -301,11 +191,9 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
 
 bool flat_csv_read(const char *file, const HbText *grammar, Numbers *numbers, int64_t shape[2],
                    Message *message) {
-    Table table = {.file = file, .text = platform_read_text(file, message)};
-    bool read = table.text && allocate(&table, message) && cut(&table, message) &&
+    Table table;
+    bool read = csv_table_read(&table, file, message) &&
                 append(&table, grammar, numbers, shape, message);
-    free(table.text);
-    free(table.fields);
-    free(table.rows);
+    csv_table_free(&table);
     return read;
 }

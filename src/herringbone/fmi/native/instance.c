@@ -13,9 +13,8 @@ Status instance_fail(Instance *instance, Status status, const char *format, ...)
     message_write_list(&message, format, arguments);
     va_end(arguments);
     char when[48];
-    int length = snprintf(when, sizeof when, " (t = %g s)", instance->now.time);
-    size_t end = strlen(message.text), last = sizeof message.text - (size_t)length - 1;
-    memcpy(message.text + (end < last ? end : last), when, (size_t)length + 1);
+    snprintf(when, sizeof when, " (t = %g s)", instance->now.time);
+    message_end(&message, when);
     log_write(&instance->log, status, &message);
     return status;
 }

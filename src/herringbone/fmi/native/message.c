@@ -3,19 +3,19 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A text that was cut must not end inside a character: hosts decode UTF-8. */
-static void drop_partial_character(char *text) {
-    size_t end = strlen(text);
-    while (end > 0 && ((unsigned char)text[end - 1] & 0xC0) == 0x80)
-        end--;
-    if (end > 0 && (unsigned char)text[end - 1] >= 0xC0)
-        text[end - 1] = '\0';
+/* Cut a text, not inside a character: hosts decode UTF-8. */
+static void cut(char *text, size_t length) {
+    while (length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80)
+        length--;
+    text[length] = '\0';
 }
 
 void message_write_list(Message *message, const char *format, va_list arguments) {
-    int length = vsnprintf(message->text, sizeof message->text, format, arguments);
-    if (length >= (int)sizeof message->text)
-        drop_partial_character(message->text);
+    char text[sizeof message->text + 1] = "";
+    vsnprintf(text, sizeof text, format, arguments);
+    if (strlen(text) >= sizeof message->text)
+        cut(text, sizeof message->text - 1);
+    memcpy(message->text, text, sizeof message->text);
 }
 
 void message_write(Message *message, const char *format, ...) {
@@ -23,4 +23,11 @@ void message_write(Message *message, const char *format, ...) {
     va_start(arguments, format);
     message_write_list(message, format, arguments);
     va_end(arguments);
+}
+
+void message_end(Message *message, const char *tail) {
+    size_t size = strlen(tail) + 1, room = sizeof message->text - size;
+    if (strlen(message->text) > room)
+        cut(message->text, room);
+    memcpy(message->text + strlen(message->text), tail, size);
 }

@@ -17,4 +17,7 @@ typedef struct {
 void message_write(Message *message, const char *format, ...) PRINTF_LIKE(2, 3);
 void message_write_list(Message *message, const char *format, va_list arguments);
 
+/* Append; a text that is too long loses its end, never the tail. */
+void message_end(Message *message, const char *tail);
+
 #endif

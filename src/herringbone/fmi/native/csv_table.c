@@ -1,0 +1,112 @@
+#include "csv_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "platform.h"
+
+char *csv_trim(char *text) {
+    text += strspn(text, CSV_SPACE);
+    size_t end = strlen(text);
+    while (end > 0 && strchr(CSV_SPACE, text[end - 1]))
+        text[--end] = '\0';
+    return text;
+}
+
+/* End the line that starts here; returns the start of the next one, NULL at the end of the text. */
+static char *end_line(char *line) {
+    char *end = line + strcspn(line, "\r\n");
+    if (*end == '\0')
+        return NULL;
+    char *next = end + (end[0] == '\r' && end[1] == '\n' ? 2 : 1);
+    *end = '\0';
+    return *next ? next : NULL;
+}
+
+/* End the field that starts at *cursor and move to the next one (NULL after the last one); quotes
+   are taken off. NULL if a quote is not closed. */
+static char *cut_field(char **cursor) {
+    char *field = *cursor, *from = field, *to = field;
+    if (*from == '"') {
+        for (from++; *from != '"' || from[1] == '"'; *to++ = *from++) {
+            if (*from == '\0')
+                return NULL;
+            from += *from == '"';
+        }
+        from++;
+    }
+    while (*from && *from != ',')
+        *to++ = *from++;
+    *cursor = *from ? from + 1 : NULL;
+    *to = '\0';
+    return field;
+}
+
+static bool cut_row(Table *table, char *line, size_t number, Message *message) {
+    Row *row = &table->rows[table->row_count++];
+    *row = (Row){.line = number, .first = table->field_count};
+    for (char *cursor = line; cursor;) {
+        char *field = cut_field(&cursor);
+        if (!field) {
+            message_write(message, "%s, line %zu: a quote is not closed", table->file, number);
+            return false;
+        }
+        table->fields[table->field_count++] = field;
+        row->count++;
+    }
+    return true;
+}
+
+static size_t count_of(const char *text, const char *characters) {
+    size_t count = 0;
+    for (; (text = strpbrk(text, characters)); text++)
+        count++;
+    return count;
+}
+
+static bool allocate(Table *table, Message *message) {
+    size_t lines = count_of(table->text, "\r\n") + 1;
+    table->rows = malloc(lines * sizeof *table->rows);
+    table->fields = malloc((lines + count_of(table->text, ",")) * sizeof *table->fields);
+    if (table->rows && table->fields)
+        return true;
+    message_write(message, "cannot read %s: out of memory", table->file);
+    return false;
+}
+
+static bool cut_units(Table *table, Message *message) {
+    static const char mark[] = "# units:";
+    char *found = strstr(table->text, mark);
+    char *first_end = table->text + strcspn(table->text, "\r\n");
+    if (!found || found > first_end || found + strlen(mark) == first_end) {
+        message_write(message, "%s: the first line must be '# units: <column> <unit>, ...'",
+                      table->file);
+        return false;
+    }
+    table->units = found + strlen(mark);
+    return true;
+}
+
+static bool cut(Table *table, Message *message) {
+    if (!cut_units(table, message))
+        return false;
+    char *next = end_line(table->text);
+    for (size_t number = 2; next; number++) {
+        char *line = next;
+        next = end_line(line);
+        if (*line && *line != '#' && !cut_row(table, line, number, message))
+            return false;
+    }
+    return true;
+}
+
+bool csv_table_read(Table *table, const char *file, Message *message) {
+    *table = (Table){.file = file, .text = platform_read_text(file, message)};
+    return table->text && allocate(table, message) && cut(table, message);
+}
+
+void csv_table_free(Table *table) {
+    free(table->text);
+    free(table->fields);
+    free(table->rows);
+}
