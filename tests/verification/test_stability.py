@@ -1,8 +1,4 @@
-"""Predicted stability limits against long runs of the same linear parts, and against theory.
-
-A frozen gearbox is affine while its meshes stay closed, so that a run at a step just below the
-predicted limit must decay, and one just above it must grow, whatever the prediction is made of.
-"""
+"""Predicted stability limits against theory, and what the prediction is made of."""
 
 from functools import cache
 
@@ -15,16 +11,13 @@ from herringbone.analysis.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.stability import step_limits, warn_if_unstable
 from herringbone.analysis.step_map import MappedPart
 from herringbone.analysis.step_scan import unstable_bands
-from herringbone.components.in_process import InProcessPart
-from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi
+from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.calls import do_step
-from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
 from herringbone.start import started
 
-SEAT_VELOCITY = "modal_housing."
 INERTIA = (0.01, 0.03)
 COUPLING_FREQUENCY = 3000.0
 
@@ -32,14 +25,9 @@ RANGES = {
     Jacobi(0): (12e-6, 30e-6),
     Jacobi(1): (25e-6, 50e-6),
     Jacobi(2): (30e-6, 55e-6),
-    GaussSeidel(2): (25e-6, 50e-6),
-    FixedPoint(): (100e-6, 160e-6),
     LI(3): (540e-6, 720e-6),
 }
 """Where the limits are looked for, so that the tests are short."""
-STEPS = {Jacobi(0): 60000, Jacobi(1): 8000, LI(3): 800}
-"""Macro steps of a run, so that what grows stays small against the mesh deflection; else 2000."""
-
 PUBLISHED = {
     Jacobi(0): (15e-6, 20e-6),
     Jacobi(1): (37e-6, 41e-6),
@@ -59,30 +47,6 @@ def rig():
 def predicted(algorithm):
     amplification = Amplification(*linear_network(rig()), algorithm)
     return unstable_bands(amplification.growth, *RANGES[algorithm])[0][0]
-
-
-def growth(algorithm, step, count):
-    """Growth per macro step of a linear run's fast motions, between its middle and its end."""
-    _, instances = linear_network(rig())
-    gear = next(i for i in instances if i.name == "gear_mesh")
-    for name, kick in (("y_1", 2e-6), ("y_2", -1e-6), ("y_3", 1e-6), ("z_3", 2e-6), ("z_4", 1e-6)):
-        gear.set(f"der({name})", gear[f"der({name})"] + kick)
-    parts = [InProcessPart(i) for i in instances]
-    run = simulate(rig(), parts, algorithm, make_grid(count * step, step, step))
-    assert run.outcome.completed
-    seats = [i for i, n in enumerate(run.names) if n.startswith(SEAT_VELOCITY) and ".v_" in n]
-    fast = np.diff(run.values[:, seats], n=2, axis=0)
-    window = count // 10
-    middle, end = fast[-window - count // 2 : -count // 2], fast[-window:]
-    return float(np.log(np.linalg.norm(end) / np.linalg.norm(middle)) / (count // 2))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("algorithm", RANGES, ids=str)
-def test_linear_run_changes_sides_at_the_predicted_limit(algorithm):
-    limit, count = predicted(algorithm), STEPS.get(algorithm, 2000)
-    assert growth(algorithm, 0.98 * limit, count) < 0.0
-    assert growth(algorithm, 1.02 * limit, count) > 0.0
 
 
 @pytest.mark.slow

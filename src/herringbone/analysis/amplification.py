@@ -45,11 +45,14 @@ class Growth:
         frequency: of that motion [Hz], at most half the rate of communication points.
         fast_radius: the same of motions that are not slow against the step. Slow ones decay by
             next to nothing in a step at any step; these tell when an unstable band is near.
+        mirror_radius: the same of motions at half the rate of communication points: there a motion
+            meets its own mirror image, and one of the two grows at the expense of the other.
     """
 
     radius: float
     frequency: float
     fast_radius: float
+    mirror_radius: float = 0.0
 
 
 class Amplification:
@@ -104,10 +107,12 @@ class Amplification:
         sizes = np.abs(eigenvalues)
         if sizes.size == 0:
             return Growth(0.0, 0.0, 0.0)
+        angles = np.abs(np.angle(eigenvalues))
         largest = int(np.argmax(sizes))
-        frequency = float(abs(np.angle(eigenvalues[largest])) / (2.0 * np.pi * step))
+        frequency = float(angles[largest] / (2.0 * np.pi * step))
         fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
-        return Growth(float(sizes[largest]), frequency, fast)
+        mirror = float(sizes[angles == np.pi].max(initial=0.0))
+        return Growth(float(sizes[largest]), frequency, fast, mirror)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.

@@ -126,9 +126,9 @@ def _panel(
             progress(name)
             network, instances = linear_network(system)
             frequency = highest_frequency(network, instances)
-            growth = Amplification(network, instances, algorithm).growth
-            smallest = 1e-2 / frequency
-            bands = unstable_bands(growth, smallest, 20.0 / frequency)
+            amplification = Amplification(network, instances, algorithm)
+            smallest, largest = 1e-2 / frequency, 20.0 / frequency
+            bands = unstable_bands(amplification.growth, smallest, largest)
             limit = bands[0][0] if bands else np.inf
             found.append(limit * frequency)
             if run:

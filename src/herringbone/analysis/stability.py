@@ -138,7 +138,8 @@ def step_limits(
     bands = unstable_bands(growth)
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
-    frequency = growth(_BEYOND * first).frequency if bands else np.nan
+    inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan
+    frequency = growth(float(inside)).frequency if bands else np.nan
     has_mesh = any(part.component == GEAR_MESH.name for part in system.parts)
     for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
         if has_mesh and bands:

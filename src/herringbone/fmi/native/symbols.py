@@ -16,8 +16,8 @@ _IN_OBJECTS: Final = frozenset({"memcpy", "memmove", "memset"})
 _LIBC: Final = _IN_OBJECTS | {
     "bcmp", "calloc", "fclose", "ferror", "fgetc", "fopen", "fread", "free", "freelocale", "fseek",
     "ftell", "localeconv", "malloc", "memchr", "memcmp", "newlocale", "realloc", "snprintf",
-    "strchr", "strcmp", "strcspn", "strlen", "strncmp", "strpbrk", "strspn", "strstr", "strtod",
-    "strtod_l", "vsnprintf",
+    "stpcpy", "strcat", "strchr", "strcmp", "strcpy", "strcspn", "strlen", "strncmp", "strncpy",
+    "strpbrk", "strspn", "strstr", "strtod", "strtod_l", "vsnprintf",
 }  # fmt: skip
 _RUNTIME: Final = frozenset({
     "__cxa_finalize", "__gmon_start__", "_ITM_deregisterTMCloneTable",
