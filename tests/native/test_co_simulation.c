@@ -1,4 +1,5 @@
 /* FMI 2.0 co-simulation: values, states, derivatives, and every misuse gets a status and a message. */
+#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -380,8 +381,11 @@ static void test_logging(void) {
     fmi2FreeInstance(c);
 }
 
+/* Arguments: folder of the resources; decimal point of the locale in which the host runs. */
 int main(int count, char **arguments) {
     folder = count > 1 ? arguments[1] : ".";
+    setlocale(LC_ALL, "");
+    CHECK(count < 3 || strcmp(localeconv()->decimal_point, arguments[2]) == 0);
     test_instantiate();
     test_values();
     test_refused_values();

@@ -1,5 +1,6 @@
 """The C wrapper of native FMUs around a hand-made component, under sanitizers and valgrind."""
 
+import os
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -66,7 +67,7 @@ def compile_c(*arguments: str | Path) -> None:
 @pytest.fixture(scope="module", params=["sanitizers", "valgrind"])
 def run(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, resources: Path
-) -> Callable[[str], None]:
+) -> Callable[..., None]:
     """Compile a test against the wrapper and run it."""
     sanitize = request.param == "sanitizers"
     if not sanitize and not shutil.which("valgrind"):
@@ -77,10 +78,11 @@ def run(
     library = folder / "rotor.o"
     compile_c(*flags, "-r", *sorted(WRAPPER.glob("*.c")), HERE / "rotor.c", "-o", library)
 
-    def run_test(test: str) -> None:
+    def run_test(test: str, *arguments: str, **environment: str) -> None:
         compile_c(*flags, HERE / f"{test}.c", library, "-o", folder / test)
-        command = [*guard, folder / test, resources]
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        command = [*guard, folder / test, resources, *arguments]
+        environment = {**os.environ, **environment}
+        run = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
         assert run.returncode == 0, run.stdout + run.stderr
 
     return run_test
@@ -89,5 +91,23 @@ def run(
 @pytest.mark.parametrize(
     "test", ["test_co_simulation", "test_fmi3", "test_model_exchange", "test_threads", "fuzz_csv"]
 )
-def test_wrapper(run: Callable[[str], None], test: str) -> None:
+def test_wrapper(run: Callable[..., None], test: str) -> None:
     run(test)
+
+
+@pytest.fixture(scope="module")
+def german(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Environment with a locale whose decimal point is a comma."""
+    folder = tmp_path_factory.mktemp("locales")
+    make = shutil.which("localedef")
+    name = "de_DE.UTF-8"
+    sources = Path("/usr/share/i18n/locales/de_DE").is_file()
+    if not make or not sources:
+        pytest.skip("localedef and the sources of locales are not installed")
+    subprocess.run([make, "-i", "de_DE", "-f", "UTF-8", folder / name], check=True)
+    return {"LOCPATH": str(folder), "LC_ALL": name}
+
+
+@pytest.mark.parametrize("run", ["sanitizers"], indirect=True)
+def test_host_with_decimal_comma(run: Callable[..., None], german: dict[str, str]) -> None:
+    run("test_co_simulation", ",", **german)
