@@ -6,17 +6,16 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
-import fmpy
 import pytest
+from compile_c import COMPILER, HERE, VALGRIND, WRAPPER, compile_c, execute
 
-import herringbone.fmi
-
-HERE = Path(__file__).parent
-WRAPPER = Path(herringbone.fmi.__file__).parent / "native"
-HEADERS = Path(fmpy.__file__).parent / "c-code"
-COMPILER = shutil.which("gcc") or shutil.which("clang")
-WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-format-nonliteral")
-SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+UNDER = {
+    "sanitizers": ("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),
+    "thread sanitizer": ("-fsanitize=thread",),
+    "valgrind": (),
+}
+"""Ways to find errors of memory and threads, with their compiler flags."""
+TESTED = ("co_simulation", "fmi3", "model_exchange")
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler")
 
@@ -57,39 +56,38 @@ def resources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def compile_c(*arguments: str | Path) -> None:
-    command = [COMPILER, "-std=c11", "-g", "-O1", "-pthread", *WARNINGS, '-DSOURCES="version1"']
-    command += [f"-I{WRAPPER}", f"-I{HEADERS}", f"-I{HERE}", *map(str, arguments)]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stderr
-
-
-@pytest.fixture(scope="module", params=["sanitizers", "valgrind"])
+@pytest.fixture(scope="module")
 def run(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, resources: Path
 ) -> Callable[..., None]:
     """Compile a test against the wrapper and run it."""
-    sanitize = request.param == "sanitizers"
-    if not sanitize and not shutil.which("valgrind"):
+    if request.param == "valgrind" and not shutil.which("valgrind"):
         pytest.skip("valgrind is not installed")
-    flags = SANITIZERS if sanitize else ()
-    guard = () if sanitize else ("valgrind", "-q", "--leak-check=full", "--error-exitcode=9")
-    folder = tmp_path_factory.mktemp(request.param)
+    flags = (*UNDER[request.param], '-DSOURCES="version1"')
+    guard = VALGRIND if request.param == "valgrind" else ()
+    folder = tmp_path_factory.mktemp("rotor")
     library = folder / "rotor.o"
     compile_c(*flags, "-r", *sorted(WRAPPER.glob("*.c")), HERE / "rotor.c", "-o", library)
 
     def run_test(test: str, *arguments: str, **environment: str) -> None:
         compile_c(*flags, HERE / f"{test}.c", library, "-o", folder / test)
-        command = [*guard, folder / test, resources, *arguments]
         environment = {**os.environ, **environment}
-        run = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-        assert run.returncode == 0, run.stdout + run.stderr
+        execute(*guard, folder / test, resources, *arguments, env=environment)
 
     return run_test
 
 
 @pytest.mark.parametrize(
-    "test", ["test_co_simulation", "test_fmi3", "test_model_exchange", "test_threads", "fuzz_csv"]
+    ("run", "test"),
+    [
+        *(("sanitizers", f"test_{what}") for what in TESTED),
+        *(("valgrind", f"test_{what}") for what in TESTED),
+        ("sanitizers", "test_threads"),
+        ("thread sanitizer", "test_threads"),
+        ("sanitizers", "fuzz_csv"),
+    ],
+    indirect=["run"],
+    scope="module",
 )
 def test_wrapper(run: Callable[..., None], test: str) -> None:
     run(test)
