@@ -11,6 +11,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
 from herringbone.analysis.stability import warn_if_unstable
 from herringbone.components.in_process import InProcessPart
+from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.part import Part
@@ -24,6 +25,7 @@ from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
+from herringbone.housing_check import replacement_notes
 from herringbone.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
@@ -90,7 +92,8 @@ def run(
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.
         fmu: "native", "python", "in-process" (the same kernels without FMU), or "auto": native
             FMUs if there is a C compiler, Python FMUs otherwise.
-        replace_parts: FMU files by instance name.
+        replace_parts: FMU files by instance name; a housing is tested against the contract of
+            housings first, and what it breaks becomes a note.
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: called with the simulated time reached and its end [s].
@@ -105,9 +108,13 @@ def run(
     chosen = _with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = _algorithm(algorithm)
     make_grid(chosen.t_end, _TINY if step is None else step, chosen.record_step)
+    replaced: list[str] = []
     for instance, file in (replace_parts or {}).items():
+        if structure.part(instance).component == MODAL_HOUSING.name:
+            replaced += replacement_notes(Path(file))
         structure = structure.with_fmu(instance, Path(file))
     structure, notes = started(structure, chosen)
+    notes = (*notes, *replaced)
     if reference:
         refuse_foreign_parts(structure)
     fmu, why = choose_kind(fmu)

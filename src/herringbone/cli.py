@@ -65,6 +65,8 @@ def _parser() -> argparse.ArgumentParser:
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
     sub.add_argument("fmu", type=Path)
+    sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
+    sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
@@ -213,6 +215,10 @@ def _build(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
+    if options.role:
+        from herringbone.housing_check import check_command  # noqa: PLC0415 (numba)
+
+        return check_command(options.fmu, options.against)
     from herringbone.fmi.check import check_fmu  # noqa: PLC0415
 
     problems = check_fmu(options.fmu)
