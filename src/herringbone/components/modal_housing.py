@@ -59,7 +59,7 @@ def _port(seat: str, axis: str) -> list[Variable]:
 _TABLE_SIZE = 1 + MODES * (2 + _N)
 STEPS = 24
 """Steps whose propagators are kept, for masters that come back to a step."""
-# Work: slots of propagators filled so far, the step of each slot, slots, scratch, polynomial forces.
+# Work: slots filled so far, step of each slot, slots of propagators, scratch, polynomial forces.
 _FILLED, _STEP_OF = 0, 1
 _PROPAGATORS = _STEP_OF + STEPS
 _SLOT = MODES * modal.PROPAGATOR

@@ -46,7 +46,7 @@ PATIENCE = 100
 """So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
 forces, or from rest, where their size is not yet known, no step is small enough."""
 _DISCARDED = 2
-MEMORY = 0.8
+MEMORY = 0.65
 """Share of the largest error factor that is kept from step to step."""
 _SAFETY, _LEAST, _MOST = 0.7, 0.3, 1.6
 
