@@ -256,14 +256,41 @@ class Forgetful(Mass):
 
     Args:
         offset: by which each restore shifts it [m].
+        after: restores that do not.
     """
 
-    def __init__(self, *arguments, offset=1e-3, **more):
+    def __init__(self, *arguments, offset=1e-3, after=0, **more):
         super().__init__(*arguments, **more)
-        self.offset = offset
+        self.offset, self.after = offset, after
 
     def restored(self):
-        self["flange.s"] += self.offset * self.restores
+        self["flange.s"] += self.offset * max(0, self.restores - self.after)
+
+
+class Ramp(CallbackPart):
+    """A source: the force b t, whose time is its own state."""
+
+    def __init__(self, name, rate, **more):
+        super().__init__(name, [], ["flange.f"], **more)
+        self.rate, self.time = rate, 0.0
+
+    def step(self, t, h):
+        before, self.time = self.time, self.time + h
+        count = max(self.degree, 1)
+        self.write("flange.f", [self.rate * (before + h * i / count) for i in range(1, count + 1)])
+        return OK
+
+
+class Echo(CallbackPart):
+    """A body whose position is the negative force: with a spring of 1 N/m, G(U) = U."""
+
+    def __init__(self, name):
+        super().__init__(name, ["flange.f"], ["flange.s", "flange.v"])
+
+    def step(self, t, h):
+        force = self.nodal("flange.f")
+        self.write("flange.s", [-f for f in force[min(1, self.degree) :]])
+        return OK
 
 
 class SpringDamper(CallbackPart):

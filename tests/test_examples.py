@@ -20,6 +20,7 @@ KNOWN = {
     "04_own_drivetrain": ({"t_end": 0.02}, 600.0, WHOLE),
     "05_error_against_step": ({"t_end": 0.002}, None, None),
     "06_loop_benchmark": ({"steps": 200}, None, None),
+    "07_symmetry_and_relief": ({}, 5280.0, WHOLE),
 }
 """Arguments, number and relative tolerance; or arguments of a test of its own below."""
 

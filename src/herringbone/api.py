@@ -11,10 +11,17 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
 from herringbone.analysis.stability import warn_if_unstable
 from herringbone.components.in_process import InProcessPart
+from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.part import Part
-from herringbone.cosim.algorithms import AUTO, Algorithm, choose_algorithm, parse_algorithm
+from herringbone.cosim.algorithms import (
+    AUTO,
+    Algorithm,
+    choose_algorithm,
+    parse_algorithm,
+    with_tolerance,
+)
 from herringbone.cosim.fmu_part import FmuPart
 from herringbone.cosim.simulation import Progress, Recording, make_grid, simulate
 from herringbone.cosim.ssp_format import is_ssp
@@ -24,6 +31,7 @@ from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
+from herringbone.housing_check import replacement_notes
 from herringbone.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
@@ -68,6 +76,7 @@ def run(
     scene: str | Scene | None = None,
     algorithm: str | Algorithm | None = None,
     step: float | None = None,
+    tolerance: float | None = None,
     t_end: float | None = None,
     record_step: float | None = None,
     start: str | None = None,
@@ -84,13 +93,17 @@ def run(
         scene: name or file of a scene; the system's "loaded" if not given.
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
             default, takes li if all parts can repeat a step, and jacobi otherwise.
-        step: communication step size [s]; the algorithm's default if not given.
+        step: communication step size [s]; the algorithm's default if not given. With a tolerance
+            the largest one, and the others go down to 1/200 of it.
+        tolerance: relative error (see `analysis.error`) for which `li` adapts its step, as in
+            "li:tolerance=1e-3".
         t_end: duration [s]; the scene's if not given.
         record_step: time between records [s]; the scene's if not given.
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.
         fmu: "native", "python", "in-process" (the same kernels without FMU), or "auto": native
             FMUs if there is a C compiler, Python FMUs otherwise.
-        replace_parts: FMU files by instance name.
+        replace_parts: FMU files by instance name; a housing is tested against the contract of
+            housings first, and what it breaks becomes a note.
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: called with the simulated time reached and its end [s].
@@ -104,10 +117,16 @@ def run(
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = _with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = _algorithm(algorithm)
+    if tolerance is not None and coupling is not None:
+        coupling = with_tolerance(coupling, tolerance)
     make_grid(chosen.t_end, _TINY if step is None else step, chosen.record_step)
+    replaced: list[str] = []
     for instance, file in (replace_parts or {}).items():
+        if structure.part(instance).component == MODAL_HOUSING.name:
+            replaced += replacement_notes(Path(file))
         structure = structure.with_fmu(instance, Path(file))
     structure, notes = started(structure, chosen)
+    notes = (*notes, *replaced)
     if reference:
         refuse_foreign_parts(structure)
     fmu, why = choose_kind(fmu)
@@ -116,9 +135,10 @@ def run(
     try:
         if coupling is None:
             coupling, why = choose_algorithm(parts)
+            coupling = coupling if tolerance is None else with_tolerance(coupling, tolerance)
             notes = (*notes, why)
-        step = coupling.default_step if step is None else step
-        if not structure.foreign_parts and (warning := warn_if_unstable(structure, coupling, step)):
+        step = coupling.start_step if step is None else step
+        if warning := _stability_warning(structure, coupling, step):
             notes = (*notes, warning)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
         recording = simulate(structure, parts, coupling, grid, progress)
@@ -130,6 +150,13 @@ def run(
         result = _with_error(result, structure)
         result = _decimated(result, chosen.record_step)
     return result
+
+
+def _stability_warning(system: System, algorithm: Algorithm, step: float) -> str | None:
+    """A line if the step is unstable; an adaptive one finds that out, and goes below."""
+    if system.foreign_parts or algorithm.adaptive:
+        return None
+    return warn_if_unstable(system, algorithm, step)
 
 
 def _algorithm(algorithm: str | Algorithm | None) -> Algorithm | None:
@@ -225,6 +252,7 @@ def _result(
         rollbacks=recording.rollbacks,
         wall_s=recording.wall_seconds,
         notes=(*notes, *recording.notes),
+        steps=recording.steps and recording.steps._asdict(),
         parameters=parameters,
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
@@ -250,17 +278,20 @@ def _with_error(result: Result, system: System) -> Result:
     if time.size < 2 or not columns:
         return result
     twin = pd.DataFrame(Twin(system).solve(time, columns), columns=columns)
+    uneven = time if result.info.steps else None
     return replace(
         result,
         error={
-            name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy())
+            name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
             for name, names in groups.items()
         },
     )
 
 
 def _decimated(result: Result, record_step: float) -> Result:
-    """Keep the records that the scene asks for."""
+    """Keep the records that the scene asks for; all of an adaptive run."""
+    if result.info.steps:
+        return result
     every = make_grid(result.info.t_end, result.info.communication_step, record_step).every
     data = result.data.iloc[::every].reset_index(drop=True)
     info = replace(result.info, record_step=every * result.info.communication_step)

@@ -20,7 +20,7 @@ from herringbone.analysis.step_ladder import (
 from herringbone.analysis.work_precision import Reach, WorkPrecision
 from herringbone.api import load_scene, load_system, open_parts
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.cosim.algorithms import AUTO, parse_algorithm
+from herringbone.cosim.algorithms import AUTO, parse_algorithm, refuse_adaptive
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.start import started
@@ -59,6 +59,7 @@ def measure(
             f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
         )
     chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or charted_algorithms()
+    refuse_adaptive(chosen, "a chart shows the error of fixed steps")
     structure, folder = load_system(system)
     options = load_scene(folder, scene)
     options = replace(options, t_end=options.t_end if t_end is None else t_end)

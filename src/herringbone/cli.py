@@ -19,6 +19,7 @@ EXIT_CODES = {
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
     OutcomeKind.COUPLING_FAILED: 1,
+    OutcomeKind.STEP_LIMIT: 1,
     OutcomeKind.INTERRUPTED: 130,
 }
 BAD_INPUT = 2
@@ -65,6 +66,8 @@ def _parser() -> argparse.ArgumentParser:
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
     sub.add_argument("fmu", type=Path)
+    sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
+    sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
@@ -90,6 +93,9 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
     sub.add_argument("--step", type=float, help="communication step size in s")
+    sub.add_argument(
+        "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
+    )
     sub.add_argument("--t-end", type=float, help="duration in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
@@ -154,7 +160,7 @@ def _run(options: argparse.Namespace) -> int:
     check_writable(options.output or Path("results"))
     optional = {
         name: value
-        for name in ("scene", "algorithm", "step", "t_end", "record_step", "start")
+        for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
         if (value := getattr(options, name)) is not None
     }
     with _Bar() as bar:
@@ -213,6 +219,10 @@ def _build(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
+    if options.role:
+        from herringbone.housing_check import check_command  # noqa: PLC0415 (numba)
+
+        return check_command(options.fmu, options.against)
     from herringbone.fmi.check import check_fmu  # noqa: PLC0415
 
     problems = check_fmu(options.fmu)
@@ -246,13 +256,14 @@ def _stability(options: argparse.Namespace) -> int:
     from herringbone.analysis import stability_report as report  # noqa: PLC0415
     from herringbone.analysis.atlas import atlas  # noqa: PLC0415
     from herringbone.analysis.stability import stability  # noqa: PLC0415
-    from herringbone.cosim.algorithms import parse_algorithm  # noqa: PLC0415
+    from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
     output = options.output or (Path("results") if options.atlas else None)
     if output:
         check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
+    refuse_adaptive(algorithms, "stability is predicted for fixed steps")
     structure, folder = api.load_system(options.system)
     scene = api.load_scene(folder, options.scene)
     values = {**scene.values, **_values(options.set)}

@@ -24,7 +24,7 @@ from herringbone.analysis.operating_point import (
 )
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError, OutcomeKind
-from herringbone.result import TIME, Result
+from herringbone.result import TIME, Result, RunInfo
 
 _R_MIN = 30.0 / math.pi
 _MM = 1e3
@@ -38,6 +38,7 @@ _SIGNALS = 12
 def summary_text(result: Result) -> str:
     """A summary of a run for people: how it was computed, operating point, forces, spectra."""
     lines = [*_headline(result), "", *_cost(result)]
+    result = result.uniform()
     sections = (_operating_point, _power, _seats, _spectral_lines, _signals, _errors)
     if len(result.data) < 2 or result.outcome.kind is OutcomeKind.DIVERGED:
         lines += ["", "No figures: the run left nothing that can be evaluated."]
@@ -114,12 +115,18 @@ def _headline(result: Result) -> Iterator[str]:
         yield outcome.message
 
 
+def _steps(info: RunInfo) -> str:
+    if info.steps is None:
+        return _time(info.communication_step)
+    shortest, median, longest = (_time(info.steps[k]) for k in ("shortest", "median", "longest"))
+    return f"{shortest} to {longest}, median {median}, {info.steps['rejected']:g} taken back"
+
+
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
     yield _line("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
-    yield _line("Steps", f"communication {_time(info.communication_step)}, "
-                f"record {_time(info.record_step)}")  # fmt: skip
+    yield _line("Steps", f"communication {_steps(info)}, record {_time(info.record_step)}")
     if micro:
         yield _line("Micro steps", f"at most: {micro}")
     if info.macro_steps and reached > 0.0:

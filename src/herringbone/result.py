@@ -3,12 +3,14 @@
 import csv
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
+from scipy.interpolate import CubicSpline
 
 from herringbone.core import HerringboneError, Outcome, ParameterError
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 TIME = "time"
 _CSV_ROWS = 4096
+_SPLINE_ROWS = 4
 
 
 @dataclass(frozen=True)
@@ -26,12 +29,14 @@ class RunInfo:
     Attributes:
         system, scene, model: names; `model` is the list of components by instance.
         t_end: end that was asked for [s].
-        communication_step, record_step: [s].
+        communication_step, record_step: [s]; means, if the step is adaptive.
         micro_steps: longest internal step by instance [s].
         algorithm: as on the command line.
         fmu: "native", "python" or "in-process".
         macro_steps, passes, rollbacks, wall_s: cost of the loop.
         notes: downgrades and other lines to read.
+        steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
+            "shortest", "median" and "longest" of the accepted ones [s].
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
     """
 
@@ -49,6 +54,7 @@ class RunInfo:
     rollbacks: int
     wall_s: float
     notes: tuple[str, ...] = ()
+    steps: Mapping[str, float] | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -97,6 +103,20 @@ class Result:
             raise ParameterError(f"there is no channel group '{group}'; there are: {known}")
         return self.columns(*self.channels[group])
 
+    def uniform(self) -> "Result":
+        """The result with equidistant records, as means and spectra take them.
+
+        Those of an adaptive run, which lie where its steps ended, are interpolated by cubic
+        splines, as many as there are; others are returned as they are.
+        """
+        if self.info.steps is None or len(self.data) < _SPLINE_ROWS:
+            return self
+        values = self.data.to_numpy()
+        time = np.linspace(values[0, 0], values[-1, 0], len(values))
+        splines = CubicSpline(values[:, 0], values[:, 1:])
+        data = pd.DataFrame(np.column_stack([time, splines(time)]), columns=self.data.columns)
+        return replace(self, data=data)
+
     def plot(self, *patterns: str) -> "Figure":
         """Plot columns over time (patterns or group names); without patterns, an overview."""
         from herringbone.plotting import overview, plot_columns  # noqa: PLC0415 (matplotlib: lazy)
@@ -130,6 +150,8 @@ class Result:
         """The JSON summary of the run."""
         info = asdict(self.info)
         del info["parameters"]
+        if self.info.steps is None:
+            del info["steps"]
         found: dict[str, Any] = {
             "outcome": self.outcome.kind.value,
             **{name: info[name] for name in ("system", "scene", "model", "t_end")},

@@ -44,6 +44,7 @@ TOP = {
     "gear_report",
     "housing_command",
     "housing_data_command",
+    "housing_check",
     "output",
 }
 """Nothing below may import these; they may import everything."""

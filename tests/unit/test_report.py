@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.interpolate import CubicSpline
 from support_result import make_foreign_result, make_result
 
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
@@ -159,3 +160,24 @@ def test_report_into_a_file_is_refused(tmp_path):
     file.write_text("")
     with pytest.raises(HerringboneError, match="choose another folder"):
         write_report(make_foreign_result(), file)
+
+
+def test_an_adaptive_run_is_reported_on_equidistant_records():
+    """Records where steps end, 4 to 10 of them in a period: means and lines are the same."""
+    steps = {"accepted": 3, "rejected": 1, "shortest": 1e-6, "median": 2e-5, "longest": 4e-5}
+    even = make_result(t_end=0.05, record_step=2e-5)
+    rows = np.unique(np.cumsum(np.random.default_rng(0).integers(1, 4, len(even.data))))
+    rows = np.concatenate([[0], rows[rows < len(even.data)]])
+    uneven = replace(
+        even, data=even.data.iloc[rows].reset_index(drop=True), info=replace(even.info, steps=steps)
+    )
+    assert even.uniform() is even
+    found = uneven.uniform().data
+    assert np.ptp(np.diff(found["time"])) < 1e-12
+    wanted = CubicSpline(even.data["time"], even.data["bearing_supports.shaft.pinion_left.f_y"])
+    off = found["bearing_supports.shaft.pinion_left.f_y"] - wanted(found["time"])
+    assert np.abs(off).max() < 0.02 * 12.0  # of the amplitude
+    text = summary_text(uneven)
+    assert "communication 1 us to 40 us, median 20 us, 1 taken back" in text
+    assert uneven.summary()["steps"] == steps
+    assert "steps" not in even.summary()

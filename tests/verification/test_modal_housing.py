@@ -6,7 +6,7 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import expm
 
 from herringbone.components.modal_data import read_modes
-from herringbone.components.modal_housing import MODAL_HOUSING, MODES
+from herringbone.components.modal_housing import MODAL_HOUSING, MODES, STEPS
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
 from herringbone.core.paths import resources_folder
@@ -131,6 +131,20 @@ def test_changing_the_step_changes_the_propagator(housing):
     scale = np.abs(expected["v"]).max()
     # Phase of w t = 5000 in the highest mode: eps * 5000 in the sum of steps; 14 squarings.
     np.testing.assert_allclose(motion(housing, "v"), expected["v"], atol=1e-10 * scale)
+
+
+def test_propagators_are_kept_and_found_again(housing):
+    """More steps than are kept, in turn: each gives the same bits as in a housing that saw none."""
+    forces, degree = random_forces(3), 3
+    steps = 1e-6 * np.arange(1, STEPS + 4)
+    for h in (*steps, *steps[::-1], *steps[::2]):
+        fresh = Instance(MODAL_HOUSING, "fresh")
+        fresh.initialise()
+        fresh.block[:] = housing.block
+        for instance in (housing, fresh):
+            set_forces(instance, forces, degree, 0.0, 1.0)
+            instance.step(0.0, h)
+        assert np.array_equal(housing.block, fresh.block)
 
 
 def test_a_first_step_of_no_length_changes_nothing(housing):

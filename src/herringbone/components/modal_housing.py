@@ -57,9 +57,13 @@ def _port(seat: str, axis: str) -> list[Variable]:
 
 # Tables: number of modes, angular frequency, damping ratio, shapes by mode.
 _TABLE_SIZE = 1 + MODES * (2 + _N)
-# Work: the step for which the propagators hold, propagators, scratch, polynomial forces.
-_PROPAGATORS = 1
-_SCRATCH = _PROPAGATORS + MODES * modal.PROPAGATOR
+STEPS = 24
+"""Steps whose propagators are kept, for masters that come back to a step."""
+# Work: slots filled so far, step of each slot, slots of propagators, scratch, polynomial forces.
+_FILLED, _STEP_OF = 0, 1
+_PROPAGATORS = _STEP_OF + STEPS
+_SLOT = MODES * modal.PROPAGATOR
+_SCRATCH = _PROPAGATORS + STEPS * _SLOT
 _POLYNOMIALS = _SCRATCH + modal.SCRATCH_SIZE
 _MODAL_FORCE = _POLYNOMIALS + _N * STRIDE
 _WORK = _MODAL_FORCE + STRIDE
@@ -137,21 +141,26 @@ def _out(b: np.ndarray, t: float) -> None:
 
 
 @kernel
-def _update_propagators(b: np.ndarray, w: np.ndarray, h: float) -> None:
-    if h > 0.0 and w[0] == h:  # 0: no propagators yet
-        return
+def _propagators(b: np.ndarray, w: np.ndarray, h: float) -> int:
+    """Place in the work space of the propagators of a step; the oldest ones make room."""
+    filled = int(w[_FILLED])
+    for k in range(min(filled, STEPS)):
+        if w[_STEP_OF + k] == h:
+            return _PROPAGATORS + k * _SLOT
+    slot = filled % STEPS
     scratch = w[_SCRATCH:_POLYNOMIALS]
     for i in range(int(b[_COUNT])):
-        at = _PROPAGATORS + i * modal.PROPAGATOR
+        at = _PROPAGATORS + slot * _SLOT + i * modal.PROPAGATOR
         modal.propagator(b[_OMEGA + i], b[_ZETA + i], h, w, at, scratch)
-    w[0] = h
+    w[_STEP_OF + slot], w[_FILLED] = h, filled + 1.0
+    return _PROPAGATORS + slot * _SLOT
 
 
 @kernel
-def _propagate(b: np.ndarray, w: np.ndarray, degree: int) -> None:
+def _propagate(b: np.ndarray, w: np.ndarray, propagators: int, degree: int) -> None:
     """Advance all modes by the step of the propagators, under the forces in the work space."""
     for i in range(int(b[_COUNT])):
-        at = _PROPAGATORS + i * modal.PROPAGATOR
+        at = propagators + i * modal.PROPAGATOR
         q = w[at] * b[i] + w[at + 1] * b[MODES + i]
         v = w[at + 2] * b[i] + w[at + 3] * b[MODES + i]
         for j in range(degree + 1):
@@ -167,13 +176,13 @@ def _propagate(b: np.ndarray, w: np.ndarray, degree: int) -> None:
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     degree = int(b[_DEGREE])
     intervals = max(degree, 1)
-    _update_propagators(b, w, h / intervals)
+    propagators = _propagators(b, w, h / intervals)
     for node in range(1, intervals + 1):
         for k in range(_N):
             at = _POLYNOMIALS + k * STRIDE
             monomial(b, _F[k], degree, w, at)
             shift(w, at, degree, (node - 1.0) / intervals, 1.0 / intervals)
-        _propagate(b, w, degree)
+        _propagate(b, w, propagators, degree)
         if node < intervals:
             _motion(b)
             store_node(b, _FIRST_OUTPUT, _OUTPUTS, node)

@@ -12,6 +12,7 @@ class OutcomeKind(StrEnum):
     DIVERGED = "diverged"
     PART_FAILED = "part_failed"
     COUPLING_FAILED = "coupling_failed"
+    STEP_LIMIT = "step_limit"
 
 
 @dataclass(frozen=True)

@@ -61,8 +61,9 @@ class Buffers(NamedTuple):
         values: room for one part's outputs at its nodes.
         states: handle of each part's saved state.
         passes: doStep calls by part.
-        counts: rollbacks; iterations.
+        counts: rollbacks; iterations; FMI status of the last step that failed.
         worst: largest residual after the last correction; largest contraction.
+        spacing: lengths of the last two macro steps in units of the present one.
     """
 
     history: np.ndarray
@@ -75,3 +76,4 @@ class Buffers(NamedTuple):
     passes: np.ndarray
     counts: np.ndarray
     worst: np.ndarray
+    spacing: np.ndarray

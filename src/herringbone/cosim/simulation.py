@@ -10,16 +10,22 @@ import numpy as np
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Part
-from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
+from herringbone.cosim.adaptive_loop import STEP_LIMIT
+from herringbone.cosim.algorithms.base import Algorithm, PreparedRun, StepStatistics
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
 from herringbone.cosim.plan import HISTORY, Chunk, record_names
+from herringbone.cosim.record import Grid
 from herringbone.cosim.system import System
 
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
 
+_PROBLEMS = {
+    COUPLING_FAILED: OutcomeKind.COUPLING_FAILED,
+    STEP_LIMIT: OutcomeKind.STEP_LIMIT,
+}
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
 
@@ -34,13 +40,14 @@ class Recording:
         names: `instance.variable`.
         units: unit of each column, "" if not declared.
         outcome: how the run ended.
-        step: communication step size [s], as used.
-        record_step: time between records [s], as used.
+        step: communication step size [s], as used; of an adaptive run the mean.
+        record_step: time between records [s], as used; of an adaptive run the mean.
         macro_steps: macro steps that were completed.
         passes: doStep calls by instance.
         rollbacks: state restores.
         wall_seconds: wall time of the loop, without compilation and the first Jacobian.
         notes: downgrades and other lines that the user should read.
+        steps: of an adaptive run, the lengths of its macro steps.
     """
 
     time: np.ndarray
@@ -55,21 +62,7 @@ class Recording:
     rollbacks: int
     wall_seconds: float
     notes: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Communication and record points.
-
-    Attributes:
-        step: communication step size [s].
-        count: macro steps.
-        every: macro steps per record.
-    """
-
-    step: float
-    count: int
-    every: int
+    steps: StepStatistics | None = None
 
 
 def make_grid(t_end: float, step: float, record_step: float) -> Grid:
@@ -153,7 +146,8 @@ class _Run:
     """State of one run, outside the compiled loop."""
 
     def __init__(self, network: Network, prepared: PreparedRun, grid: Grid) -> None:
-        self.network, self.prepared, self.grid = network, prepared, grid
+        self.network, self.prepared = network, prepared
+        self.grid = grid = prepared.grid(grid)
         names = record_names(network)
         self.names = tuple(
             f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
@@ -163,12 +157,12 @@ class _Run:
             for part, ns in zip(network.parts, names, strict=True)
             for n in ns
         )
-        self.records = np.full((grid.count // grid.every + 1, len(self.names)), np.nan)
+        self.record = prepared.record(grid, len(self.names))
         self.history = np.zeros((HISTORY, prepared.plan.output_reference.size))
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
-        get_all(self.prepared.plan, self.history, self.records, 0)
+        get_all(self.prepared.plan, self.history, self.record.values, 0)
         self.history[1:] = self.history[0]
         done, status, culprit, chunk = 0, DONE, -1, 1
         self._advance(0, 0)  # compiles the loop, or loads it from the cache
@@ -187,7 +181,7 @@ class _Run:
         return self._recording(done, outcome, wall)
 
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
-        chunk = Chunk(0.0, self.grid.step, start, count, self.records, self.grid.every)
+        chunk = Chunk(0.0, self.grid.step, start, count, self.record.values, self.grid.every)
         return self.prepared.run(self.history, chunk)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
@@ -197,8 +191,8 @@ class _Run:
             kind = OutcomeKind.COMPLETED if finished else OutcomeKind.INTERRUPTED
             message = "" if finished else f"interrupted at {reached:g} s; results so far are kept"
             return Outcome(kind, reached, message=message)
-        if status == COUPLING_FAILED:
-            return Outcome(OutcomeKind.COUPLING_FAILED, reached, message=self.prepared.problem)
+        if status in _PROBLEMS:
+            return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
         said = "; ".join(part.messages())
         where, value = self._diverged(culprit)
@@ -207,7 +201,7 @@ class _Run:
             how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
             message = (
                 f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
-                f"use a step below {self.grid.step:g} s or an algorithm with a higher limit"
+                f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
             )
             return Outcome(OutcomeKind.DIVERGED, reached, where, message)
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
@@ -231,23 +225,29 @@ class _Run:
         return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
-        rows = done // self.grid.every + 1
+        times = self.record.times(done)
+        values = self.record.values[: times.size]
         if outcome.kind not in {OutcomeKind.COMPLETED, OutcomeKind.INTERRUPTED}:
-            rows = int((np.abs(self.records[:rows]) < BOUND).all(axis=1).cumprod().sum())
-        record_step = self.grid.every * self.grid.step
+            rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
+            times, values = times[:rows], values[:rows]
         return Recording(
-            np.arange(rows) * record_step,
-            self.records[:rows],
+            times,
+            values,
             self.names,
             self.units,
             outcome,
-            self.grid.step,
-            record_step,
-            done,
+            self._step(done),
+            self.record.step(times),
+            self.prepared.macro_steps(done),
             dict(
                 zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
             ),
             self.prepared.rollbacks,
             wall,
             (*self.network.notes, *self.prepared.notes),
+            self.prepared.steps,
         )
+
+    def _step(self, done: int) -> float:
+        """Macro step, or its mean [s]."""
+        return self.grid.step * (done / max(self.prepared.macro_steps(done), 1) if done else 1)

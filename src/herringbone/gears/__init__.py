@@ -1,7 +1,27 @@
-"""Off-line gear data: geometry, tooth compliance, stiffness tables."""
+"""Off-line gear data: geometry, tooth compliance, mesh stiffness, load sharing of the halves.
+
+    from herringbone.gears import GearPair, Modification, SliceMesh
+    pair = GearPair(number_of_teeth=(27, 81), normal_module=3.5e-3, face_width=47.3e-3,
+                    helix_angle=0.5236)
+    force = pair.tooth_forces(200.0).normal
+    stiffness = SliceMesh(pair, Modification(tip_relief=(5e-6, 5e-6))).solve([0.0, force])
+
+Everything is in SI units and rad; values of both gears are pairs (pinion, wheel).
+"""
 
 from herringbone.gears.contact import PathOfContact, ToothForces
 from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.mesh_stiffness import MeshStiffness
+from herringbone.gears.modification import Modification
+from herringbone.gears.slices import SliceMesh
 from herringbone.gears.tooth_profile import ToothProfile
 
-__all__ = ["GearPair", "PathOfContact", "ToothForces", "ToothProfile"]
+__all__ = [
+    "GearPair",
+    "MeshStiffness",
+    "Modification",
+    "PathOfContact",
+    "SliceMesh",
+    "ToothForces",
+    "ToothProfile",
+]

@@ -1,6 +1,6 @@
 """Mesh stiffness of one half over phase and load, as every method of computing it gives it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -45,6 +45,26 @@ class MeshStiffness:
     def transmission_error(self) -> np.ndarray:
         """(n, m) static transmission error of the half, along the line of action [m]."""
         return self.deflection / np.cos(self.pair.base_helix_angle)
+
+    def resampled(self, phases: int) -> "MeshStiffness":
+        """The same at fewer phases, without the harmonics that they cannot show.
+
+        Points taken out of a curve with kinks would turn what lies above half of their number into
+        false low harmonics.
+        """
+        kept = {
+            name: self._band_limited(getattr(self, name), phases)
+            for name in ("deflection", "tangent", "zero_load_secant")
+        }
+        return replace(self, phases=np.arange(phases) / phases, **kept)
+
+    @staticmethod
+    def _band_limited(values: np.ndarray, phases: int) -> np.ndarray:
+        spectrum = np.fft.rfft(values, axis=-1)[..., : phases // 2 + 1]
+        if phases % 2 == 0:
+            spectrum[..., -1] = 2.0 * spectrum[..., -1].real
+        limited = np.fft.irfft(spectrum, phases, axis=-1) * phases / values.shape[-1]
+        return np.maximum(limited, 0.0)
 
     def mean(self, load: float) -> float:
         """Mean secant stiffness of one half at a load [N/m], between loads by interpolation."""

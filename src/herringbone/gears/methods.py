@@ -9,6 +9,8 @@ from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
 from herringbone.gears.slices import PHASES, SLICES, SliceMesh
 
+_OVERSAMPLING = 4
+"""Phases that the slices are solved at, over those of the table."""
 Progress = Callable[[str, float], None]
 """Called with what is done and how much of it, 0 to 1."""
 
@@ -44,7 +46,7 @@ def _slices(task: Task, progress: Progress | None = None) -> MeshStiffness:
         slices=task.slices,
         corner_contact=task.corner_contact,
     )
-    return mesh.solve(task.loads, task.phases)
+    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
 
 
 METHODS: dict[str, Callable[..., MeshStiffness]] = {"slices": _slices}

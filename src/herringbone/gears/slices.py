@@ -53,7 +53,7 @@ Raedern (1953), for the contact.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -68,7 +68,7 @@ from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
 from herringbone.gears.tooth_compliance import tooth_compliance
 
-SLICES = 240
+SLICES = 120
 PHASES = 64
 _GRID = 129
 _LEAST_LINE_LOAD = 100.0
@@ -95,6 +95,10 @@ class Slices(NamedTuple):
     compliance: np.ndarray
     logarithm: np.ndarray
     gap: np.ndarray
+
+
+Law = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Forces [N] and tangent stiffnesses [N/m] at deflections [m], one for each phase."""
 
 
 @dataclass(frozen=True)
@@ -158,17 +162,19 @@ class SliceMesh:
             touching,
         )
 
-    def force(self, phases: np.ndarray, deflection: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normal force [N] and tangent stiffness [N/m] at given deflections.
+    def law(self, phases: np.ndarray) -> Law:
+        """Force law at some phases: deflections (n,) [m] to forces [N] and tangents [N/m].
 
         Args:
             phases: (n,) mesh periods.
-            deflection: (n,) approach of the gears normal to the flank [m].
         """
         slices = self._slices(phases)
-        load = np.zeros_like(slices.gap)
-        load, tangent = self._line_loads(slices, load, deflection)
-        return np.sum(load * slices.length, axis=1), tangent
+
+        def law(deflection: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            load, tangent = self._line_loads(slices, np.zeros_like(slices.gap), deflection)
+            return np.sum(load * slices.length, axis=1), tangent
+
+        return law
 
     def line_loads(self, phase: float, force: float) -> tuple[np.ndarray, np.ndarray]:
         """Load per length [N/m] at one phase: (lines, slices), and s [m] of the slices' middles."""

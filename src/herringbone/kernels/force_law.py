@@ -4,8 +4,9 @@ The secant stiffness K is interpolated over phase p (mesh periods) and u = sqrt(
 
     F = K(p, u) deflection,    dF/d(deflection) = K + u/2 dK/du
 
-C1, periodic in p, F(p, 0) = 0. Below the smallest load of the table the secant is constant, above
-the limit (the smallest deflection at which the largest load is reached) the tangent.
+C1, periodic in p, F(p, 0) = 0. Below the smallest load of the table the secant is constant; from a
+table that begins at zero load it leaves its limit with the deflection (dK/du = 0 at u = 0). Above
+the limit (the smallest deflection at which the largest load is reached) the tangent is constant.
 Table part: [limit, smallest deflection inside the table], then for every (phase, u) node the four
 values K, dK/dp, dK/du, d2K/dp du per interval.
 """
@@ -75,6 +76,8 @@ def build(
                     if loads[n] > 0.0:
                         u[n] = math.sqrt(loads[n] / (k[n] * limit)) * (DEFLECTIONS - 1)
                 monotone_slopes(u, k, count, m)
+                if loads[0] == 0.0:
+                    m[0] = 0.0  # the secant leaves its limit with the deflection, not with its root
                 column[i] = _at(u, k, m, count, j, what)
             periodic_slopes(column, 0, 1, phases, slope, 0)
             _resample(

@@ -23,6 +23,7 @@ def overview(result: Result) -> Figure:
     Panels for which the system records nothing are left out; a system that records none of them
     gets its first columns by unit.
     """
+    result = result.uniform()
     panels = _panels(result)
     return _draw(result, panels) if panels else generic_overview(result)
 

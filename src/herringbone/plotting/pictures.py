@@ -81,6 +81,7 @@ def spectra(result: Result) -> Figure:
     Raises:
         ParameterError: the system records neither.
     """
+    result = result.uniform()
     shown = []
     for channel, axes, what, factor, unit in (
         ("bearing_force", "yz", "bearing force", 1.0, "N"),

@@ -1,6 +1,7 @@
 """Coupling algorithms, and how they are named on the command line: `jacobi:order=2`."""
 
-from dataclasses import fields
+from collections.abc import Iterable
+from dataclasses import fields, replace
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
@@ -22,6 +23,8 @@ __all__ = [
     "Predict",
     "choose_algorithm",
     "parse_algorithm",
+    "refuse_adaptive",
+    "with_tolerance",
 ]
 
 ALGORITHMS: dict[str, type[Algorithm]] = {
@@ -41,7 +44,7 @@ def parse_algorithm(text: str) -> Algorithm:
         raise ParameterError(f"there is no algorithm '{name}'; there are: {known}")
     kind = ALGORITHMS[name]
     types = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
-    values: dict[str, int | str] = {}
+    values: dict[str, float | str] = {}
     for item in filter(None, options.split(",")):
         key, _, value = item.partition("=")
         if key not in types:
@@ -53,3 +56,36 @@ def parse_algorithm(text: str) -> Algorithm:
         except ValueError:
             raise ParameterError(f"{name}:{key}={value} is no {types[key].__name__}") from None
     return kind(**values)
+
+
+def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
+    """The algorithm, adapting its step to a tolerance.
+
+    Raises:
+        ParameterError: it cannot, or has another tolerance already.
+    """
+    if not isinstance(algorithm, LI):
+        raise ParameterError(
+            f"tolerance = {tolerance:g}: {algorithm} keeps its step; only li adapts it, which "
+            "takes parts that save and restore their state"
+        )
+    if algorithm.adaptive and algorithm.tolerance != tolerance:
+        raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
+    return replace(algorithm, tolerance=tolerance)
+
+
+def refuse_adaptive(algorithms: Iterable[Algorithm], what: str) -> None:
+    """Check that all algorithms keep their step.
+
+    Args:
+        algorithms: to check.
+        what: that needs it, for the message.
+
+    Raises:
+        ParameterError: one adapts it.
+    """
+    for algorithm in algorithms:
+        if algorithm.adaptive:
+            raise ParameterError(
+                f"{algorithm} adapts its step, but {what}; leave the tolerance out"
+            )

@@ -8,7 +8,7 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from herringbone.core.part import has_nodes
 from herringbone.cosim.loop import run_stages
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Chunk, Plan, build_plan
+from herringbone.cosim.record import Grid, Record, UniformRecord
 
 
 class Algorithm(ABC):
@@ -40,6 +41,16 @@ class Algorithm(ABC):
     def prepare(self, network: Network) -> "PreparedRun":
         """Lay out a network for this algorithm."""
 
+    @property
+    def adaptive(self) -> bool:
+        """True if the macro step follows a tolerance."""
+        return False
+
+    @property
+    def start_step(self) -> float:
+        """Communication step size [s] if none is given; the largest one if it is adaptive."""
+        return self.default_step
+
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
         """Variants that a speed-accuracy chart shows if none are named."""
@@ -50,6 +61,21 @@ class Algorithm(ABC):
         return f"{self.name}:{options}" if options else self.name
 
 
+class StepStatistics(NamedTuple):
+    """Macro steps of an adaptive run.
+
+    Attributes:
+        accepted, rejected: how many.
+        shortest, median, longest: of the accepted ones [s].
+    """
+
+    accepted: int
+    rejected: int
+    shortest: float
+    median: float
+    longest: float
+
+
 class PreparedRun(ABC):
     """A network laid out for an algorithm, ready to run; each part steps once a macro step.
 
@@ -58,12 +84,31 @@ class PreparedRun(ABC):
         degree: interface degree that each part is to be set to.
         notes: downgrades, and what they cost.
         problem: why the coupling cannot go on, if it cannot.
+        culprit: `instance.variable` that is to blame for it, if one is.
     """
 
     plan: Plan
     degree: tuple[int, ...]
     notes: tuple[str, ...]
     problem: str
+    culprit: str = ""
+
+    def grid(self, grid: Grid) -> Grid:
+        """The grid in the units in which `run` counts."""
+        return grid
+
+    def record(self, grid: Grid, columns: int) -> Record:
+        """Where the rows of a run go."""
+        return UniformRecord(grid, columns)
+
+    def macro_steps(self, done: int) -> int:
+        """Macro steps in so many units of the grid."""
+        return done
+
+    @property
+    def steps(self) -> StepStatistics | None:
+        """Lengths of the macro steps, if they differ."""
+        return None
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""

@@ -8,21 +8,24 @@ from herringbone.core import ParameterError
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.algorithms.jacobian import (
+    PREDICTION,
+    CouplingError,
+    InterfaceJacobian,
+    correction_matrix,
+)
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import REFRESH, run_iterated, sensitivity
+from herringbone.cosim.node_loop import REFRESH, run_iterated
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
 
-PREDICTION = 2
-"""Degree of the prediction; one correction makes the result nearly independent of it."""
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
 SLOW = 0.1
 """Contraction of a correction above which the Jacobian is computed again."""
 PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
-_CHANGE = 1e-4
 
 
 def _mean_weights(degree: int) -> np.ndarray:
@@ -96,6 +99,7 @@ class PreparedNodes(PreparedRun):
         self._outputs = connected_outputs(network)
         self.nodes = self._node_plan(degree)
         self._same_unit = self._units_agree()
+        self.jacobian = InterfaceJacobian(network, self.plan, self.nodes, self._outputs)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
         self._next_refresh = 0
@@ -159,8 +163,9 @@ class PreparedNodes(PreparedRun):
             np.zeros(max(1, p) * max(1, outputs)),
             np.array([part.new_state() for part in parts], dtype=np.int64),
             np.zeros(len(parts), dtype=np.int64),
-            np.zeros(2, dtype=np.int64),
+            np.zeros(3, dtype=np.int64),
             np.zeros(2),
+            np.ones(2),
         )
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
@@ -208,31 +213,17 @@ class PreparedNodes(PreparedRun):
 
     def _refresh(self, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""
-        size, done, h = self.nodes.degree * self.nodes.unknown.size, chunk.start, chunk.h
+        done, h = chunk.start, chunk.h
         t = chunk.t0 + done * h
         self._next_refresh = done + PATIENCE
         self.jacobians += 1
         if not self.newton:
-            self._correction = np.eye(size)
+            self._correction = np.eye(self.nodes.degree * self.nodes.unknown.size)
             return DONE
-        jacobian = np.zeros((size, size))
-        change = _CHANGE * self._buffers.scale
-        failed = sensitivity(
-            self.plan, self.nodes, self._buffers, jacobian, change, PREDICTION, t, h, done + 1
-        )
-        if failed >= 0 or not np.isfinite(jacobian).all():
-            name = self.network.parts[failed].name if failed >= 0 else "the coupling"
-            self.problem = (
-                f"the interface Jacobian cannot be computed at {t:g} s: {name} fails; "
-                "use a smaller step"
-            )
-            return COUPLING_FAILED
         try:
-            self._correction = np.linalg.inv(np.eye(size) - jacobian)
-        except np.linalg.LinAlgError:
-            self.problem = (
-                f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "
-                "use another step, or fixed_point"
-            )
+            found = self.jacobian.measure(self._buffers, self._buffers.scale, t, h, done + 1)
+            self._correction = correction_matrix(found, t, h)
+        except CouplingError as error:
+            self.problem = str(error)
             return COUPLING_FAILED
         return DONE

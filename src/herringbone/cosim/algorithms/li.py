@@ -21,10 +21,12 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
+from herringbone.cosim.algorithms.adaptive import PreparedAdaptive, check_sources
 from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
 from herringbone.cosim.network import Network
 
+SMALLEST_TOLERANCE = 1e-8
 _MOST = 6
 _ORDERS = {1: 2, 2: 4, 3: 4, 4: 6}
 
@@ -36,6 +38,8 @@ class LI(Algorithm):
     Args:
         degree: of the forces inside a macro step, 1 to 4.
         iterations: corrections at the least; more follow while the residual is too large.
+        tolerance: relative error (see `analysis.error`) for which the macro step adapts itself, up
+            to the step of the run; 0 keeps the step. See `step_error` for what it is relative to.
 
     Raises:
         ParameterError: an option is out of its range.
@@ -43,16 +47,37 @@ class LI(Algorithm):
 
     degree: int = 3
     iterations: int = 1
+    tolerance: float = 0.0
 
     name: ClassVar[str] = "li"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
     default_step: ClassVar[float] = 4e-5
+    default_largest_step: ClassVar[float] = 2e-4
 
     def __post_init__(self) -> None:
         if self.degree not in _ORDERS:
             raise ParameterError(f"li: degree={self.degree}; it must be 1, 2, 3 or 4")
         if not 1 <= self.iterations <= _MOST:
             raise ParameterError(f"li: iterations={self.iterations}; it must be 1 to {_MOST}")
+        if not (self.tolerance == 0.0 or SMALLEST_TOLERANCE <= self.tolerance < 1.0):
+            raise ParameterError(
+                f"li: tolerance={self.tolerance:g}; it must lie between {SMALLEST_TOLERANCE:g} "
+                "and 1, or be 0 for a fixed step"
+            )
+
+    def __str__(self) -> str:
+        text = super().__str__()
+        return text if self.adaptive else text.rpartition(",")[0]
+
+    @property
+    def adaptive(self) -> bool:
+        """The macro step follows the tolerance."""
+        return self.tolerance > 0.0
+
+    @property
+    def start_step(self) -> float:
+        """Macro step [s] if none is given; the largest one if it is adaptive."""
+        return self.default_largest_step if self.adaptive else self.default_step
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
@@ -67,6 +92,9 @@ class LI(Algorithm):
     def prepare(self, network: Network) -> PreparedNodes:
         """Lay out a network for this algorithm."""
         check_rollback(self.name, network)
+        if self.adaptive:
+            check_sources(str(self), network)
+            return PreparedAdaptive(network, self.degree, self.iterations, _MOST, self.tolerance)
         return PreparedNodes(
             network, self.degree, newton=True, corrections=self.iterations, most=_MOST
         )

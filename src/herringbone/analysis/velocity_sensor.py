@@ -1,0 +1,123 @@
+"""What a velocity sensor with a sampled recorder shows of a vibration.
+
+The chain: high pass and low pass of the sensor, an anti-alias filter or none, sampling, clipping at
+the range, quantisation. Filters are Butterworth, made digital at the step of the input, which
+therefore must be fine. Without an anti-alias filter a line at f shows at |f - k fs|.
+
+Source: A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., chapters 4 and 7.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.signal import butter, sosfilt
+
+from herringbone.core import ParameterError
+
+_FINEST = 5.0
+"""Least input rate over sampling rate, and over twice the low pass."""
+_WHOLE = 1e-6
+
+
+class SensorRecord(NamedTuple):
+    """What was recorded.
+
+    Attributes:
+        time: (n,) of the samples [s].
+        velocity: (n,) or (n, k) [m/s].
+        saturated: samples that were clipped, () or (k,).
+    """
+
+    time: np.ndarray
+    velocity: np.ndarray
+    saturated: np.ndarray
+
+
+@dataclass(frozen=True)
+class VelocitySensor:
+    """Sensor and recorder.
+
+    Attributes:
+        high_pass_hz: of the sensor, second order [Hz]; 0 for none.
+        low_pass_hz: of the sensor, second order [Hz]; 0 for none.
+        anti_alias: an eighth-order low pass at 0.4 times the sampling rate.
+        sampling_hz: [Hz].
+        range: largest velocity, either sign [m/s].
+        bits: of the converter over both signs; 0 for no quantisation.
+    """
+
+    high_pass_hz: float = 10.0
+    low_pass_hz: float = 0.0
+    anti_alias: bool = False
+    sampling_hz: float = 2000.0
+    range: float = 0.05
+    bits: int = 16
+
+    def __post_init__(self) -> None:
+        """Check; raises ParameterError."""
+        for name, lowest in (("high_pass_hz", 0.0), ("low_pass_hz", 0.0)):
+            if not getattr(self, name) >= lowest:
+                raise ParameterError(f"{name} = {getattr(self, name):g} Hz must not be negative")
+        for name, unit in (("sampling_hz", "Hz"), ("range", "m/s")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ParameterError(f"{name} = {getattr(self, name):g} {unit} must be positive")
+        if not 0 <= self.bits <= 32:
+            raise ParameterError(f"bits = {self.bits}: it must lie between 0 and 32")
+
+    def alias_hz(self, frequency_hz: float) -> float:
+        """Frequency at which a line shows after sampling [Hz]."""
+        rest = frequency_hz % self.sampling_hz
+        return min(rest, self.sampling_hz - rest)
+
+    def measure(self, velocity: np.ndarray, step: float) -> SensorRecord:
+        """Record a vibration that begins at time 0.
+
+        Args:
+            velocity: (n,) or (n, k) [m/s], one column per sensor.
+            step: between rows [s].
+
+        Raises:
+            ParameterError: the input is too coarse, or its rate no multiple of the sampling rate.
+        """
+        velocity = np.asarray(velocity, dtype=float)
+        every = self._every(step)
+        seen = velocity
+        for sections in self._filters(step):
+            seen = sosfilt(sections, seen, axis=0)
+        sampled = seen[::every]
+        clipped = np.clip(sampled, -self.range, self.range)
+        saturated = (np.abs(sampled) > self.range).sum(axis=0)
+        if self.bits:
+            digit = 2.0 * self.range / 2**self.bits
+            highest = 2 ** (self.bits - 1) - 1
+            clipped = digit * np.clip(np.round(clipped / digit), -highest - 1, highest)
+        return SensorRecord(np.arange(len(sampled)) * every * step, clipped, saturated)
+
+    def _every(self, step: float) -> int:
+        """Input rows per sample."""
+        if not 0.0 < step < np.inf:
+            raise ParameterError(f"step = {step:g} s must be positive")
+        ratio = 1.0 / (self.sampling_hz * step)
+        needed = max(self.sampling_hz, 2.0 * self.low_pass_hz) * _FINEST
+        if 1.0 / step < needed * (1.0 - _WHOLE):
+            raise ParameterError(
+                f"records every {step:g} s are too coarse for the sensor; it takes "
+                f"{1.0 / needed:g} s or less (--record-step)"
+            )
+        if abs(ratio - round(ratio)) > _WHOLE * ratio:
+            raise ParameterError(
+                f"records every {step:g} s do not fit samples every {1.0 / self.sampling_hz:g} s; "
+                "take a whole part of it"
+            )
+        return round(ratio)
+
+    def _filters(self, step: float) -> list[np.ndarray]:
+        """Second-order sections of the filters that are there."""
+        rate = 1.0 / step
+        wanted = (
+            (2, self.high_pass_hz, "highpass"),
+            (2, self.low_pass_hz, "lowpass"),
+            (8, 0.4 * self.sampling_hz if self.anti_alias else 0.0, "lowpass"),
+        )
+        return [butter(n, f, kind, fs=rate, output="sos") for n, f, kind in wanted if f > 0.0]

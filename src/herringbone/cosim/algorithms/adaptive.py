@@ -1,0 +1,241 @@
+"""A network laid out for `li` with an adaptive macro step."""
+
+import numpy as np
+
+from herringbone.core import ParameterError
+from herringbone.cosim.adaptive_loop import STEP_LIMIT, run_adaptive
+from herringbone.cosim.adaptive_plan import (
+    ACCEPTED,
+    BEFORE,
+    BEFORE_THAT,
+    CULPRIT,
+    MISSED,
+    NEEDED,
+    NONE,
+    OWN,
+    ROWS,
+    SCALED,
+    USED,
+    WANTED,
+    Adaptive,
+)
+from herringbone.cosim.algorithms.base import StepStatistics
+from herringbone.cosim.algorithms.iterated import PreparedNodes
+from herringbone.cosim.algorithms.jacobian import (
+    PREDICTION,
+    CouplingError,
+    StepRefusedError,
+    correction_matrix,
+)
+from herringbone.cosim.ladder import FIRST, RUNGS, TICKS
+from herringbone.cosim.loop import COUPLING_FAILED, DONE
+from herringbone.cosim.network import Network
+from herringbone.cosim.node_loop import REFRESH
+from herringbone.cosim.node_plan import Buffers, Control
+from herringbone.cosim.plan import Chunk
+from herringbone.cosim.record import Grid, GrowingRecord
+from herringbone.cosim.step_error import update_scale
+
+RESIDUAL_SHARE = 0.1
+"""Share of the tolerance that the corrections may leave."""
+SMALLEST = 1e-3
+"""Size, in SI units, of a force that has not acted yet, for the differences of a Jacobian."""
+_STATE = 10
+
+
+def check_sources(name: str, network: Network) -> None:
+    """Check that a step can be taken back with its sources, too.
+
+    Raises:
+        ParameterError: one cannot be restored.
+    """
+    unable = [
+        network.parts[p].name for p in network.sources if not network.parts[p].addresses.can_restore
+    ]
+    if unable:
+        raise ParameterError(
+            f"{name} takes whole steps back, but {', '.join(unable)} cannot save and restore its "
+            "state; leave the tolerance out"
+        )
+
+
+class PreparedAdaptive(PreparedNodes):
+    """A network laid out for steps on a ladder; its grid counts ticks.
+
+    The interface Jacobian is computed by differences on the first rung. On other rungs
+    S(h) = a h + b h^2 (dampers, and springs and inertias) is fitted to the nearest ones that are
+    known, until the corrections that this costs are as many as the passes of a Jacobian.
+
+    Args:
+        network: parts and connections.
+        degree: p.
+        corrections: how many at least.
+        most: how many at most.
+        tolerance: relative error that is asked for.
+    """
+
+    def __init__(
+        self, network: Network, degree: int, corrections: int, most: int, tolerance: float
+    ) -> None:
+        super().__init__(network, degree, newton=True, corrections=corrections, most=most)
+        self.tolerance = tolerance
+        self._sensitivities: dict[int, np.ndarray] = {}
+        self._adaptive: Adaptive | None = None
+        self._record = GrowingRecord(0)
+        self._tick = 0.0
+
+    def grid(self, grid: Grid) -> Grid:
+        """The same end and records in ticks; the grid's step is the largest."""
+        every = grid.every * TICKS if grid.every > 1 else 0
+        self._tick, self._last = grid.step / TICKS, grid.count * TICKS
+        return Grid(self._tick, self._last, every)
+
+    def record(self, grid: Grid, columns: int) -> GrowingRecord:
+        """Rows as the steps come."""
+        del grid
+        self._record = GrowingRecord(columns)
+        return self._record
+
+    def macro_steps(self, done: int) -> int:
+        """Macro steps that were accepted."""
+        del done
+        return int(self._adaptive.state[ACCEPTED]) if self._adaptive else 0
+
+    @property
+    def steps(self) -> StepStatistics | None:
+        """Macro steps by their length."""
+        if self._adaptive is None:
+            return None
+        taken = np.repeat(self._adaptive.rungs, self._adaptive.taken) * self._tick
+        lengths = np.sort(taken) if taken.size else np.zeros(1)
+        return StepStatistics(
+            int(taken.size),
+            int(self._adaptive.rejected.sum()),
+            float(lengths[0]),
+            float(np.median(lengths)),
+            float(lengths[-1]),
+        )
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Downgrades; and steps that could not be made small enough."""
+        missed = int(self._adaptive.state[MISSED]) if self._adaptive else 0
+        if not missed:
+            return self._downgrades
+        return (
+            *self._downgrades,
+            f"{missed} of the smallest steps ({self._tick * RUNGS[0]:.3g} s) missed the tolerance: "
+            "the forces jump there, or start from nothing",
+        )
+
+    def _make_adaptive(self, buffers: Buffers) -> Adaptive:
+        nodes, parts = self.nodes, self.network.parts
+        sources = [self.jacobian.owners[i] for i in nodes.unknown]
+        units = [parts[p].variables[name].unit for p, name in sources]
+        kinds = list(dict.fromkeys(units))
+        held_by = {
+            (c.source, c.output)
+            for c in self.network.connections
+            if c.target in self.network.bodies and self.degree[c.target] == 0
+        }
+        rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size
+        adaptive = Adaptive(
+            self.tolerance,
+            self._last,
+            np.array(RUNGS, dtype=np.int64),
+            np.zeros((rungs, size, size)),
+            np.full(rungs, NONE, dtype=np.int64),
+            *(np.zeros(rungs, dtype=np.int64) for _ in range(3)),
+            np.array([kinds.index(unit) for unit in units], dtype=np.int64),
+            np.array([source in held_by for source in sources], dtype=np.int64),
+            np.zeros(len(kinds)),
+            np.zeros((4, max(nodes.unknown.size, len(kinds)))),
+            np.zeros(1),
+            np.zeros(1),
+            np.zeros(_STATE, dtype=np.int64),
+            self._record.row_times,
+        )
+        adaptive.state[[WANTED, USED, ROWS]] = FIRST, FIRST, 1
+        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[FIRST]
+        buffers.nodes[:] = buffers.history[0]
+        update_scale(nodes, buffers, adaptive.group, adaptive.moments, adaptive.covered, 0.0)
+        return adaptive
+
+    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
+        """Run up to the end of the chunk, which counts ticks; see `loop.run_stages`."""
+        if self._buffers is None or self._adaptive is None:
+            self._buffers = self._make_buffers(history)
+            self._adaptive = self._make_adaptive(self._buffers)
+            if (status := self._make_correction(chunk.start, chunk.h)) != DONE:
+                return status, chunk.start, -1
+        done, end = chunk.start, chunk.start + chunk.count
+        while True:
+            self._record.make_room()
+            self._adaptive = self._adaptive._replace(times=self._record.row_times)
+            status, done, culprit = run_adaptive(
+                self.plan,
+                self.nodes,
+                self._buffers,
+                Control(self.corrections, self.most, RESIDUAL_SHARE * self.tolerance, np.inf,
+                        PREDICTION),
+                self._adaptive,
+                chunk._replace(start=done, count=max(0, end - done), records=self._record.values),
+            )  # fmt: skip
+            self._record.rows = int(self._adaptive.state[ROWS])
+            if status == REFRESH:
+                status = self._make_correction(done, chunk.h)
+            if status == STEP_LIMIT:
+                self._explain_limit(done * chunk.h)
+            if status != DONE or done >= end:
+                return status, done, culprit
+
+    def _make_correction(self, done: int, tick: float) -> int:
+        """Correction of the rung in use; a status of the loop."""
+        adaptive, rung = self._adaptive, int(self._adaptive.state[USED])
+        t, h = done * tick, RUNGS[rung] * tick
+        own = not self._sensitivities or adaptive.ready[rung] == NEEDED
+        try:
+            if own:
+                self._sensitivities[rung] = self._measured(rung, t, h)
+                adaptive.owed[rung] = 0
+            found = self._sensitivities[rung] if own else self._fitted(rung)
+            adaptive.corrections[rung] = correction_matrix(found, t, h)
+        except StepRefusedError as error:
+            if rung == 0:
+                self.problem = str(error)
+                return COUPLING_FAILED
+            adaptive.rejected[rung] += 1
+            adaptive.state[WANTED] = rung - 1
+            return DONE
+        except CouplingError as error:
+            self.problem = str(error)
+            return COUPLING_FAILED
+        adaptive.ready[rung] = OWN if own else SCALED
+        return DONE
+
+    def _measured(self, rung: int, t: float, h: float) -> np.ndarray:
+        adaptive = self._adaptive
+        self.jacobians += 1
+        self._buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
+        size = np.maximum(adaptive.moments[2, adaptive.group], SMALLEST)
+        return self.jacobian.measure(self._buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
+
+    def _fitted(self, rung: int) -> np.ndarray:
+        """S(h) = a h + b h^2 through the nearest rungs with a Jacobian; b h^2 through one."""
+        near = sorted(self._sensitivities, key=lambda k: abs(k - rung))[:2]
+        h = RUNGS[rung]
+        if len(near) == 1:
+            return (h / RUNGS[near[0]]) ** 2 * self._sensitivities[near[0]]
+        one, two = (RUNGS[k] for k in near)
+        first, second = (self._sensitivities[k] / RUNGS[k] for k in near)
+        return h * (first + (h - one) / (two - one) * (second - first))
+
+    def _explain_limit(self, t: float) -> None:
+        p, name = self.jacobian.owners[self.nodes.unknown[self._adaptive.state[CULPRIT]]]
+        self.culprit = f"{self.network.parts[p].name}.{name}"
+        smallest = RUNGS[0] * self._tick
+        self.problem = (
+            f"{self.culprit} misses the tolerance of {self.tolerance:g} at {t:g} s even with the "
+            f"smallest step of {smallest:.3g} s; use a larger tolerance, or a smaller --step: the "
+            f"ladder reaches down to 1/{TICKS // RUNGS[0]} of it"
+        )

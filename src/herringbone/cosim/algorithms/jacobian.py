@@ -1,0 +1,100 @@
+"""The interface Jacobian of the iterated algorithms, and the correction that follows from it."""
+
+import numpy as np
+
+from herringbone.core import HerringboneError
+from herringbone.cosim.network import Network
+from herringbone.cosim.node_jacobian import sensitivity
+from herringbone.cosim.node_plan import Buffers, NodePlan
+from herringbone.cosim.plan import Plan
+
+PREDICTION = 2
+"""Degree of the prediction; one correction makes the result nearly independent of it."""
+ALIKE = 1e-6
+"""A repeated step may differ by this share of the largest signal of the same unit."""
+_CHANGE = 1e-4
+
+
+class CouplingError(HerringboneError):
+    """The coupling cannot go on; it becomes the outcome of the run."""
+
+
+class StepRefusedError(CouplingError):
+    """A part failed in the step of a Jacobian; a smaller one may do."""
+
+
+class InterfaceJacobian:
+    """Jacobians dG/dU of a network by differences over doStep.
+
+    Args:
+        network: parts and connections.
+        plan, nodes: its layout.
+        outputs: connected outputs of each part.
+    """
+
+    def __init__(
+        self, network: Network, plan: Plan, nodes: NodePlan, outputs: list[list[str]]
+    ) -> None:
+        self.network, self.plan, self.nodes = network, plan, nodes
+        self.owners = [(p, name) for p, names in enumerate(outputs) for name in names]
+        units = [network.parts[p].variables[name].unit for p, name in self.owners]
+        kinds = list(dict.fromkeys(units))
+        self._kind = np.array([kinds.index(unit) for unit in units], dtype=np.int64)
+
+    def measure(
+        self, buffers: Buffers, size: np.ndarray, t: float, h: float, known: int
+    ) -> np.ndarray:
+        """The Jacobian (unknowns p, unknowns p) of a macro step; all parts are restored after.
+
+        Args:
+            buffers: of the run.
+            size: of each unknown; the differences are 1e-4 of it.
+            t, h: start and length of the step [s].
+            known: communication points passed, the start included.
+
+        Raises:
+            StepRefusedError: a part fails.
+            CouplingError: a part does not repeat a step alike.
+        """
+        count = self.nodes.degree * self.nodes.unknown.size
+        jacobian, off = np.zeros((count, count)), np.zeros(len(self.owners))
+        failed = sensitivity(
+            self.plan, self.nodes, buffers, jacobian, off, _CHANGE * size, PREDICTION, t, h, known
+        )
+        if failed >= 0 or not np.isfinite(jacobian).all():
+            name = self.network.parts[failed].name if failed >= 0 else "the coupling"
+            raise StepRefusedError(
+                f"the interface Jacobian cannot be computed at {t:g} s: {name} fails; "
+                "use a smaller step"
+            )
+        self._check_repetition(buffers, off, t)
+        return jacobian
+
+    def _check_repetition(self, buffers: Buffers, off: np.ndarray, t: float) -> None:
+        largest = np.abs(buffers.nodes).max(axis=0, initial=0.0)
+        by_kind = np.zeros(self._kind.max(initial=-1) + 1)
+        np.maximum.at(by_kind, self._kind, largest)
+        wrong = off > ALIKE * by_kind[self._kind]
+        for p in (*self.network.bodies, *self.network.elements):
+            for i, (owner, name) in enumerate(self.owners):
+                if owner == p and wrong[i]:
+                    raise CouplingError(
+                        f"{self.network.parts[p].name} is not deterministic: its step at {t:g} s, "
+                        f"repeated from a restored state, changes {name} by {off[i]:.3g}; "
+                        "use jacobi or gauss_seidel, which repeat no step"
+                    )
+
+
+def correction_matrix(jacobian: np.ndarray, t: float, h: float) -> np.ndarray:
+    """(I - dG/dU)^-1 for a macro step h at t [s].
+
+    Raises:
+        CouplingError: the matrix is singular.
+    """
+    try:
+        return np.linalg.inv(np.eye(len(jacobian)) - jacobian)
+    except np.linalg.LinAlgError:
+        raise CouplingError(
+            f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "
+            "use another step, or fixed_point"
+        ) from None
