@@ -258,8 +258,8 @@ static void test_resources(void) {
 /* A URI as of FMI 2.0, with an encoded letter: the resources are found in its folder. */
 static void test_location(void) {
     char uri[4096];
-    snprintf(uri, sizeof uri, "file://localhost%.*s%%%02X", (int)strlen(folder) - 1, folder,
-             (unsigned)folder[strlen(folder) - 1]);
+    snprintf(uri, sizeof uri, "file://localhost%s%.*s%%%02X", *folder == '/' ? "" : "/",
+             (int)strlen(folder) - 1, folder, (unsigned)folder[strlen(folder) - 1]);
     fmi2Component c =
         fmi2Instantiate("r", fmi2CoSimulation, "{token}", uri, &functions2, fmi2False, fmi2False);
     OK(fmi2EnterInitializationMode(c));

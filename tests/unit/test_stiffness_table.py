@@ -152,7 +152,7 @@ def test_header_without_rows(lines, message):
 def test_missing_column(lines, message):
     text = message([lines[0], *[",".join(line.split(",")[:3]) for line in lines[1:]]])
     assert "column stiffness is missing" in text
-    assert "['side', 'load', 'phase']" in text
+    assert "it has side, load, phase" in text
 
 
 def test_unknown_column(lines, message):

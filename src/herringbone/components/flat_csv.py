@@ -15,8 +15,8 @@ from herringbone.core import ResourceError
 
 
 def _units(line: str, file: Path) -> dict[str, str]:
-    _, _, text = line.partition("# units:")
-    if not text:
+    before, _, text = line.partition("# units:")
+    if before or not text:
         raise ResourceError(f"{file}: the first line must be '# units: <column> <unit>, ...'")
     return dict(item.split(maxsplit=1) for item in text.strip().split(",") if len(item.split()) > 1)
 
@@ -65,7 +65,9 @@ def read_flat_csv(
         raise ResourceError(f"{file}: column {', '.join(twice)} stands twice")
     missing = [name for name in (*texts, *numbers) if name not in header]
     if missing:
-        raise ResourceError(f"{file}: column {', '.join(missing)} is missing; it has {header}")
+        raise ResourceError(
+            f"{file}: column {', '.join(missing)} is missing; it has {', '.join(header)}"
+        )
     extra = [name for name in header if name not in texts and name not in numbers]
     if extra and not more:
         raise ResourceError(f"{file}: column {', '.join(extra)} is unknown")

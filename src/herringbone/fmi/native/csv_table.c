@@ -76,14 +76,13 @@ static bool allocate(Table *table, Message *message) {
 
 static bool cut_units(Table *table, Message *message) {
     static const char mark[] = "# units:";
-    char *found = strstr(table->text, mark);
-    char *first_end = table->text + strcspn(table->text, "\r\n");
-    if (!found || found > first_end || found + strlen(mark) == first_end) {
+    size_t length = strlen(mark);
+    if (strncmp(table->text, mark, length) != 0 || strcspn(table->text + length, "\r\n") == 0) {
         message_write(message, "%s: the first line must be '# units: <column> <unit>, ...'",
                       table->file);
         return false;
     }
-    table->units = found + strlen(mark);
+    table->units = table->text + length;
     return true;
 }
 

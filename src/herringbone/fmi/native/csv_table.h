@@ -20,8 +20,8 @@ typedef struct {
     size_t field_count, row_count;
 } Table;
 
-/* Read a file; false, with a message, if there is none, its first line has no "# units:", or a quote
-   is not closed. Free the table in any case. */
+/* Read a file; false, with a message, if there is none, its first line does not begin with
+   "# units:", or a quote is not closed. Free the table in any case. */
 bool csv_table_read(Table *table, const char *file, Message *message);
 void csv_table_free(Table *table);
 

@@ -58,6 +58,17 @@ static const HbColumn *declared_column(const HbText *grammar, const char *name) 
     return NULL;
 }
 
+/* List the missing columns of words, or of numbers. */
+static void list_missing(const Table *table, const HbText *grammar, bool words, char *list,
+                         size_t size) {
+    for (uint32_t k = 0; k < grammar->column_count; k++) {
+        const HbColumn *column = &grammar->columns[k];
+        if (!column->rest && (column->words != NULL) == words &&
+            find_field(table, column->name) == table->rows->count)
+            list_name(list, size, column->name);
+    }
+}
+
 static bool check_header(const Table *table, const HbText *grammar, Message *message) {
     char missing[256] = "", extra[256] = "", all[256] = "";
     for (size_t i = 0; i < table->rows->count; i++) {
@@ -70,11 +81,8 @@ static bool check_header(const Table *table, const HbText *grammar, Message *mes
         if (!declared_column(grammar, name))
             list_name(extra, sizeof extra, name);
     }
-    for (uint32_t k = 0; k < grammar->column_count; k++) {
-        const HbColumn *column = &grammar->columns[k];
-        if (!column->rest && find_field(table, column->name) == table->rows->count)
-            list_name(missing, sizeof missing, column->name);
-    }
+    list_missing(table, grammar, true, missing, sizeof missing);
+    list_missing(table, grammar, false, missing, sizeof missing);
     if (*missing)
         message_write(message, "%s: column %s is missing; it has %s", table->file, missing, all);
     else if (*extra && !has_rest(grammar))
@@ -108,7 +116,18 @@ static bool read_word(const char *file, const HbColumn *column, const char *word
     return column->other_words;
 }
 
-static bool read_row(const Table *table, const Row *row, const HbText *grammar,
+static bool read_number(const Table *table, const Row *row, size_t i, double *value,
+                        Message *message) {
+    const char *field = table->fields[row->first + i];
+    if (platform_number(field, value))
+        return true;
+    message_write(message, "%s, line %zu: %s = '%.64s' is not a finite number", table->file,
+                  row->line, table->fields[i], field);
+    return false;
+}
+
+/* Read the words of a row, or its numbers. */
+static bool read_row(const Table *table, const Row *row, const HbText *grammar, bool words,
                      const size_t place[], double values[], Message *message) {
     if (row->count != table->rows->count) {
         message_write(message, "%s, line %zu: %zu fields, %zu expected", table->file, row->line,
@@ -117,22 +136,19 @@ static bool read_row(const Table *table, const Row *row, const HbText *grammar,
     }
     for (size_t i = 0; i < row->count; i++) {
         const HbColumn *column = declared_column(grammar, table->fields[i]);
+        bool word = column && column->words;
+        if (word != words)
+            continue;
         char *field = table->fields[row->first + i];
-        double *value = &values[place[i]];
-        if (column && column->words) {
-            if (!read_word(table->file, column, csv_trim(field), value, message))
-                return false;
-        } else if (!platform_number(field, value)) {
-            message_write(message, "%s, line %zu: %s = '%.64s' is not a finite number",
-                          table->file, row->line, table->fields[i], field);
+        if (!(word ? read_word(table->file, column, csv_trim(field), &values[place[i]], message)
+                   : read_number(table, row, i, &values[place[i]], message)))
             return false;
-        }
     }
     return true;
 }
 
-static bool read_numbers(const Table *table, const HbText *grammar, double values[],
-                         Message *message) {
+static bool read_rows(const Table *table, const HbText *grammar, double values[],
+                      Message *message) {
     size_t columns = table->rows->count;
     size_t *place = malloc(columns * sizeof *place);
     if (!place) {
@@ -141,8 +157,10 @@ static bool read_numbers(const Table *table, const HbText *grammar, double value
     }
     arrange(table, grammar, place);
     bool read = true;
-    for (size_t r = 1; read && r < table->row_count; r++)
-        read = read_row(table, &table->rows[r], grammar, place, values + (r - 1) * columns, message);
+    for (int words = 0; words < 2; words++) /* a number that is none is told first */
+        for (size_t r = 1; read && r < table->row_count; r++)
+            read = read_row(table, &table->rows[r], grammar, words, place,
+                            values + (r - 1) * columns, message);
     free(place);
     return read;
 }
@@ -181,7 +199,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
     }
     numbers->values = values;
     memcpy(values + numbers->count, units, declared * sizeof *units);
-    if (!read_numbers(table, grammar, values + numbers->count + declared, message))
+    if (!read_rows(table, grammar, values + numbers->count + declared, message))
         return false;
     numbers->count += more;
     shape[0] = (int64_t)rows;

@@ -74,6 +74,8 @@ char *platform_read_text(const char *file, Message *message) {
         return NULL;
     }
     text[length] = '\0';
+    if (strncmp(text, "\xEF\xBB\xBF", 3) == 0)
+        memmove(text, text + 3, length - 2);
     return text;
 }
 

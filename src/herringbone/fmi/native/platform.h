@@ -8,7 +8,7 @@
 #include "message.h"
 
 /* Contents of a file, ended by a zero; NULL with a message if it is missing, larger than
-   LARGEST_FILE, or no UTF-8 text. The caller frees it. */
+   LARGEST_FILE, or no UTF-8 text. A byte order mark is left out. The caller frees it. */
 char *platform_read_text(const char *file, Message *message);
 #define LARGEST_FILE (16u << 20)
 
