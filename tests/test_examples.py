@@ -21,6 +21,7 @@ KNOWN = {
     "05_error_against_step": ({"t_end": 0.002}, None, None),
     "06_loop_benchmark": ({"steps": 200}, None, None),
     "07_symmetry_and_relief": ({}, 5280.0, WHOLE),
+    "08_swap_the_housing": ({"t_end": 0.005}, None, None),
 }
 """Arguments, number and relative tolerance; or arguments of a test of its own below."""
 
@@ -63,3 +64,10 @@ def test_error_against_step(tmp_path, monkeypatch):
 def test_loop_benchmark(tmp_path, monkeypatch):
     """The compiled loop is faster than a plain one; how much depends on the machine."""
     assert run(tmp_path, monkeypatch, "06_loop_benchmark") > 1.2
+
+
+def test_swap_the_housing(tmp_path, monkeypatch):
+    """Statics and modes below 1200 Hz stay, which hold nearly all of the motion; bound 5 %."""
+    found = run(tmp_path, monkeypatch, "08_swap_the_housing")
+    assert found["reduced_to_800_Hz"] == pytest.approx(found["default"], rel=0.1)
+    assert found["reduced_to_800_Hz"] != found["default"]
