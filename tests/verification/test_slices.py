@@ -210,3 +210,12 @@ def test_bad_modification(values):
 def test_documented_resolution_is_what_is_computed():
     text = resolution_table(gear_pair(THESIS), load_at(2000.0))
     assert text in slices.__doc__
+
+
+@pytest.mark.parametrize("data", [SPUR, HELICAL, THESIS], ids=["spur", "helical", "thesis"])
+def test_near_the_standard(data):
+    """Uncalibrated, at 100 N/mm: within 20 % of ISO 6336-1, method B, softer (no load spreading)."""
+    pair = gear_pair(data)
+    load = 1e5 * pair.face_width / math.cos(pair.base_helix_angle)
+    ratio = pair.halves * SliceMesh(pair).solve([load]).secant.mean()
+    assert 0.8 < ratio / pair.iso6336_stiffness().normal < 1.0
