@@ -214,8 +214,8 @@ def test_documented_resolution_is_what_is_computed():
 
 @pytest.mark.parametrize("data", [SPUR, HELICAL, THESIS], ids=["spur", "helical", "thesis"])
 def test_near_the_standard(data):
-    """Uncalibrated, at 100 N/mm: within 20 % of ISO 6336-1, method B, softer (no load spreading)."""
+    """Uncalibrated, at 100 N/mm: up to a quarter softer than ISO 6336-1, method B."""
     pair = gear_pair(data)
     load = 1e5 * pair.face_width / math.cos(pair.base_helix_angle)
     ratio = pair.halves * SliceMesh(pair).solve([load]).secant.mean()
-    assert 0.8 < ratio / pair.iso6336_stiffness().normal < 1.0
+    assert 0.75 < ratio / pair.iso6336_stiffness().normal < 1.0
