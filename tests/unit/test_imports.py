@@ -37,6 +37,8 @@ TOP = {
     "report",
     "listing",
     "export",
+    "export_command",
+    "system_fmu",
     "ssp_import",
     "chart_command",
     "build_command",

@@ -29,7 +29,7 @@ _TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
 _OPTIMISATION = 3
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
-_UNKNOWN_SIZE = 1  # bounds are not checked
+_UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
 _TIME = types.float64
