@@ -177,14 +177,6 @@ class SliceMesh:
 
         return law
 
-    def line_loads(self, phase: float, force: float) -> tuple[np.ndarray, np.ndarray]:
-        """Load per length [N/m] at one phase: (lines, slices), and s [m] of the slices' middles."""
-        path, _, _ = cut_lines(self.pair, self.slices, np.array([phase]), *self._limits())
-        slices = self._slices(np.array([phase]))
-        deflection, _ = self._loaded(slices, force)
-        load, _ = self._line_loads(slices, np.zeros_like(slices.gap), deflection)
-        return load.reshape(-1, self.slices), path.reshape(-1, self.slices)
-
     def single_pair_stiffness(self, force: float) -> float:
         """Stiffness [N/m] of one tooth pair at the path's start, loaded over the full face."""
         length = self.pair.face_width / math.cos(self.pair.base_helix_angle)
