@@ -15,7 +15,7 @@ ALLOWED: dict[str, set[str]] = {
     "housing": {"core", "kernels", "components"},
     "fmi": {"core", "kernels", "components"},
     "cosim": {"core", "kernels"},
-    "analysis": {"core", "kernels", "components", "cosim", "gears", "result"},
+    "analysis": {"core", "kernels", "components", "gears", "housing", "cosim", "result"},
     "scenes": {"core", "kernels", "components", "cosim", "analysis"},
     "result": {"core", "plotting"},
     "start": {"core", "components", "cosim", "analysis", "scenes"},

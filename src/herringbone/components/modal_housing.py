@@ -10,7 +10,7 @@ Positions and velocities never depend on the inputs directly; the accelerations 
 `start.<seat>.f_x` ... are the forces under which the housing is at rest at the start.
 
 Modes of kind "residual" are pseudo modes that make the static compliance at the seats exact;
-"rigid" modes have no stiffness.
+"rigid" modes have no stiffness. The data that come along are described in HOUSING.md.
 
 Source: K. S. Bathe, Finite Element Procedures, section 9.3 (mode superposition).
 """
