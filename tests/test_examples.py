@@ -22,6 +22,7 @@ KNOWN = {
     "06_loop_benchmark": ({"steps": 200}, None, None),
     "07_symmetry_and_relief": ({}, 5280.0, WHOLE),
     "08_swap_the_housing": ({"t_end": 0.005}, None, None),
+    "09_aliasing": ({"t_end": 0.1}, None, None),
 }
 """Arguments, number and relative tolerance; or arguments of a test of its own below."""
 
@@ -71,3 +72,8 @@ def test_swap_the_housing(tmp_path, monkeypatch):
     found = run(tmp_path, monkeypatch, "08_swap_the_housing")
     assert found["reduced_to_800_Hz"] == pytest.approx(found["default"], rel=0.1)
     assert found["reduced_to_800_Hz"] != found["default"]
+
+
+def test_aliasing(tmp_path, monkeypatch):
+    """The line at 650 Hz is an alias: an eighth-order filter at 800 Hz leaves 1.6 % of 1350 Hz."""
+    assert run(tmp_path, monkeypatch, "09_aliasing") > 20.0
