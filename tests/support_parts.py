@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from scipy.linalg import expm
@@ -445,3 +446,10 @@ def dawdle(seconds):
         return OK
 
     return sleep
+
+
+PROTOTYPE_HOUSING = {
+    f"modal_housing.{name}": str(Path(__file__).parent / "data" / "prototype_housing" / file)
+    for name, file in (("modes", "modes.csv"), ("shapes", "shapes.csv"))
+}
+"""Housing of the dense prototypes whose figures some tests reproduce: 52 oscillators."""

@@ -102,6 +102,7 @@ def make_result(
         "rollbacks": 0,
         "wall_s": 0.5,
         "parameters": {"gear_mesh.pinion.number_of_teeth": 27.0},
+        "resources": {"modal_housing.modes": "modes.csv", "modal_housing.shapes": "shapes.csv"},
     } | info
     outcome = Outcome(OutcomeKind.COMPLETED, t_end)
     return Result(pd.DataFrame(columns), units, outcome, RunInfo(**fields), structure.channels)

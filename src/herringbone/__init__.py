@@ -24,6 +24,7 @@ _WHERE = {
     "Result": "herringbone.result",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.system",
+    "radiated_power": "herringbone.analysis.radiated_power",
 }
 
 __all__ = [*sorted(_WHERE)]  # noqa: PLE0604 (the names are those of the table)

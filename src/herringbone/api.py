@@ -254,6 +254,7 @@ def _result(
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
         parameters=parameters,
+        resources=_resources(system),
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
     return Result(data, units, recording.outcome, info, system.channels)
@@ -267,6 +268,16 @@ def _parameters(system: System) -> dict[str, float]:
         if part.component
         for v in COMPONENTS[part.component].declaration.parameters
         if v.name != "interface_degree"
+    }
+
+
+def _resources(system: System) -> dict[str, str]:
+    """Files that the known parts read, as given, by `instance.variable`."""
+    return {
+        f"{part.name}.{text.name}": str(part.values.get(text.name, text.start))
+        for part in system.parts
+        if part.component
+        for text in COMPONENTS[part.component].declaration.texts
     }
 
 

@@ -11,6 +11,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     sub.add_argument("component", nargs="*", help="components; all if none is given")
     sub.add_argument("--native", action="store_true", help="without Python at run time")
+    add_platform_options(sub)
+    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+
+
+def add_platform_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the options of native FMUs."""
     sub.add_argument("--fmi", type=int, default=2, help="FMI version of native FMUs, 2 or 3")
     sub.add_argument(
         "--platforms",
@@ -19,7 +25,21 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         metavar="PLATFORM",
         help="platforms of native FMUs, such as x86_64-windows, or all; this one if not given",
     )
-    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+
+
+def chosen_platforms(options: argparse.Namespace) -> list[str]:
+    """The names of the platforms that were asked for."""
+    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
+
+    return list(PLATFORMS) if options.platforms == [_ALL] else options.platforms
+
+
+def untested(platforms: list[str]) -> list[str]:
+    """A line that names the platforms whose binaries were built but cannot be run here, if any."""
+    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
+
+    names = [name for name in platforms if not PLATFORMS[name].tested]
+    return [f"built, not run: {', '.join(names)}"] if names else []
 
 
 def build(options: argparse.Namespace) -> Iterator[str]:
@@ -30,14 +50,13 @@ def build(options: argparse.Namespace) -> Iterator[str]:
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
     from herringbone.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
-    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
 
     if not options.native and (options.platforms or options.fmi != 2):
         raise ParameterError(
             "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
             "and run wherever Python and this package do"
         )
-    platforms = list(PLATFORMS) if options.platforms == [_ALL] else options.platforms
+    platforms = chosen_platforms(options)
     files = build_fmus(
         options.component,
         options.output,
@@ -46,5 +65,4 @@ def build(options: argparse.Namespace) -> Iterator[str]:
         fmi=options.fmi,
     )
     yield from map(str, files)
-    if untested := [name for name in platforms if not PLATFORMS[name].tested]:
-        yield f"built, not run: {', '.join(untested)}"
+    yield from untested(platforms)

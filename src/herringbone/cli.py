@@ -10,7 +10,7 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
-from herringbone import build_command, gear_command, housing_command
+from herringbone import build_command, export_command, gear_command, housing_command
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
 
@@ -71,12 +71,9 @@ def _parser() -> argparse.ArgumentParser:
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
-    sub = add("export", _export, "export a system as flat .ssp that other masters load")
-    sub.add_argument("system")
-    sub.add_argument("--scene")
-    sub.add_argument("--step", type=float, default=2e-6, help="communication step size in s")
+    sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
+    export_command.add_options(sub)
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
-    sub.add_argument("-o", "--output", type=Path, help="file; SYSTEM.ssp if not given")
     gear_command.register(commands)
     housing_command.register(commands)
     return parser
@@ -290,11 +287,6 @@ def _stability(options: argparse.Namespace) -> int:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from herringbone.export import export_ssp  # noqa: PLC0415
-
-    file = options.output or Path(f"{Path(options.system).name}.ssp")
-    export_ssp(
-        options.system, file, scene=options.scene, step=options.step, values=_values(options.set)
-    )
-    show(str(file))
+    for line in export_command.export(options, _values(options.set)):
+        show(line)
     return 0

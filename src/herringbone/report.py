@@ -22,8 +22,9 @@ from herringbone.analysis.operating_point import (
     signal,
     steady_part,
 )
+from herringbone.analysis.radiated_power import LABEL, radiated_power
 from herringbone.components.ports import HALVES
-from herringbone.core import HerringboneError, OutcomeKind
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.result import TIME, Result, RunInfo
 
 _R_MIN = 30.0 / math.pi
@@ -39,7 +40,9 @@ def summary_text(result: Result) -> str:
     """A summary of a run for people: how it was computed, operating point, forces, spectra."""
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
-    sections = (_operating_point, _power, _seats, _spectral_lines, _signals, _errors)
+    sections = (
+        _operating_point, _power, _seats, _spectral_lines, _radiation, _signals, _errors,
+    )  # fmt: skip
     if len(result.data) < 2 or result.outcome.kind is OutcomeKind.DIVERGED:
         lines += ["", "No figures: the run left nothing that can be evaluated."]
         sections = ()
@@ -79,7 +82,10 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
         pictures = write_pictures(result, folder)
         result = replace(result, files=tuple(map(str, (*tables, text, summary, *pictures))))
         text.write_text(summary_text(result), encoding="utf-8")
-        content = result.summary() | {"parameters": dict(result.info.parameters)}
+        content = result.summary() | {
+            "parameters": dict(result.info.parameters),
+            "resources": dict(result.info.resources),
+        }
         summary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
         raise HerringboneError(
@@ -216,6 +222,18 @@ def _spectral_lines(result: Result) -> Iterator[str]:
             yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
                    f"{line.amplitude * factor:>9.3g} {unit} at {channel}")  # fmt: skip
             label = ""
+
+
+def _radiation(result: Result) -> Iterator[str]:
+    """Level of the radiated power, where the housing's data have a surface."""
+    try:
+        found = radiated_power(result)
+    except ParameterError:
+        return
+    highest = found.frequency_hz[found.power.argmax()]
+    yield _line("Radiated power", f"{found.level_db:.1f} dB re 1 pW up to "
+                f"{found.frequency_hz[-1]:.0f} Hz, most at {highest:.0f} Hz")  # fmt: skip
+    yield _line("", f"({LABEL})")
 
 
 def _signals(result: Result) -> Iterator[str]:

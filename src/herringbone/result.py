@@ -38,6 +38,7 @@ class RunInfo:
         steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
             "shortest", "median" and "longest" of the accepted ones [s].
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
+        resources: files that components read, by `instance.variable`; not in the summary.
     """
 
     system: str
@@ -56,6 +57,7 @@ class RunInfo:
     notes: tuple[str, ...] = ()
     steps: Mapping[str, float] | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
+    resources: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,7 @@ class Result:
     def summary(self) -> dict[str, Any]:
         """The JSON summary of the run."""
         info = asdict(self.info)
-        del info["parameters"]
+        del info["parameters"], info["resources"]
         if self.info.steps is None:
             del info["steps"]
         found: dict[str, Any] = {

@@ -9,7 +9,9 @@ import pytest
 import scipy.sparse as sp
 from support_fe import require_gmsh
 
+import herringbone as hb
 from herringbone.core.paths import component_folder
+from herringbone.housing import write_housing
 from herringbone.housing.dimensions import read_design
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.importers import import_housing
@@ -109,13 +111,18 @@ def mass_as_calculix(elements: FiniteElements) -> sp.csr_array:
     return sp.csr_array(whole)[elements.free][:, elements.free]
 
 
-def test_same_receptance(elements, imported):
-    """All 144 entries up to 2 kHz, over the largest value of each: the file has 6 digits."""
+@pytest.fixture(scope="module")
+def expected(elements, imported):
+    """The same modes, solved here."""
     own = eigenmodes(elements.stiffness, mass_as_calculix(elements), MODES)
-    np.testing.assert_allclose(imported.frequency_hz, own.frequency_hz, rtol=1e-6)
-    expected = replace(
+    return replace(
         imported, frequency_hz=own.frequency_hz, shapes=elements.seat_input.T @ own.shapes
     )
+
+
+def test_same_receptance(expected, imported):
+    """All 144 entries up to 2 kHz, over the largest value of each: the file has 6 digits."""
+    np.testing.assert_allclose(imported.frequency_hz, expected.frequency_hz, rtol=1e-6)
     frequency_hz = np.linspace(1.0, 2000.0, 1000)
     exact = expected.receptance(frequency_hz)
     difference = np.abs(imported.receptance(frequency_hz) - exact).max(axis=0)
@@ -126,3 +133,19 @@ def test_points(elements, imported):
     """Bores are polygons of straight-sided tetrahedra; their middle is the middle of the bore."""
     for found, point in zip(imported.points, elements.points[:4], strict=True):
         np.testing.assert_allclose(found.position, point.position, atol=1e-3)
+
+
+def test_swapped_into_the_rig(expected, imported, tmp_path):
+    """Written, read by the component, and run: the seats move as with the modes solved here."""
+    velocities = []
+    for name, housing in (("imported", imported), ("expected", expected)):
+        write_housing(housing, tmp_path / name)
+        tables = {
+            f"modal_housing.{table}": str(tmp_path / name / f"{table}.csv")
+            for table in ("modes", "shapes")
+        }
+        result = hb.run("test_rig", t_end=2e-3, step=1e-5, fmu="in-process", values=tables)
+        velocities.append(result.data[result.channel("seat_velocity")].to_numpy())
+    difference = np.abs(velocities[0] - velocities[1]).max()
+    assert difference <= 1e-3 * np.abs(velocities[1]).max()
+    assert np.abs(velocities[1]).max() > 1e-6

@@ -1,7 +1,10 @@
 """The bond table of the test rig against the prototype's, and of two rotors in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from support_parts import PROTOTYPE_HOUSING
 
 from herringbone.analysis.bonds import bond_table, highest_frequency
 from herringbone.analysis.linear_parts import linear_network
@@ -21,6 +24,7 @@ EXPECTED = {  # gear and seat mass [kg], frequency [Hz], damping ratio
 @pytest.fixture(scope="module")
 def rig():
     scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
+    scene = replace(scene, values={**scene.values, **PROTOTYPE_HOUSING})
     return linear_network(started(read_system("test_rig"), scene)[0])
 
 

@@ -35,6 +35,22 @@ def test_fillet_of_a_rounded_rack_keeps_outside_the_root():
     assert np.all(np.diff(profile.points[:, 0]) < 0.0)
 
 
+def test_undercut_tooth_that_does_not_touch_there():
+    """FZG type A: the wheel (x = -0.5) is undercut below its active flank, as it is cut and used.
+
+    Fillet and involute meet in a corner, above the base circle, below the lowest contact.
+    """
+    pair = gear_pair(SPUR, face_width=20e-3, profile_shift_coefficient=(0.8635, -0.5))
+    profile = pair.tooth_profile(1)
+    assert profile.undercut
+    assert not pair.tooth_profile(0).undercut
+    assert profile.fillet[-1] == pytest.approx(profile.flank[0], abs=1e-9)
+    path = pair.path_of_contact
+    lowest = math.hypot(pair.base_radius[1], path.tangent_length - path.end)
+    assert pair.base_radius[1] < profile.form_radius < lowest
+    assert [2e3 * r for r in pair.tip_radius] == pytest.approx((88.77, 112.5), abs=5e-3)
+
+
 def test_involute_angle_inverts():
     for degrees in (0.0, 5.0, 20.0, 35.0, 70.0):
         angle = math.radians(degrees)
@@ -97,7 +113,12 @@ def test_dimensions_scale():
 
 
 BAD = {
-    "undercut": (THESIS, {"number_of_teeth": (9, 81)}, "undercut"),
+    "undercut": (THESIS, {"number_of_teeth": (8, 81)}, "pinion: teeth are undercut"),
+    "undercut spur": (
+        SPUR,
+        {"number_of_teeth": (12, 40), "center_distance": None, "profile_shift_coefficient": 0.0},
+        "pinion: teeth are undercut",
+    ),
     "pointed": (SPUR, {"center_distance": None, "profile_shift_coefficient": (1.3, 0)}, "pointed"),
     "contact ratio": (SPUR, {"addendum_coefficient": 0.6}, "contact ratio 0.9"),
     "impossible center distance": (THESIS, {"center_distance": 0.19}, "19.*impossible"),

@@ -5,7 +5,8 @@ import re
 import pytest
 from support_parts import FakePart, Mass, SpringDamper
 
-from herringbone.core import StructureError
+from herringbone.core import ParameterError, StructureError
+from herringbone.cosim.algorithms import GaussSeidel, Predict
 from herringbone.cosim.network import build_network
 from herringbone.cosim.system import PartSpec, System
 
@@ -169,6 +170,26 @@ def test_elements_are_ordered_as_they_feed_each_other():
     pairs = ("c.y", "sink.u"), ("b.y", "c.u"), ("a.y", "b.u"), ("s.y", "a.u")
     found = network(parts, *pairs)
     assert [parts[i].name for i in found.elements] == ["a", "b", "c"]
+
+
+def body_and_element(name):
+    """Motion x moves under force f; reaction r is a direct answer to seat motion q."""
+    return (
+        FakePart(name).real("f", "input", "N").real("q", "input", "m")
+        .real("x", "output", "m", frozenset()).real("r", "output", "N", frozenset({"q"}))
+    )  # fmt: skip
+
+
+def test_a_part_may_be_body_and_element_at_once():
+    link = FakePart("link").real("x", "input", "m").real("f", "output", "N", frozenset({"x"}))
+    seat = FakePart("seat").real("r", "input", "N").real("q", "output", "m", frozenset())
+    parts = [link, body_and_element("box"), seat]
+    pairs = (("box.x", "link.x"), ("link.f", "box.f"), ("seat.q", "box.q"), ("box.r", "seat.r"))
+    found = network(parts, *pairs)
+    assert (found.elements, found.bodies, found.mixed) == ((1, 0), (2,), {1})
+    for algorithm in (GaussSeidel(), Predict()):
+        with pytest.raises(ParameterError, match=r"box is body and element at once .*; use li"):
+            algorithm.prepare(found)
 
 
 def undeclared(name):

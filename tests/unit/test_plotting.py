@@ -115,7 +115,7 @@ def test_systems_without_gears_get_their_columns():
 def test_written_pictures_are_those_that_the_system_has(rig, tmp_path):
     names = {
         "rig": {"overview", *PICTURES},
-        "gearbox": {"overview", "bearing_forces", "seat_velocities", "spectra"},
+        "gearbox": {"overview", "bearing_forces", "seat_velocities", "spectra", "radiated_power"},
         "foreign": {"overview"},
     }
     results = {"rig": rig, "gearbox": make_result("gearbox"), "foreign": make_foreign_result()}

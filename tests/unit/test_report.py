@@ -12,6 +12,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 from support_result import make_foreign_result, make_result
 
+from herringbone.analysis.radiated_power import radiated_power
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
 from herringbone.report import summary_text, write_report
 
@@ -40,7 +41,7 @@ def test_headline_and_cost(rig):
     assert text.startswith("test_rig, scene loaded: completed, 0.2 of 0.2 s\n")
     assert "real-time factor 2.5" in line(text, "Cost")
     assert "50 us per macro step; 10000 steps" in text
-    assert len(text.splitlines()) <= 32
+    assert len(text.splitlines()) <= 36
     assert max(map(len, text.splitlines())) <= 100
 
 
@@ -114,6 +115,15 @@ def test_a_run_without_figures_says_so(rig):
     assert "No figures" in summary_text(replace(rig, data=rig.data.iloc[:0]))
 
 
+def test_radiated_power(rig):
+    """Level of the data that the run used; left out where they have no surface."""
+    text = summary_text(rig)
+    level = radiated_power(rig).level_db
+    assert f"{level:.1f} dB re 1 pW up to 2000 Hz, most at 450 Hz" in line(text, "Radiated power")
+    assert "upper-type estimate, about +5 dB below 500 Hz" in text
+    assert "Radiated" not in summary_text(replace(rig, info=replace(rig.info, resources={})))
+
+
 def test_table_reads_back_bit_by_bit(rig, tmp_path):
     generator = np.random.default_rng(1)
     data = rig.data.iloc[:5000].copy()
@@ -148,7 +158,7 @@ def test_report_writes_files_that_exist(tmp_path):
     names = [Path(file).name for file in result.files]
     assert names[:3] == ["results.csv", "summary.txt", "summary.json"]
     assert all(Path(file).stat().st_size > 0 for file in result.files)
-    assert len(names) == 8
+    assert len(names) == 9
     summary = json.loads(Path(result.files[2]).read_text(encoding="utf-8"))
     assert summary["results"] == list(result.files)
     assert summary["parameters"] == {"gear_mesh.pinion.number_of_teeth": 27.0}

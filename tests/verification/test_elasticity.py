@@ -154,6 +154,17 @@ def test_rigid_body():
     assert np.abs(energy).max() < 1e-12 * E
 
 
+def test_quadratic_motion():
+    """u_y = x**2 on a block: integrals of x**4 over its volume and over its two faces across y."""
+    a, b, c = 0.4, 0.3, 0.2
+    solid = block((a, b, c), (2, 2, 2))
+    x, zero = solid.nodes[:, 0], np.zeros(len(solid.nodes))
+    u = np.concatenate([zero, x**2, zero])
+    assert u @ (solid.mass() @ u) == pytest.approx(RHO * a**5 / 5 * b * c, rel=1e-12)
+    form = solid.normal_form(solid.boundary())
+    assert u @ (form @ u) == pytest.approx(2 * a**5 / 5 * c, rel=1e-12)
+
+
 def test_parts_add_up():
     solid = block((0.4, 0.3, 0.2), (2, 2, 2))
     elements = np.arange(solid.mesh.nelements)

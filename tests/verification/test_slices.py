@@ -8,6 +8,7 @@ from support_gears import HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears import slices
+from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
 from herringbone.gears.resolution import resolution_table
 from herringbone.gears.slices import SliceMesh
@@ -210,3 +211,37 @@ def test_bad_modification(values):
 def test_documented_resolution_is_what_is_computed():
     text = resolution_table(gear_pair(THESIS), load_at(2000.0))
     assert text in slices.__doc__
+
+
+@pytest.mark.parametrize("data", [SPUR, HELICAL, THESIS], ids=["spur", "helical", "thesis"])
+def test_near_the_standard(data):
+    """Uncalibrated, at 100 N/mm: up to a quarter softer than ISO 6336-1, method B."""
+    pair = gear_pair(data)
+    load = 1e5 * pair.face_width / math.cos(pair.base_helix_angle)
+    ratio = pair.halves * SliceMesh(pair).solve([load]).secant.mean()
+    assert 0.75 < ratio / pair.iso6336_stiffness().normal < 1.0
+
+
+def test_resampling_keeps_low_harmonics():
+    """A curve without harmonics above half of the fewer phases keeps its values at them."""
+    p = np.arange(64) / 64
+    curve = 1e-6 * (3.0 + np.cos(2 * np.pi * p + 0.3) + 0.5 * np.cos(6 * np.pi * p - 1.0))
+    high = 0.2e-6 * np.cos(2 * np.pi * 20 * p)
+    found = MeshStiffness(
+        THESIS_PAIR,
+        Modification(),
+        "",
+        np.array([1.0]),
+        p,
+        (curve + high)[None],
+        curve[None],
+        curve,
+    ).resampled(16)
+    assert found.deflection[0] == pytest.approx(curve[::4], rel=1e-12)
+    assert found.zero_load_secant == pytest.approx(curve[::4], rel=1e-12)
+    assert np.array_equal(found.phases, np.arange(16) / 16)
+    top = 1e-6 * (3.0 + np.cos(2 * np.pi * 8 * p))
+    found = MeshStiffness(
+        THESIS_PAIR, Modification(), "", np.array([1.0]), p, top[None], top[None], top
+    ).resampled(16)
+    assert found.deflection[0] == pytest.approx(top[::4], rel=1e-12)

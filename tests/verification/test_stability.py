@@ -1,9 +1,11 @@
 """Predicted stability limits against theory, and what the prediction is made of."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+from support_parts import PROTOTYPE_HOUSING
 
 from herringbone.analysis import atlas
 from herringbone.analysis.amplification import GROWTH, Amplification, Growth
@@ -40,6 +42,7 @@ PUBLISHED = {
 @cache
 def rig():
     scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
+    scene = replace(scene, values={**scene.values, **PROTOTYPE_HOUSING})
     return started(read_system("test_rig"), scene)[0]
 
 

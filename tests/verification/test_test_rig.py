@@ -218,12 +218,16 @@ def test_power_balance():
         0.5 * inertia * (table[w][-1] ** 2 - table[w][0] ** 2) / WHEEL_TURN
         for inertia, w in ((0.08, "drive_motor.flange.w"), (2.0, "load_motor.flange.w"))
     )
-    assert couplings == pytest.approx(
+    twist = sum(
+        0.5 * stiffness * (table[phi][-1] ** 2 - table[phi][0] ** 2) / WHEEL_TURN
+        for stiffness, phi in ((6e4, "drive_coupling.phi_rel"), (3e5, "load_coupling.phi_rel"))
+    )
+    assert couplings - twist == pytest.approx(
         5.0 * mean("drive_coupling.w_rel", "drive_coupling.w_rel")
         + 50.0 * mean("load_coupling.w_rel", "load_coupling.w_rel"),
-        rel=1e-3,
+        rel=1e-4,
     )
-    assert bearings == pytest.approx(damper_power(table), rel=3e-4)
+    assert bearings == pytest.approx(bearing_power(table), rel=1e-4)
     circulating = PINION_TORQUE * SPEED
     assert supplied == pytest.approx(circulating, rel=1e-6)
     assert taken == pytest.approx(circulating, rel=1e-6)
@@ -234,17 +238,25 @@ def test_power_balance():
     assert abs(balance) < 1e-3 * bearings
 
 
-def damper_power(table):
-    """Mean power in the dampers of the bearings [W], from the motions on both sides."""
+def bearing_power(table):
+    """Mean power into dampers and springs of the bearings [W], from the motions on both sides."""
     (part,) = (p for p in open_in_process(rig()) if p.name == "bearing_supports")
     (angle,) = part.get(["pressure_angle"])
     power = 0.0
     for half in HALVES:
         gear, seat = f"gear_mesh.{half}", f"modal_housing.{half}"
-        radial, axial = part.get([f"{half.split('_')[0]}.{a}_damping" for a in ("radial", "axial")])
-        y = np.sin(angle) * table[f"{seat}.v_x"] + np.cos(angle) * table[f"{seat}.v_y"]
-        power += radial * ((table[f"{gear}.v_y"] - y)[1:] ** 2).mean()
-        power += axial * ((table[f"{gear}.v_z"] - table[f"{seat}.v_z"])[1:] ** 2).mean()
+        along = {"radial": ("y", np.sin(angle), np.cos(angle), 0.0), "axial": ("z", 0.0, 0.0, 1.0)}
+        for name, (axis, *direction) in along.items():
+            stiffness, damping = part.get(
+                [f"{half.split('_')[0]}.{name}_{what}" for what in ("stiffness", "damping")]
+            )
+            motion, velocity = (
+                table[f"{gear}.{q}_{axis}"]
+                - sum(n * table[f"{seat}.{q}_{a}"] for n, a in zip(direction, "xyz", strict=True))
+                for q in "sv"
+            )
+            power += damping * (velocity[1:] ** 2).mean()
+            power += 0.5 * stiffness * (motion[-1] ** 2 - motion[0] ** 2) / WHEEL_TURN
     return power
 
 

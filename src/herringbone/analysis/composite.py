@@ -93,6 +93,13 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
     return Composite(component, dict(_resources(instances)))
 
 
+def _full_name(instance: Instance, name: str) -> str:
+    """`instance.variable`; FMI's structured names put the instance inside `der(...)`."""
+    if name.startswith("der("):
+        return f"der({instance.name}.{name.removeprefix('der(')}"
+    return f"{instance.name}.{name}"
+
+
 def _visible(instance: Instance) -> int:
     return len(instance.component.declaration.states)
 
@@ -119,7 +126,7 @@ def _declaration(
     for instance in instances:
         declaration = instance.component.declaration
         for v in declaration.variables:
-            name = f"{instance.name}.{v.name}"
+            name = _full_name(instance, v.name)
             kept = v.causality is Causality.PARAMETER or v.state or name in open_inputs
             if v.causality is Causality.OUTPUT:
                 variables.append(replace(v, name=name, feedthrough=depends(instance.name, v.name)))
@@ -181,18 +188,17 @@ def _feedthrough(
 def _block_map(
     declaration: Declaration, instances: list[Instance], first: tuple[int, ...]
 ) -> BlockMap:
+    place = {
+        _full_name(instance, name): first[p] + index
+        for p, instance in enumerate(instances)
+        for name, index in instance.component.declaration.index.items()
+    }
+
     def pairs(variables: tuple[Variable, ...]) -> tuple[tuple[int, int], ...]:
-        return tuple(_pairs(variables))
+        return tuple(
+            (declaration.index[v.name], place[v.name]) for v in variables if v.name in place
+        )
 
-    def _pairs(variables: tuple[Variable, ...]) -> Iterator[tuple[int, int]]:
-        for v in variables:
-            instance, _, name = v.name.partition(".")
-            if name:
-                p = names[instance]
-                inner_place = instances[p].component.declaration.index[name]
-                yield declaration.index[v.name], first[p] + inner_place
-
-    names = {i.name: p for p, i in enumerate(instances)}
     return BlockMap(
         declaration.first_table,
         declaration.state_count,

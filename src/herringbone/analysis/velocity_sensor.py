@@ -7,13 +7,16 @@ therefore must be fine. Without an anti-alias filter a line at f shows at |f - k
 Source: A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., chapters 4 and 7.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import butter, sosfilt
 
+from herringbone.analysis.radiated_power import housing_of, modal_velocity, seat_forces
 from herringbone.core import ParameterError
+from herringbone.result import TIME, Result
 
 _FINEST = 5.0
 """Least input rate over sampling rate, and over twice the low pass."""
@@ -121,3 +124,31 @@ class VelocitySensor:
             (8, 0.4 * self.sampling_hz if self.anti_alias else 0.0, "lowpass"),
         )
         return [butter(n, f, kind, fs=rate, output="sos") for n, f, kind in wanted if f > 0.0]
+
+
+def sensor_velocity(
+    result: Result, sensors: Sequence[str] = ("A", "B", "C"), *, axis: str = "z"
+) -> np.ndarray:
+    """Velocity of the housing at its sensors under the bearing forces of a run.
+
+    Args:
+        result: of a run with the component `modal_housing`, whose modal data have the sensors.
+        sensors: names.
+        axis: direction that they feel; axial by default.
+
+    Returns:
+        (n, len(sensors)) [m/s] at the records.
+
+    Raises:
+        ParameterError: no forces are recorded, or there is no such sensor.
+    """
+    housing = housing_of(result)
+    known = housing.dofs if housing else ()
+    if missing := [name for name in sensors if (name, axis) not in known]:
+        raise ParameterError(
+            f"the modal data of the run have no sensor {missing[0]} along {axis}; it takes data "
+            "with sensors, as 'herringbone housing build' makes them"
+        )
+    step = float(np.diff(result.data[TIME].to_numpy()[:2])[0])
+    modal = modal_velocity(housing, seat_forces(result), step)
+    return modal @ np.array([housing.shape(name, axis) for name in sensors]).T

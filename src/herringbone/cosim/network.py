@@ -28,6 +28,7 @@ class Network:
         connections: one per connected input.
         elements: parts that pass inputs directly to outputs, in the order in which they depend on
             each other; they are stepped after the bodies.
+        mixed: elements that also have motion of their own: outputs that no input passes to.
         sources: parts without connected inputs.
         notes: lines that the user should read, such as undeclared dependencies.
     """
@@ -36,6 +37,7 @@ class Network:
     connections: tuple[Connection, ...]
     elements: tuple[int, ...]
     sources: tuple[int, ...]
+    mixed: frozenset[int] = frozenset()
     notes: tuple[str, ...] = field(default=())
 
     @property
@@ -68,10 +70,10 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
         more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
         notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
     _check_single_sources(connections, parts)
-    elements = _order_elements(connections, parts, notes)
+    elements, mixed = _order_elements(connections, parts, notes)
     targets = {c.target for c in connections}
     sources = tuple(i for i in range(len(parts)) if i not in targets)
-    return Network(tuple(parts), tuple(connections), elements, sources, tuple(notes))
+    return Network(tuple(parts), tuple(connections), elements, sources, mixed, tuple(notes))
 
 
 def _split(
@@ -203,8 +205,8 @@ def _check_single_sources(connections: Sequence[Connection], parts: Sequence[Par
 
 def _order_elements(
     connections: Sequence[Connection], parts: Sequence[Part], notes: list[str]
-) -> tuple[int, ...]:
-    """Elements in the order in which they feed each other.
+) -> tuple[tuple[int, ...], frozenset[int]]:
+    """Elements in the order in which they feed each other, and those that also have motion.
 
     A part whose dependencies are not declared counts as an element unless that makes a loop.
     """
@@ -218,32 +220,42 @@ def _order_elements(
         if v.causality == "output"
     }
     fed = {i: {c.input for c in connections if c.target == i} for i in range(len(parts))}
-    declared, undeclared = set(), set()
+    passed: dict[int, set[str]] = {i: set() for i in range(len(parts))}
+    undeclared, moving = set(), set()
     for part, output in used:
         dependencies = parts[part].variables[output].dependencies
-        if dependencies is None and fed[part]:
-            undeclared.add(part)
-        elif dependencies and dependencies & fed[part]:
-            declared.add(part)
-    order = _sorted(declared, connections, parts)
+        if dependencies is None:
+            if fed[part]:
+                undeclared.add(part)
+        elif dependencies & fed[part]:
+            passed[part] |= dependencies & fed[part]
+        else:
+            moving.add(part)
+    declared = {part for part, inputs in passed.items() if inputs}
+    order = _sorted(declared, passed, connections, parts)
     for part in sorted(undeclared - declared):
         name = parts[part].name
         try:
-            order = _sorted({*order, part}, connections, parts)
+            order = _sorted({*order, part}, {**passed, part: fed[part]}, connections, parts)
             notes.append(f"{name} declares no output dependencies; taken as an element")
+            passed[part] = fed[part]
         except StructureError:
             notes.append(
                 f"{name} declares no output dependencies; taken as a body (no direct feedthrough)"
             )
-    return order
+    return order, frozenset(moving & declared)
 
 
 def _sorted(
-    elements: set[int], connections: Sequence[Connection], parts: Sequence[Part]
+    elements: set[int],
+    passed: Mapping[int, set[str]],
+    connections: Sequence[Connection],
+    parts: Sequence[Part],
 ) -> tuple[int, ...]:
+    """Elements in order; only inputs that are passed to outputs make an element wait."""
     graph: dict[int, set[int]] = {e: set() for e in elements}
     for c in connections:
-        if c.source in elements and c.target in elements:
+        if c.source in elements and c.target in elements and c.input in passed[c.target]:
             graph[c.target].add(c.source)
     try:
         return tuple(TopologicalSorter(graph).static_order())

@@ -10,7 +10,7 @@ class NodePlan(NamedTuple):
 
     Attributes:
         degree: p.
-        unknown: outputs that feed bodies and come from elements or bodies.
+        unknown: outputs that feed parts which are stepped before or together with their own.
         bodies, elements, sources: parts; elements in the order of their dependence.
         node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
             part without them.

@@ -26,7 +26,7 @@ class Plan(NamedTuple):
     degree: np.ndarray
     """Nodes of a part's inputs in a macro step; 0 holds."""
     at_end: np.ndarray
-    """1 for elements: inputs are taken at the end of the macro step."""
+    """1 for pure elements: inputs are taken at the end of the macro step."""
     input_first: np.ndarray
     input_source: np.ndarray
     """Index of the output that feeds an input."""
@@ -165,7 +165,11 @@ def build_plan(
         do_step=addresses[:, 3].copy(),
         degree=np.array(degree, dtype=np.int64),
         at_end=np.array(
-            [p in network.elements and not parallel for p in range(len(parts))], np.int64
+            [
+                p in network.elements and p not in network.mixed and not parallel
+                for p in range(len(parts))
+            ],
+            np.int64,
         ),
         input_first=_offsets([len(i) for i in inputs]),
         input_source=np.array(

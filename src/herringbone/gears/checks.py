@@ -6,6 +6,7 @@ from numbers import Integral, Real
 from typing import TYPE_CHECKING
 
 from herringbone.core import ParameterError
+from herringbone.gears.given import full_root_fillet
 
 if TYPE_CHECKING:
     from herringbone.gears.gear_pair import GearPair
@@ -81,7 +82,6 @@ def check_meshing(pair: "GearPair") -> None:
     """
     for gear, name in enumerate(GEARS):
         _check_tooth(pair, gear, name)
-        _check_body(pair, gear, name)
     if pair.normal_backlash < -_ROUNDING * pair.normal_module:
         raise ParameterError(
             f"normal backlash is negative: {1e6 * pair.normal_backlash:.1f} um; increase the "
@@ -93,6 +93,8 @@ def check_meshing(pair: "GearPair") -> None:
             "meshes; use a larger addendum, a smaller center distance or a wider face"
         )
     _check_interference(pair)
+    for gear, name in enumerate(GEARS):
+        _check_body(pair, gear, name)
 
 
 def _check_body(pair: "GearPair", gear: int, name: str) -> None:
@@ -119,7 +121,7 @@ def _check_body(pair: "GearPair", gear: int, name: str) -> None:
 
 
 def _check_tooth(pair: "GearPair", gear: int, name: str) -> None:
-    full = pair.full_root_fillet(gear)
+    full = full_root_fillet(pair, gear)
     fillet = pair.root_fillet_radius_coefficient[gear]
     if not 0.0 <= fillet <= full + 1e-9:
         raise ParameterError(
@@ -148,13 +150,27 @@ def _check_interference(pair: "GearPair") -> None:
                 f"{1e3 * pair.center_distance:.4f} mm is too small, or an addendum too large"
             )
     path = pair.path_of_contact
-    lowest = path.start, path.tangent_length - path.end
-    for name, reach, base, form in zip(
-        GEARS, lowest, pair.base_radius, pair.form_radius, strict=True
-    ):
-        if reach < 0.0 or math.hypot(base, reach) < form - _ROUNDING * pair.normal_module:
-            raise ParameterError(
-                f"{name}: the mate's tips touch below its involute (contact begins at radius "
-                f"{1e3 * math.hypot(base, reach):.4f} mm, the involute at {1e3 * form:.4f} mm); "
-                "decrease the mate's tip radius"
-            )
+    for gear, reach in enumerate((path.start, path.tangent_length - path.end)):
+        _check_lowest_contact(pair, gear, reach)
+
+
+def _check_lowest_contact(pair: "GearPair", gear: int, reach: float) -> None:
+    """The flank must reach down to where contact begins, `reach` behind the base tangent point."""
+    profile = pair.tooth_profile(gear)
+    lowest = math.hypot(pair.base_radius[gear], reach)
+    slack = 0.0 if profile.undercut else _ROUNDING * pair.normal_module
+    if reach >= 0.0 and lowest >= profile.form_radius - slack:
+        return
+    where = (
+        f"contact would begin at radius {1e3 * lowest:.4f} mm, the involute begins at "
+        f"{1e3 * profile.form_radius:.4f} mm"
+    )
+    if profile.undercut:
+        raise ParameterError(
+            f"{GEARS[gear]}: teeth are undercut where they touch: {where}; use more teeth, a "
+            "larger profile shift or a smaller dedendum"
+        )
+    raise ParameterError(
+        f"{GEARS[gear]}: the mate's tips touch below its involute: {where}; decrease the mate's "
+        "tip radius"
+    )

@@ -54,7 +54,9 @@ def read_gear_file(file: Path) -> GearJob:
     """
     try:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except OSError as error:
+        raise ResourceError(f"cannot read {file}: {error.strerror}") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ResourceError(f"cannot read {file}: {error}") from error
     known = {
         "gear_pair": {field.name for field in fields(GearPair)},

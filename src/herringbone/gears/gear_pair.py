@@ -19,16 +19,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from herringbone.core import ParameterError
-from herringbone.gears import iso6336
+from herringbone.gears import given, iso6336
 from herringbone.gears.checks import check_given, check_meshing
 from herringbone.gears.contact import PathOfContact, ToothForces
 from herringbone.gears.half_body import GapShaft, HalfBody, gap_shaft, half_body
-from herringbone.gears.involute import involute, involute_angle
 from herringbone.gears.tooth_profile import Rack, ToothProfile, generate_tooth
 
 Pair = tuple[float, float]
 Given = float | Sequence[float]
-DEFAULT_ROOT_FILLET = 0.38
 _HUB_SHARE = 0.4
 
 
@@ -102,82 +100,13 @@ class GearPair:
         ):  # fmt: skip
             object.__setattr__(self, name, _pair(name, getattr(self, name)))
         check_given(self)
-        object.__setattr__(self, "center_distance", self._center_distance())
-        object.__setattr__(self, "profile_shift_coefficient", self._profile_shifts())
-        object.__setattr__(self, "root_fillet_radius_coefficient", self._root_fillets())
-        object.__setattr__(self, "tip_radius", self._tip_radii())
+        object.__setattr__(self, "center_distance", given.center_distance(self))
+        object.__setattr__(self, "profile_shift_coefficient", given.profile_shifts(self))
+        object.__setattr__(self, "root_fillet_radius_coefficient", given.root_fillets(self))
+        object.__setattr__(self, "tip_radius", given.tip_radii(self))
         if self.groove_diameter == (None, None):
             object.__setattr__(self, "groove_diameter", tuple(2.0 * r for r in self.root_radius))
         check_meshing(self)
-
-    def _center_distance(self) -> float:
-        if self.center_distance is not None:
-            least = self.reference_center_distance * math.cos(self.transverse_pressure_angle)
-            if self.center_distance <= least:
-                raise ParameterError(
-                    f"center distance {1e3 * self.center_distance:.4f} mm is impossible: the base "
-                    f"circles need more than {1e3 * least:.4f} mm; check teeth, module and helix "
-                    "angle"
-                )
-            return self.center_distance
-        if None in self.profile_shift_coefficient:
-            raise ParameterError(
-                "center distance and profile shift are both missing; give one of them"
-            )
-        total = sum(self.profile_shift_coefficient)
-        tan_n = math.tan(self.normal_pressure_angle)
-        value = (
-            involute(self.transverse_pressure_angle)
-            + 2.0 * tan_n * total / sum(self.number_of_teeth)
-        )  # fmt: skip
-        if value <= 0.0:
-            raise ParameterError(
-                f"profile shifts x1 + x2 = {total:g} leave no working pressure angle; "
-                "use a larger sum"
-            )
-        cosines = math.cos(self.transverse_pressure_angle) / math.cos(involute_angle(value))
-        return self.reference_center_distance * cosines
-
-    def _profile_shifts(self) -> Pair:
-        x1, x2 = self.profile_shift_coefficient
-        turned = involute(self.working_transverse_pressure_angle) - involute(
-            self.transverse_pressure_angle
-        )
-        total = 0.5 * sum(self.number_of_teeth) * turned / math.tan(self.normal_pressure_angle)
-        if x1 is None and x2 is None:
-            return 0.5 * total, 0.5 * total
-        if x1 is None:
-            return total - x2, x2
-        return (x1, total - x1) if x2 is None else (x1, x2)
-
-    def _root_fillets(self) -> Pair:
-        given = self.root_fillet_radius_coefficient
-        return tuple(
-            min(DEFAULT_ROOT_FILLET, self.full_root_fillet(gear)) if given[gear] is None
-            else given[gear]
-            for gear in range(2)
-        )  # fmt: skip
-
-    def full_root_fillet(self, gear: int) -> float:
-        """Largest root fillet radius of the basic rack, in modules."""
-        alpha = self.normal_pressure_angle
-        room = 0.25 * math.pi - self.dedendum_coefficient[gear] * math.tan(alpha)
-        return room * math.cos(alpha) / (1.0 - math.sin(alpha))
-
-    def _tip_radii(self) -> Pair:
-        given = self.tip_radius
-        return tuple(
-            self.reference_radius[gear]
-            + self.normal_module
-            * (
-                self.addendum_coefficient[gear]
-                + self.profile_shift_coefficient[gear]
-                + self.tip_alteration_coefficient[gear]
-            )
-            if given[gear] is None
-            else given[gear]
-            for gear in range(2)
-        )
 
     # Angles, module and radii
 

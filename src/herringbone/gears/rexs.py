@@ -92,7 +92,9 @@ def read_rexs(file: Path, *, stage: str | None = None, halves: int = 1) -> GearP
 def _read(file: Path) -> _Model:
     try:
         root = ElementTree.parse(file).getroot()
-    except (OSError, ElementTree.ParseError) as error:
+    except OSError as error:
+        raise ResourceError(f"cannot read {file}: {error.strerror}") from error
+    except ElementTree.ParseError as error:
         raise ResourceError(f"cannot read {file}: {error}") from error
     if root.tag != "model":
         raise ResourceError(f"{file}: root element '{root.tag}' is not the 'model' of a REXS file")

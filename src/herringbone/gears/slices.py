@@ -62,6 +62,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from herringbone.core import ParameterError
+from herringbone.gears.contact_lines import cut_lines
 from herringbone.gears.corner_contact import corner_separation
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.mesh_stiffness import MeshStiffness
@@ -176,14 +177,6 @@ class SliceMesh:
 
         return law
 
-    def line_loads(self, phase: float, force: float) -> tuple[np.ndarray, np.ndarray]:
-        """Load per length [N/m] at one phase: (lines, slices), and s [m] of the slices' middles."""
-        path, _, _ = self._positions(np.array([phase]), *self._limits())
-        slices = self._slices(np.array([phase]))
-        deflection, _ = self._loaded(slices, force)
-        load, _ = self._line_loads(slices, np.zeros_like(slices.gap), deflection)
-        return load.reshape(-1, self.slices), path.reshape(-1, self.slices)
-
     def single_pair_stiffness(self, force: float) -> float:
         """Stiffness [N/m] of one tooth pair at the path's start, loaded over the full face."""
         length = self.pair.face_width / math.cos(self.pair.base_helix_angle)
@@ -195,7 +188,7 @@ class SliceMesh:
 
     def lines(self, phase: float) -> list[tuple[np.ndarray, np.ndarray, Slices]]:
         """Lines in contact at a phase: positions on path and face [m] and slices, each (n,)."""
-        path, face, share = self._positions(np.array([phase]), *self._limits())
+        path, face, share = cut_lines(self.pair, self.slices, np.array([phase]), *self._limits())
         length = share * self.pair.face_width / self.slices / math.cos(self.pair.base_helix_angle)
         slices = self._at(path, face, length)
         found = []
@@ -211,35 +204,16 @@ class SliceMesh:
         reach = _CORNER_REACH * self.pair.transverse_base_pitch if self.corner_contact else 0.0
         return -reach, self.pair.length_of_path_of_contact + reach
 
-    def _positions(
-        self, phases: np.ndarray, low: float, high: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle of the slices between two limits, on path and face [m], and the part inside."""
-        pair, width = self.pair, self.pair.face_width / self.slices
-        slope = math.tan(abs(pair.base_helix_angle))
-        pitch, across = pair.transverse_base_pitch, pair.face_width * slope
-        lines = np.arange(math.floor(low / pitch) - 1, math.ceil((high + across) / pitch) + 1)
-        face = np.arange(self.slices) * width
-        begin = (np.asarray(phases)[:, None, None] + lines[None, :, None]) * pitch
-        begin = begin + face * slope - across
-        if slope * width < 1e-9 * pitch:
-            inside = (begin >= low) & (begin <= high)
-            middle, share = begin, inside.astype(float)
-            face = face + 0.5 * width + np.zeros_like(begin)
-        else:
-            first = np.clip(begin, low, max(low, high))
-            last = np.clip(begin + slope * width, low, max(low, high))
-            middle, share = 0.5 * (first + last), (last - first) / (slope * width)
-            face = face + (middle - begin) / slope
-        flat = (len(begin), -1)
-        return middle.reshape(flat), face.reshape(flat), share.reshape(flat)
-
     def _slices(
         self, phases: np.ndarray, low: float | None = None, high: float | None = None
     ) -> Slices:
         begin, end = self._limits()
-        path, face, share = self._positions(
-            phases, begin if low is None else low, end if high is None else high
+        path, face, share = cut_lines(
+            self.pair,
+            self.slices,
+            phases,
+            begin if low is None else low,
+            end if high is None else high,
         )
         width = self.pair.face_width / self.slices
         return self._at(path, face, share * width / math.cos(self.pair.base_helix_angle))

@@ -8,18 +8,24 @@ line away from the gear's centre, touches the gear when its normal passes throug
     s = -u - v dv/du,    phi = s / r,
 
 and the gear's point is (u + s, v + r) turned back by phi. The tooth is symmetric to its axis, the y
-axis; coordinates are those of its right flank.
+axis; coordinates are those of its right flank. Where the rack reaches below the base circle's
+tangent point the fillet cuts into the involute (undercut); the flank begins where both meet.
 
 Source: F. L. Litvin and A. Fuentes, Gear Geometry and Applied Theory (2004), chapter 6.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 from herringbone.gears.involute import involute
+
+_SEARCHED = 4001
+"""Points of a fillet among which its way out of an undercut tooth is searched."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,7 @@ class ToothProfile:
         tip_radius: r_a [m].
         reference_half_angle: half of the tooth's angle at the reference circle [rad].
         number_of_teeth: z; not an integer for a virtual gear.
+        undercut: the fillet cuts the involute off above the base circle.
     """
 
     fillet: np.ndarray
@@ -66,6 +73,7 @@ class ToothProfile:
     tip_radius: float
     reference_half_angle: float
     number_of_teeth: float
+    undercut: bool
 
     @property
     def points(self) -> np.ndarray:
@@ -108,7 +116,7 @@ def generate_tooth(
         points: on the fillet and on the involute, each.
 
     Raises:
-        ParameterError: the tooth would be undercut, or has no flank.
+        ParameterError: the tooth has no flank.
     """
     longer = 1.0 / math.cos(helix_angle)
     alpha_n, x = rack.pressure_angle, rack.profile_shift
@@ -118,40 +126,62 @@ def generate_tooth(
     half_thickness = 0.25 * math.pi * rack.module + x * math.tan(alpha_n)
     centre = x - rack.dedendum + rack.fillet_radius
     tangent = centre - rack.fillet_radius * math.sin(alpha_n)
-    least = -radius * math.sin(alpha) ** 2
-    if tangent < least:
-        raise ParameterError(
-            f"teeth of the gear with z = {number_of_teeth:.6g} are undercut: its profile shift "
-            f"coefficient {x / rack.module:.4g} must be at least "
-            f"{(x + least - tangent) / rack.module:.4g}, or the dedendum smaller"
-        )
-    form = math.hypot(tangent / math.tan(alpha), radius + tangent)
+    along = half_thickness - tangent * math.tan(alpha_n) + rack.fillet_radius * math.cos(alpha_n)
+
+    def trochoid(theta: np.ndarray) -> np.ndarray:
+        u = longer * (along - rack.fillet_radius * np.cos(theta))
+        v = centre - rack.fillet_radius * np.sin(theta)
+        return _rolled(u, v, v / (longer * np.tan(theta)), radius)
+
+    half_angle = half_thickness * longer / radius
+    at_base = half_angle + involute(alpha)
+    undercut = tangent < -radius * math.sin(alpha) ** 2
+    last = _meets_involute(trochoid, alpha_n, base, at_base) if undercut else alpha_n
+    fillet = trochoid(np.linspace(0.5 * math.pi, last, points))
+    form = float(np.hypot(*fillet[-1]))
     if form >= tip_radius:
         raise ParameterError(
             f"teeth of the gear with z = {number_of_teeth:.6g} have no flank: the involute begins "
             f"at radius {1e3 * form:.4f} mm, the tip is at {1e3 * tip_radius:.4f} mm"
         )
-    along = half_thickness - tangent * math.tan(alpha_n) + rack.fillet_radius * math.cos(alpha_n)
-    theta = np.linspace(0.5 * math.pi, alpha_n, points)
-    u = longer * (along - rack.fillet_radius * np.cos(theta))
-    v = centre - rack.fillet_radius * np.sin(theta)
-    fillet = _rolled(u, v, v / (longer * np.tan(theta)), radius)
-    half_angle = half_thickness * longer / radius
     radii = np.linspace(form, tip_radius, points)
-    at = np.arccos(np.minimum(1.0, base / radii))
-    turned = half_angle + involute(alpha) - (np.tan(at) - at)
+    turned = at_base - _involutes(radii, base)
     flank = np.column_stack([radii * np.sin(turned), radii * np.cos(turned)])
     return ToothProfile(
-        fillet,
-        flank,
-        radius,
-        base,
-        radius + x - rack.dedendum,
-        form,
-        tip_radius,
-        half_angle,
-        number_of_teeth,
+        fillet=fillet,
+        flank=flank,
+        reference_radius=radius,
+        base_radius=base,
+        root_radius=radius + x - rack.dedendum,
+        form_radius=form,
+        tip_radius=tip_radius,
+        reference_half_angle=half_angle,
+        number_of_teeth=number_of_teeth,
+        undercut=undercut,
     )
+
+
+def _involutes(radii: np.ndarray, base: float) -> np.ndarray:
+    at = np.arccos(np.minimum(1.0, base / radii))
+    return np.tan(at) - at
+
+
+def _meets_involute(
+    trochoid: Callable[[np.ndarray], np.ndarray], end: float, base: float, at_base: float
+) -> float:
+    """Parameter at which the fillet of an undercut tooth comes out through the involute."""
+
+    def outside(theta: np.ndarray) -> np.ndarray:
+        points = trochoid(np.atleast_1d(theta))
+        radii = np.hypot(*points.T)
+        angle = np.arctan2(points[:, 0], points[:, 1])
+        return np.where(radii > base, angle - (at_base - _involutes(radii, base)), -1.0)
+
+    theta = np.linspace(0.5 * math.pi, end, _SEARCHED)
+    inside = np.flatnonzero(outside(theta) < 0.0)
+    if inside.size == 0 or inside[-1] == _SEARCHED - 1:
+        return end
+    return brentq(lambda t: float(outside(t)[0]), theta[inside[-1]], theta[inside[-1] + 1])
 
 
 def _rolled(u: np.ndarray, v: np.ndarray, reach: np.ndarray, radius: float) -> np.ndarray:

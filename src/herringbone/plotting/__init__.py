@@ -8,6 +8,7 @@ from herringbone.plotting.overview import overview
 from herringbone.plotting.pictures import (
     PICTURES,
     bearing_forces,
+    radiated_power,
     seat_velocities,
     spectra,
     torques,
@@ -19,6 +20,7 @@ __all__ = [
     "bearing_forces",
     "overview",
     "plot_columns",
+    "radiated_power",
     "seat_velocities",
     "spectra",
     "torques",

@@ -155,10 +155,11 @@ def spectrum_panel(
     if not part.steady:
         axes.text(1.0, 1.0, "speed not steady: no mesh orders", ha="right", va="bottom",
                   transform=axes.transAxes, fontsize=8, color=MARKER_COLOUR)  # fmt: skip
-    _mark_orders(axes, run_mesh_frequency(result), highest)
+    mark_orders(axes, run_mesh_frequency(result), highest)
 
 
-def _mark_orders(axes: Axes, frequency: float | None, highest: float) -> None:
+def mark_orders(axes: Axes, frequency: float | None, highest: float) -> None:
+    """Mark the multiples of the mesh frequency [Hz], if it is known, up to `highest` [Hz]."""
     above = blended_transform_factory(axes.transData, axes.transAxes)
     orders = mesh_orders(frequency or 0.0, highest)
     every = max(1, -(-len(orders) // _MOST_MARKS))

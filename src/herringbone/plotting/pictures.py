@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -14,10 +15,26 @@ from herringbone.analysis.operating_point import (
     run_mesh_frequency,
     steady_part,
 )
+from herringbone.analysis.radiated_power import LABEL, level_db
+from herringbone.analysis.radiated_power import radiated_power as power_of
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.overview import overview
-from herringbone.plotting.panels import close_up, headline, spectrum_panel, time_panel
-from herringbone.plotting.style import figure_legend, legend, new_figure, styled
+from herringbone.plotting.panels import (
+    DECADES,
+    close_up,
+    headline,
+    mark_orders,
+    spectrum_panel,
+    time_panel,
+)
+from herringbone.plotting.style import (
+    MARKER_COLOUR,
+    draw_line,
+    figure_legend,
+    legend,
+    new_figure,
+    styled,
+)
 from herringbone.result import Result
 
 DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
@@ -145,11 +162,38 @@ def torques(result: Result) -> Figure:
     return figure
 
 
+@styled
+def radiated_power(result: Result) -> Figure:
+    """Equivalent radiated power of the housing in bins, dB re 1 pW, with the mesh orders.
+
+    Raises:
+        ParameterError: nothing moves; or see `analysis.radiated_power`.
+    """
+    found = power_of(result)
+    if not found.total:
+        raise ParameterError("nothing moves: no radiated power")
+    what = f"Radiated power, {found.level_db:.1f} dB re 1 pW in all"
+    figure = new_figure(headline(result, what), 1)
+    axes = figure.subplots()
+    level = level_db(found.power)
+    top = float(level.max())
+    bottom = top - 20.0 * DECADES
+    draw_line(axes, found.frequency_hz, np.maximum(level, bottom - 10.0))
+    axes.set_ylim(bottom, top + 5.0)
+    axes.set_xlim(0.0, float(found.frequency_hz[-1]))
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel(f"power in {found.resolution_hz:.3g} Hz [dB re 1 pW]")
+    mark_orders(axes, run_mesh_frequency(result), float(found.frequency_hz[-1]))
+    figure.text(0.99, 0.01, LABEL, ha="right", va="bottom", fontsize=8, color=MARKER_COLOUR)
+    return figure
+
+
 PICTURES: dict[str, Callable[[Result], Figure]] = {
     "bearing_forces": bearing_forces,
     "seat_velocities": seat_velocities,
     "spectra": spectra,
     "torques": torques,
+    "radiated_power": radiated_power,
 }
 
 

@@ -12,6 +12,7 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.loop import run_stages
 from herringbone.cosim.network import Network
@@ -152,6 +153,19 @@ class Prepared(PreparedRun):
         return run_stages(plan, history, self.order, chunk)
 
 
+def refuse_mixed(network: Network, algorithm: str) -> None:
+    """Check that each part is either a body or an element.
+
+    Raises:
+        ParameterError: a part is both, and the algorithm treats them differently.
+    """
+    for p in sorted(network.mixed):
+        raise ParameterError(
+            f"{algorithm}: {network.parts[p].name} is body and element at once (some outputs "
+            "depend directly on inputs, others do not); use li, fixed_point or jacobi"
+        )
+
+
 def prepare_stages(
     network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
 ) -> Prepared:
@@ -159,7 +173,7 @@ def prepare_stages(
     degree, notes = [], []
     for p, part in enumerate(network.parts):
         inputs = [c.input for c in network.inputs(p)]
-        wanted = order if p in network.bodies else 0
+        wanted = order if p in network.bodies or p in network.mixed else 0
         if wanted and not has_nodes(part, inputs, wanted):
             notes.append(
                 f"{part.name} takes no signal nodes: its inputs are held over a step, "

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
+from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages, refuse_mixed
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.network import Network
 
@@ -58,7 +58,12 @@ class GaussSeidel(Algorithm):
         return self.order + 1
 
     def prepare(self, network: Network) -> Prepared:
-        """Stages: sources; then each body, after the elements that its predecessors load."""
+        """Stages: sources; then each body, after the elements that its predecessors load.
+
+        Raises:
+            ParameterError: a part is body and element at once.
+        """
+        refuse_mixed(network, self.name)
         stages = [list(network.sources)] if network.sources else []
         done: set[int] = set(network.sources)
         waiting = list(network.elements)

@@ -108,19 +108,11 @@ class PreparedNodes(PreparedRun):
 
     def _node_plan(self, degree: int) -> NodePlan:
         network, parts = self.network, self.network.parts
-        bodies = set(network.bodies)
-        flat = [(p, n) for p, names in enumerate(self._outputs) for n in names]
-        unknown = sorted(
-            {
-                flat.index((c.source, c.output))
-                for c in network.connections
-                if c.target in bodies and c.source not in network.sources
-            }
-        )
+        unknown = np.unique(self.plan.input_source[self.plan.input_fresh == 0])
         state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
         return NodePlan(
             degree,
-            np.array(unknown, dtype=np.int64),
+            unknown,
             np.array(network.bodies, dtype=np.int64),
             np.array(network.elements, dtype=np.int64),
             np.array(network.sources, dtype=np.int64),

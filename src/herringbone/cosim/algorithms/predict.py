@@ -20,7 +20,12 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.core.part import Part, has_nodes
-from herringbone.cosim.algorithms.base import Algorithm, PreparedRun, prepare_stages
+from herringbone.cosim.algorithms.base import (
+    Algorithm,
+    PreparedRun,
+    prepare_stages,
+    refuse_mixed,
+)
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import (
     Chunk,
@@ -69,8 +74,9 @@ class Predict(Algorithm):
         """Lay out a network for this algorithm.
 
         Raises:
-            ParameterError: an element takes no signal nodes.
+            ParameterError: an element takes no signal nodes, or is a body as well.
         """
+        refuse_mixed(network, self.name)
         for p in network.elements:
             part, inputs = network.parts[p], [c.input for c in network.inputs(p)]
             if not has_nodes(part, inputs, NODES):

@@ -11,7 +11,7 @@ imported: see `build`.
 
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -29,7 +29,7 @@ _TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
 _OPTIMISATION = 3
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
-_UNKNOWN_SIZE = 1  # bounds are not checked
+_UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
 _TIME = types.float64
@@ -94,23 +94,26 @@ def entry_points(of: Component) -> dict[str, CFunc]:
     }
 
 
-def _module(
-    symbol: str, compiled: CFunc, target: llvm.TargetMachine, triple: str
-) -> llvm.ModuleRef:
-    """LLVM code of one entry point for a target, everything else internal."""
-    module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
-    module.triple, module.data_layout = triple, str(target.target_data)
-    for function in module.functions:
-        if function.is_declaration:
-            continue
-        if function.name == compiled.native_name:
-            function.name, function.linkage, function.visibility = symbol, "external", "hidden"
+def _linked(kernels: dict[str, CFunc], target: llvm.TargetMachine, triple: str) -> llvm.ModuleRef:
+    """LLVM code of all entry points for a target; what they share is there once."""
+    whole = None
+    for symbol, compiled in kernels.items():
+        module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
+        module.triple, module.data_layout = triple, str(target.target_data)
+        entry = module.get_function(compiled.native_name)
+        entry.name, entry.linkage, entry.visibility = symbol, "external", "hidden"
+        if whole is None:
+            whole = module
         else:
-            function.linkage = "internal"
-    for variable in module.global_variables:
-        if not variable.is_declaration:
-            variable.linkage = "internal"
-    return module
+            whole.link_in(module)
+    return whole
+
+
+def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:
+    """Let nothing but the entry points be seen from outside."""
+    for item in (*module.functions, *module.global_variables):
+        if not item.is_declaration and item.name not in entries:
+            item.linkage = "internal"
 
 
 def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
@@ -125,13 +128,8 @@ def object_code(kernels: dict[str, CFunc], platform: Platform) -> bytes:
     target = llvm.Target.from_triple(platform.triple).create_target_machine(
         cpu=platform.cpu, features="", opt=_OPTIMISATION, reloc="pic", codemodel="default"
     )
-    whole = None
-    for symbol, compiled in kernels.items():
-        module = _module(symbol, compiled, target, platform.triple)
-        if whole is None:
-            whole = module
-        else:
-            whole.link_in(module)
+    whole = _linked(kernels, target, platform.triple)
+    _internalise(whole, kernels)
     whole.verify()
     _optimise(whole, target)
     return target.emit_object(whole)

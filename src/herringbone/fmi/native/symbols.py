@@ -11,13 +11,15 @@ from typing import Final
 from herringbone.core import FmuError
 from herringbone.fmi.native.platforms import Platform
 
-_IN_OBJECTS: Final = frozenset({"memcpy", "memmove", "memset"})
-"""What object code of kernels may ask for; compilers put these calls in."""
+_IN_OBJECTS: Final = frozenset({
+    "__bzero", "bzero", "memcpy", "memmove", "memset", "memset_pattern16",
+})  # fmt: skip
+"""What object code of kernels may ask for: copying and filling; compilers put these calls in."""
 _LIBC: Final = _IN_OBJECTS | {
-    "bcmp", "calloc", "fclose", "ferror", "fgetc", "fopen", "fread", "free", "freelocale", "fseek",
-    "ftell", "localeconv", "malloc", "memchr", "memcmp", "newlocale", "realloc", "snprintf",
-    "stpcpy", "strcat", "strchr", "strcmp", "strcpy", "strcspn", "strlen", "strncmp", "strncpy",
-    "strpbrk", "strspn", "strstr", "strtod", "strtod_l", "vsnprintf",
+    "bcmp", "calloc", "fclose", "ferror", "fgetc", "fopen", "fread", "free",
+    "freelocale", "fseek", "ftell", "localeconv", "malloc", "memchr", "memcmp", "newlocale",
+    "realloc", "snprintf", "stpcpy", "strcat", "strchr", "strcmp", "strcpy", "strcspn", "strlen",
+    "strncmp", "strncpy", "strpbrk", "strspn", "strstr", "strtod", "strtod_l", "vsnprintf",
 }  # fmt: skip
 _RUNTIME: Final = frozenset({
     "__cxa_finalize", "__gmon_start__", "_ITM_deregisterTMCloneTable",
@@ -28,7 +30,7 @@ _NEWEST_GLIBC: Final = (2, 17)
 
 
 def check_object(data: bytes, platform: Platform, what: str) -> None:
-    """Check that object code of kernels needs nothing but copying of memory.
+    """Check that object code of kernels needs nothing but copying and filling of memory.
 
     Raises:
         FmuError: it needs more.

@@ -1,0 +1,63 @@
+"""The command `export`: a system as .ssp file, or as one native FMU."""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+
+from herringbone.build_command import add_platform_options, chosen_platforms, untested
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options, `--set` excepted."""
+    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+    sub.add_argument("--scene")
+    sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
+    sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
+    sub.add_argument(
+        "--outside",
+        action="append",
+        default=[],
+        metavar="INSTANCE",
+        help="leave this instance out of the FMU; what it feeds becomes inputs",
+    )
+    add_platform_options(sub)
+    sub.add_argument(
+        "-o", "--output", type=Path, help="file; SYSTEM.ssp or SYSTEM.fmu if not given"
+    )
+
+
+def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+    """Export; returns the file and what is to be known of it.
+
+    Raises:
+        HerringboneError: something about the options is wrong, or the export fails.
+    """
+    from herringbone.core import ParameterError  # noqa: PLC0415
+    from herringbone.export import PARALLEL_STEP, export_ssp  # noqa: PLC0415
+    from herringbone.system_fmu import export_fmu  # noqa: PLC0415
+
+    name = Path(options.system).stem
+    if options.as_fmu:
+        if options.step is not None:
+            raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
+        platforms = chosen_platforms(options)
+        file = export_fmu(
+            options.system,
+            options.output or Path(f"{name}.fmu"),
+            outside=options.outside,
+            scene=options.scene,
+            values=values,
+            platforms=platforms,
+            fmi=options.fmi,
+        )
+        return [str(file), *untested(platforms)]
+    if options.outside or options.platforms or options.fmi != 2:
+        raise ParameterError("--outside, --platforms and --fmi choose among FMUs; add --as-fmu")
+    file = export_ssp(
+        options.system,
+        options.output or Path(f"{name}.ssp"),
+        scene=options.scene,
+        step=PARALLEL_STEP if options.step is None else options.step,
+        values=values,
+    )
+    return [str(file)]

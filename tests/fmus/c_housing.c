@@ -1,0 +1,96 @@
+/* A housing by a stranger, in C: twelve oscillators of which the two seats of a gear are coupled.
+   FMI 2.0 co-simulation without any header; the test writes the description.
+   Value references: force 0 ... 11, position 12 ... 23, velocity 24 ... 35. */
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+enum { DOFS = 12, OK = 0, ERROR = 3 };
+
+static const double MASS = 40.0, DAMPING_TIME = 5e-6, LONGEST = 1e-6;
+/* Toward the wheel, up, along the shafts. */
+static const double STIFFNESS[3] = {7e8, 7e8, 1.5e8}, COUPLING[3] = {1e8, 1e8, 8e7};
+
+typedef struct {
+    double real[3 * DOFS];
+} Housing;
+
+typedef int Status;
+typedef void *Component;
+
+static int partner(int i) { /* the same direction at the other seat of the gear */
+    return i % 6 < 3 ? i + 3 : i - 3;
+}
+
+static void advance(Housing *housing, double h) {
+    double *f = housing->real, *s = f + DOFS, *v = s + DOFS, a[DOFS];
+    for (int i = 0; i < DOFS; ++i) {
+        int other = partner(i);
+        double k = STIFFNESS[i % 3], c = COUPLING[i % 3];
+        double elastic = k * s[i] + c * (s[i] - s[other]);
+        double viscous = k * v[i] + c * (v[i] - v[other]);
+        a[i] = (f[i] - elastic - DAMPING_TIME * viscous) / MASS;
+    }
+    for (int i = 0; i < DOFS; ++i) {
+        v[i] += h * a[i];
+        s[i] += h * v[i];
+    }
+}
+
+EXPORT Component fmi2Instantiate(const char *name, int kind, const char *guid, const char *resources,
+                                 const void *callbacks, int visible, int logging) {
+    return calloc(1, sizeof(Housing));
+}
+EXPORT void fmi2FreeInstance(Component c) { free(c); }
+EXPORT Status fmi2Reset(Component c) {
+    memset(c, 0, sizeof(Housing));
+    return OK;
+}
+EXPORT Status fmi2SetReal(Component c, const unsigned *vr, size_t n, const double *value) {
+    for (size_t i = 0; i < n; ++i) {
+        if (vr[i] >= DOFS) return ERROR;
+        ((Housing *)c)->real[vr[i]] = value[i];
+    }
+    return OK;
+}
+EXPORT Status fmi2GetReal(Component c, const unsigned *vr, size_t n, double *value) {
+    for (size_t i = 0; i < n; ++i) {
+        if (vr[i] >= 3 * DOFS) return ERROR;
+        value[i] = ((Housing *)c)->real[vr[i]];
+    }
+    return OK;
+}
+EXPORT Status fmi2DoStep(Component c, double t, double h, int no_rollback) {
+    int steps = (int)(h / LONGEST) + 1;
+    for (int n = 0; n < steps; ++n) advance(c, h / steps);
+    return OK;
+}
+EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
+EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
+EXPORT Status fmi2SetDebugLogging(Component c, int on, size_t n, const char *const *categories) {
+    return OK;
+}
+EXPORT Status fmi2SetupExperiment(Component c, int has_tolerance, double tolerance, double start,
+                                  int has_stop, double stop) {
+    return OK;
+}
+EXPORT Status fmi2EnterInitializationMode(Component c) { return OK; }
+EXPORT Status fmi2ExitInitializationMode(Component c) { return OK; }
+EXPORT Status fmi2Terminate(Component c) { return OK; }
+
+/* Functions of capabilities that it has not. */
+#define ABSENT(name) \
+    EXPORT Status fmi2##name(void) { return ERROR; }
+ABSENT(GetInteger) ABSENT(GetBoolean) ABSENT(GetString)
+ABSENT(SetInteger) ABSENT(SetBoolean) ABSENT(SetString)
+ABSENT(GetFMUstate) ABSENT(SetFMUstate) ABSENT(FreeFMUstate)
+ABSENT(SerializedFMUstateSize) ABSENT(SerializeFMUstate) ABSENT(DeSerializeFMUstate)
+ABSENT(GetDirectionalDerivative) ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
+ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetRealStatus) ABSENT(GetIntegerStatus)
+ABSENT(GetBooleanStatus) ABSENT(GetStringStatus)
