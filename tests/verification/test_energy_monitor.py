@@ -112,7 +112,7 @@ def rotor_runs():
 @pytest.mark.slow
 @pytest.mark.parametrize("runs", [rig_runs, rotor_runs])
 def test_flags_around_the_limits(runs):
-    """At least 80 % of what grows by 0.5 % per step, in the mean before it shows; nothing stable."""
+    """At least 80 % of what grows by 0.5 % per step, in the mean before it shows; none stable."""
     found = runs()
     fast = [s for s in found if s.growth > FAST and np.isfinite(s.visible)]
     stable = [s for s in found if s.growth <= GROWTH]
