@@ -68,7 +68,7 @@ static void test_arrays(void) {
     REFUSED(fmi3GetFloat64(c, both, 2, back, 2), "2 values for 2 variables of 5");
     REFUSED(fmi3GetFloat64(c, odd, 1, back, 1), "no Float64 with value reference 5");
     REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){COUNTER}, 1, back, 1), "no Float64");
-    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){TIME + 1}, 1, back, 1), "no Float64");
+    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){INDICATOR + 1}, 1, back, 1), "no Float64");
     OK(fmi3GetFloat64(c, NULL, 0, NULL, 0));
     OK(set(c, DEGREE, 1.0));
     OK(step(c, 0.0, 0.5));

@@ -97,6 +97,10 @@ static void test_fmi3(void) {
     OK(fmi3GetContinuousStateDerivatives(c, dx, 3));
     CHECK(dx[0] == 3.0 && dx[1] == 0.0);
     OK(fmi3GetEventIndicators(c, z, 1));
+    fmi3ValueReference indicator = INDICATOR;
+    double shown = 0.0;
+    OK(fmi3GetFloat64(c, &indicator, 1, &shown, 1));
+    CHECK(shown == z[0]);
     CHECK(z[0] == 1.0);
     REFUSED(fmi3GetContinuousStates(c, x, 4), "4 states; there are 3");
     OK(fmi3CompletedIntegratorStep(c, true, &needed, &terminate));

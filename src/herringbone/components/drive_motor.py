@@ -23,9 +23,9 @@ _d = Declaration(
     "Speed-controlled drive motor with torque limit and set-point ramp",
     [
         state("angle", "rad", "rotor angle", steady="rotating"),
-        state("speed", "rad/s", "rotor speed"),
-        state("integral", "rad", "integral of the speed error"),
-        state("speed_reference", "rad/s", "set point behind the ramp"),
+        state("speed", "rad/s", "rotor speed", nominal=100.0),
+        state("integral", "rad", "integral of the speed error", nominal=0.1),
+        state("speed_reference", "rad/s", "set point behind the ramp", nominal=100.0),
         *flange_body("flange"),
         input_("speed_setpoint", "rad/s", "speed set point"),
         output("torque", "N.m", "air-gap torque"),

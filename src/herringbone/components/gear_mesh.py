@@ -77,6 +77,7 @@ from herringbone.core import (
     parameter,
     state,
 )
+from herringbone.core.units import RATES
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import cosine, sine
 from herringbone.kernels.jit import kernel
@@ -91,6 +92,8 @@ _BASE_RADIUS = tuple(
 )
 _SHAFT_DAMPING_RATIO = 0.02
 _GEARS = ("pinion", "wheel")
+_DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3
+"""Nominal deflection [m, rad], shaft speed [rad/s] and angular frequency of vibration [rad/s]."""
 _MASS = {"pinion": 6.500, "wheel": 47.739}
 _INERTIA = {"pinion": 7.380e-3, "wheel": 0.5813}
 _SHAFT = {  # gap shaft: y [N/m], z [N/m], rotation [N m/rad]
@@ -110,20 +113,28 @@ def _shaft_damping(gear: str) -> tuple[float, float, float]:
 
 def _states() -> list[Variable]:
     bodies = [
-        state(f"{axis}_{i + 1}", "m", f"{axis} of {half}")
+        state(f"{axis}_{i + 1}", "m", f"{axis} of {half}", nominal=_DEFLECTION_SIZE)
         for axis in "yz"
         for i, half in enumerate(HALVES)
     ]
     rotations = [
         state("angle", "rad", "angle of the pinion's left half", steady="rotating"),
-        state("pinion_twist", "rad", "pinion, right half ahead of left half"),
-        state("approach", "m", "rb1 theta1 - rb2 theta3 of the left halves"),
-        state("wheel_twist", "rad", "wheel, right half ahead of left half"),
-    ]
-    rate = {"m": "m/s", "rad": "rad/s"}
+        state("pinion_twist", "rad", "pinion, right half ahead of left half",
+              nominal=_DEFLECTION_SIZE),
+        state("approach", "m", "rb1 theta1 - rb2 theta3 of the left halves",
+              nominal=_DEFLECTION_SIZE),
+        state("wheel_twist", "rad", "wheel, right half ahead of left half",
+              nominal=_DEFLECTION_SIZE),
+    ]  # fmt: skip
     positions = bodies + rotations
     return positions + [
-        state(f"der({v.name})", rate[v.unit], f"rate of {v.name}") for v in positions
+        state(
+            f"der({v.name})",
+            RATES[v.unit],
+            f"rate of {v.name}",
+            nominal=_SPEED_SIZE if v.name == "angle" else _FREQUENCY_SIZE * v.nominal,
+        )
+        for v in positions
     ]
 
 

@@ -23,8 +23,8 @@ _d = Declaration(
     "Torque-controlled load motor that recovers its power",
     [
         state("angle", "rad", "rotor angle", steady="rotating"),
-        state("speed", "rad/s", "rotor speed"),
-        state("braking_torque", "N.m", "air-gap torque against rotation"),
+        state("speed", "rad/s", "rotor speed", nominal=100.0),
+        state("braking_torque", "N.m", "air-gap torque against rotation", nominal=100.0),
         *flange_body("flange"),
         input_("torque_setpoint", "N.m", "braking torque set point"),
         output("torque", "N.m", "air-gap torque against rotation"),

@@ -23,9 +23,19 @@ UNITS: Final[dict[str, dict[str, int]]] = {
     "N.m": {"kg": 1, "m": 2, "s": -2},
     "N.m/rad": {"kg": 1, "m": 2, "s": -2, "rad": -1},
     "N.m.s/rad": {"kg": 1, "m": 2, "s": -1, "rad": -1},
+    "N.m/s": {"kg": 1, "m": 2, "s": -3},
     "W": {"kg": 1, "m": 2, "s": -3},
     "Hz": {"s": -1},
 }
+
+RATES: Final = {
+    "m": "m/s",
+    "m/s": "m/s2",
+    "rad": "rad/s",
+    "rad/s": "rad/s2",
+    "N.m": "N.m/s",
+}
+"""Units of the time derivatives of quantities that are states."""
 
 
 def base_exponents(unit: str) -> dict[str, int]:

@@ -42,6 +42,7 @@ class Variable:
             "constant" (its derivative vanishes), "rotating" (an absolute angle),
             "zero" (an output that vanishes), or "" (no statement).
         minimum, maximum: range of a parameter, in `unit`.
+        nominal: usual size of a state, in `unit`, by which integrators scale their tolerance.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Variable:
     steady: str = ""
     minimum: float = -math.inf
     maximum: float = math.inf
+    nominal: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +123,13 @@ def output(
 
 
 def state(
-    name: str, unit: str, description: str, start: float = 0.0, steady: str = "constant"
+    name: str,
+    unit: str,
+    description: str,
+    start: float = 0.0,
+    steady: str = "constant",
+    *,
+    nominal: float = 1.0,
 ) -> Variable:
     """A continuous state: a local variable whose start value is exact."""
     return Variable(
@@ -133,6 +141,7 @@ def state(
         start,
         state=True,
         steady=steady,
+        nominal=nominal,
     )
 
 

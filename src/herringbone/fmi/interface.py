@@ -5,8 +5,9 @@ The value reference of a real is its index in the block, that of a String lies a
 
 from dataclasses import replace
 
-from herringbone.core import Component, Declaration, Text, Variable
+from herringbone.core import Component, Declaration, Text, Variable, local
 from herringbone.core.declaration import node_name
+from herringbone.core.units import RATES
 from herringbone.core.variable import NODES, Causality, Variability
 
 
@@ -41,6 +42,40 @@ def has_model_exchange(component: Component) -> bool:
     """True if the component's native FMUs offer model exchange: all its states are variables."""
     declaration = component.declaration
     return bool(declaration.states) and not declaration.hidden_states
+
+
+def derivatives(component: Component) -> dict[str, tuple[int, Variable]]:
+    """The time derivative of each state for model exchange, by the state's name.
+
+    Returns:
+        Value reference and variable: a state that is the rate of another one, or a variable of its
+        own, behind the Strings. Empty if model exchange is not offered.
+    """
+    if not has_model_exchange(component):
+        return {}
+    declaration = component.declaration
+    states = {v.name: v for v in declaration.states}
+    found = {}
+    for i, variable in enumerate(declaration.states):
+        name = f"der({variable.name})"
+        if name in states:
+            found[variable.name] = declaration.index[name], states[name]
+        else:
+            if variable.name.startswith("der("):
+                name = f"{variable.name.removesuffix(')')},2)"
+            rate = local(name, RATES[variable.unit], f"time derivative of {variable.name}")
+            found[variable.name] = first_derivative(declaration) + i, rate
+    return found
+
+
+def first_derivative(declaration: Declaration) -> int:
+    """Value reference of the first state's derivative."""
+    return declaration.size + len(declaration.texts)
+
+
+def time_reference(declaration: Declaration) -> int:
+    """Value reference of FMI 3.0's independent variable; those of event indicators follow."""
+    return first_derivative(declaration) + declaration.state_count
 
 
 def settable(variable: Variable, *, initialised: bool) -> bool:

@@ -23,14 +23,17 @@ LOG_CATEGORIES: Final = {
 }
 _CAPABILITIES: Final = {
     "needsExecutionTool": "false",
-    "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
-_NATIVE_CAPABILITIES: Final = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
+_STEPS: Final = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "false",
+}
+_NATIVE: Final = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
+_DERIVATIVES: Final = {"providesDirectionalDerivative": "true"}
 
 
 def identifier(component: Component) -> str:
@@ -57,9 +60,14 @@ def model_description(component: Component, *, native: bool = False) -> Element:
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
     )
-    capabilities = _CAPABILITIES | _NATIVE_CAPABILITIES if native else _CAPABILITIES
+    rates = interface.derivatives(component) if native else {}
+    if rates:
+        root.set("numberOfEventIndicators", str(component.indicator_count))
+        exchange = _CAPABILITIES | _DERIVATIVES
+        SubElement(root, "ModelExchange", modelIdentifier=component.name, **exchange)
+    capabilities = _STEPS | _CAPABILITIES | (_NATIVE | _DERIVATIVES if native else {})
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **capabilities)
-    add_units(root, declaration)
+    add_units(root, declaration, *(rate.unit for _, rate in rates.values()))
     add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
@@ -69,6 +77,8 @@ def model_description(component: Component, *, native: bool = False) -> Element:
     for reference, text in interface.texts(declaration).items():
         variables.append(_string(reference, text))
     _add_structure(root, declaration, list(reals.values()))
+    if rates:
+        _add_derivatives(root, rates)
     return root
 
 
@@ -88,10 +98,11 @@ def add_log_categories(root: Element) -> None:
         SubElement(categories, "Category", name=name, description=description)
 
 
-def limits(variable: Variable) -> dict[str, str]:
-    """The attributes of a finite range."""
+def sizes(variable: Variable) -> dict[str, str]:
+    """The attributes of a finite range, and of a state's nominal value."""
     range_ = {"min": variable.minimum, "max": variable.maximum}
-    return {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
+    found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
+    return found | ({"nominal": repr(float(variable.nominal))} if variable.state else {})
 
 
 def _scalar(
@@ -114,7 +125,7 @@ def _real(reference: int, variable: Variable) -> Element:
     exact = variable.state or variable.causality is Causality.PARAMETER
     if variable.causality is not Causality.INPUT:
         scalar.set("initial", "exact" if exact else "calculated")
-    real = SubElement(scalar, "Real", unit=variable.unit, **limits(variable))
+    real = SubElement(scalar, "Real", unit=variable.unit, **sizes(variable))
     if exact or variable.causality is Causality.INPUT:
         real.set("start", repr(float(variable.start)))
     return scalar
@@ -147,6 +158,24 @@ def _add_structure(root: Element, declaration: Declaration, reals: list[Variable
         if inputs:
             unknown.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
         SubElement(unknowns, "Unknown", index=index, dependencies=_join(sorted(inputs + exact)))
+
+
+def _add_derivatives(root: Element, rates: dict[str, tuple[int, Variable]]) -> None:
+    """Say which variable is the derivative of which state; those that are new are added."""
+    variables = root.find("ModelVariables")
+    structure = root.find("ModelStructure")
+    shown = {v.get("name"): (i, v) for i, v in enumerate(variables, 1)}
+    derivatives = Element("Derivatives")
+    structure.insert(1, derivatives)
+    for state, (reference, rate) in rates.items():
+        if rate.name not in shown:
+            variables.append(_real(reference, rate))
+            shown[rate.name] = len(variables), variables[-1]
+            index = str(len(variables))
+            SubElement(structure.find("InitialUnknowns"), "Unknown", index=index)
+        index, element = shown[rate.name]
+        element.find("Real").set("derivative", str(shown[state][0]))
+        SubElement(derivatives, "Unknown", index=str(index))
 
 
 def _join(indices: list[int]) -> str:

@@ -17,7 +17,7 @@ from herringbone.fmi.model_description import (
     add_log_categories,
     add_units,
     identifier,
-    limits,
+    sizes,
 )
 
 _TIME_UNIT: Final = "s"
@@ -26,6 +26,9 @@ _CAPABILITIES: Final = {
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "true",
+}
+_STEPS: Final = {
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "1",
 }
@@ -45,8 +48,11 @@ def model_description_3(component: Component) -> Element:
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
     )
-    SubElement(root, "CoSimulation", modelIdentifier=component.name, **_CAPABILITIES)
-    add_units(root, declaration, _TIME_UNIT)
+    rates = interface.derivatives(component)
+    if rates:
+        SubElement(root, "ModelExchange", modelIdentifier=component.name, **_CAPABILITIES)
+    SubElement(root, "CoSimulation", modelIdentifier=component.name, **_STEPS, **_CAPABILITIES)
+    add_units(root, declaration, _TIME_UNIT, *(rate.unit for _, rate in rates.values()))
     add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
@@ -68,12 +74,15 @@ def model_description_3(component: Component) -> Element:
         variables,
         "Float64",
         name="time",
-        valueReference=str(declaration.size + len(declaration.texts) + declaration.state_count),
+        valueReference=str(interface.time_reference(declaration)),
         causality="independent",
         variability="continuous",
         unit=_TIME_UNIT,
     )
     _add_structure(root, declaration, references)
+    if rates:
+        _add_derivatives(root, declaration, rates)
+        _add_indicators(root, component)
     return root
 
 
@@ -99,7 +108,7 @@ def _float64(reference: int, variable: Variable, extent: int) -> Element:
         causality=variable.causality.value,
         variability=variable.variability.value,
         unit=variable.unit,
-        **limits(variable),
+        **sizes(variable),
     )
     exact = variable.state or variable.causality is Causality.PARAMETER
     if variable.causality is not Causality.INPUT:
@@ -140,6 +149,41 @@ def _add_structure(
             )
         )
     structure.extend(unknowns)
+
+
+def _add_derivatives(
+    root: Element, declaration: Declaration, rates: dict[str, tuple[int, Variable]]
+) -> None:
+    """Say which variable is the derivative of which state; those that are new are added."""
+    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
+    shown = {v.get("name"): v for v in variables}
+    outputs = len(structure.findall("Output"))
+    for place, (state, (reference, rate)) in enumerate(rates.items(), outputs):
+        derivative = Element("ContinuousStateDerivative", valueReference=str(reference))
+        structure.insert(place, derivative)
+        if rate.name not in shown:
+            shown[rate.name] = _float64(reference, rate, 1)
+            variables.append(shown[rate.name])
+            SubElement(structure, "InitialUnknown", valueReference=str(reference))
+        shown[rate.name].set("derivative", str(declaration.index[state]))
+
+
+def _add_indicators(root: Element, component: Component) -> None:
+    """Event indicators are variables in FMI 3.0."""
+    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
+    first = interface.time_reference(component.declaration) + 1
+    for k in range(component.indicator_count):
+        SubElement(
+            variables,
+            "Float64",
+            name=f"event_indicator_{k + 1}",
+            valueReference=str(first + k),
+            description="changes its sign where the equations are not smooth",
+            causality="local",
+            variability="continuous",
+            initial="calculated",
+        )
+        SubElement(structure, "EventIndicator", valueReference=str(first + k))
 
 
 def _join(references: list[int]) -> str:

@@ -86,7 +86,8 @@ typedef struct {
     const HbText *texts; /* value references size + k */
 
     /* Value references of FMI 3's `time` and of the states' derivatives follow those of the texts:
-       der(state i) is size + texts_count + i, time is size + texts_count + states. */
+       der(state i) is size + texts_count + i, time is size + texts_count + states; then come the
+       event indicators. */
 
     /* Kernels; those from `start` on are NULL if the component has none. 0 is success. */
     int32_t (*step)(double *b, double *w, double t, double h);

@@ -104,7 +104,7 @@ def _number(value: float) -> str:
 
 
 def _real(variable: Variable) -> str:
-    numbers = (variable.start, variable.minimum, variable.maximum, 1.0)
+    numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
     words = [_string(variable.name), _string(variable.unit), *map(_number, numbers)]
     return f"{{{', '.join(words)}}}"
 

@@ -99,6 +99,7 @@ bool instance_is_output(uint32_t reference);
 /* Value reference of a state's derivative; FMI 3: of the time. */
 uint32_t reference_of_rate(uint32_t state);
 uint32_t reference_of_time(void);
+uint32_t last_reference(void); /* of the event indicators, if there are any */
 
 /* step.c */
 Status instance_step(Instance *instance, double time, double step_size);

@@ -27,6 +27,10 @@ uint32_t reference_of_time(void) {
     return reference_of_rate(hb_component.states);
 }
 
+uint32_t last_reference(void) {
+    return reference_of_time() + hb_component.indicators_count;
+}
+
 static bool is_text(uint32_t reference) {
     return reference - hb_component.size < hb_component.texts_count;
 }
@@ -42,7 +46,14 @@ Status instance_unknown(Instance *instance, const char *type, const uint32_t ref
                          instance->name, type, list);
 }
 
-/* A real that is no entry of the block: a derivative, or the time. */
+static Status get_indicator(Instance *instance, uint32_t k, double *value) {
+    double indicators[hb_component.indicators_count];
+    hb_component.indicators(instance->block, instance->now.time, indicators);
+    *value = indicators[k];
+    return STATUS_OK;
+}
+
+/* A real that is no entry of the block: a derivative, the time, or an event indicator. */
 static Status get_other(Instance *instance, uint32_t reference, double *value) {
     uint32_t state = reference - reference_of_rate(0);
     if (reference >= reference_of_rate(0) && state < hb_component.states) {
@@ -54,6 +65,8 @@ static Status get_other(Instance *instance, uint32_t reference, double *value) {
         *value = instance->now.time;
         return STATUS_OK;
     }
+    if (reference > reference_of_time() && reference <= last_reference())
+        return get_indicator(instance, reference - reference_of_time() - 1, value);
     *value = NAN;
     return instance_unknown(instance, "Real", &reference, 1);
 }
