@@ -9,7 +9,7 @@ import pandas as pd
 
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
-from herringbone.analysis.stability import warn_if_unstable
+from herringbone.analysis.stability import fastest_bond, warn_if_unstable
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import COMPONENTS, component
@@ -141,7 +141,8 @@ def run(
         if warning := _stability_warning(structure, coupling, step):
             notes = (*notes, warning)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
-        recording = simulate(structure, parts, coupling, grid, progress)
+        frequency = fastest_bond(structure)
+        recording = simulate(structure, parts, coupling, grid, progress, bond_frequency=frequency)
     finally:
         for part in parts:
             part.close()
@@ -253,6 +254,7 @@ def _result(
         wall_s=recording.wall_seconds,
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
+        energy=recording.energy,
         parameters=parameters,
         resources=_resources(system),
     )

@@ -15,7 +15,7 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub = commands.add_parser("gear", help=text, description=text)
     sub.set_defaults(command=_gear)
     sub.add_argument("file", type=Path, help="gear file (.toml) or REXS file (.rexs)")
-    sub.add_argument("--method", default="slices", help="slices (default) or fe")
+    sub.add_argument("--method", default="slices", help="slices (default), coupled-slices or fe")
     sub.add_argument("--torque", type=float, help="of the pinion in N m; the file's if not given")
     sub.add_argument("--stage", help="id or name of the stage of a REXS file")
     sub.add_argument("--halves", type=int, default=1, help="of a REXS stage; 2: double helical")

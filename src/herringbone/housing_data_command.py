@@ -11,7 +11,7 @@ from herringbone.components.modal_housing import MODES
 from herringbone.core import HerringboneError
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.importers import import_housing
-from herringbone.housing.reduced_housing import reduce_housing
+from herringbone.housing.reduced_housing import certified_bound, reduce_housing
 from herringbone.housing.reduction_error import drive_point_errors
 from herringbone.output import check_writable, say, show
 
@@ -39,7 +39,7 @@ def reduce_command(options: argparse.Namespace) -> int:
         "full_oscillators": full.frequency_hz.size,
         "band_hz": options.band,
         "tolerance": options.tolerance,
-        "error_bound": float(reduced.certificate.get("error_bound", 0.0)),
+        "error_bound": certified_bound(reduced, options.band),
         "error_against_data": float(errors.max()),
         "static_difference": difference,
         "files": [str(output), str(picture)],
@@ -53,6 +53,8 @@ def _text(figures: dict) -> str:
     counts = f"{figures['normal_modes']} normal and {figures['residual_modes']} residual modes"
     if before == after:
         lines = [f"All {before} oscillators, {counts}, are needed to {figures['band_hz']:g} Hz"]
+        if figures["error_bound"]:
+            lines[0] += f"; certified before to {100 * figures['error_bound']:.2g} %"
     else:
         lines = [
             f"{before} oscillators became {after}: {counts}",
@@ -80,7 +82,7 @@ def _draw(
         reduced.receptance(frequency_hz),
         (full.static_compliance(), reduced.static_compliance()),
         errors,
-        float(reduced.certificate.get("error_bound", 0.0)),
+        certified_bound(reduced, float(frequency_hz[-1])),
         (full.frequency_hz.size, reduced.frequency_hz.size),
     )
     try:

@@ -25,6 +25,7 @@ from herringbone.analysis.operating_point import (
 from herringbone.analysis.radiated_power import LABEL, radiated_power
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.energy_report import EnergyReport
 from herringbone.result import TIME, Result, RunInfo
 
 _R_MIN = 30.0 / math.pi
@@ -128,6 +129,13 @@ def _steps(info: RunInfo) -> str:
     return f"{shortest} to {longest}, median {median}, {info.steps['rejected']:g} taken back"
 
 
+def _energy(found: EnergyReport) -> str:
+    ratio = f", {found.ratio:.2g} of what the dampers take" if found.ratio is not None else ""
+    when = f" from {_time(found.time)}" if found.time is not None else ""
+    bond = f", most of all at {found.bond}" if found.bond else ""
+    return f"{found.verdict.value}{when}{bond}: added in the last {_time(found.window)}{ratio}"
+
+
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
@@ -146,6 +154,8 @@ def _cost(result: Result) -> Iterator[str]:
             f"{_time(info.wall_s / info.macro_steps)} per macro step; {info.macro_steps} steps, "
             f"{info.rollbacks} rollbacks",
         )
+    if info.energy:
+        yield _line("Coupling energy", _energy(info.energy))
 
 
 def _operating_point(result: Result) -> Iterator[str]:

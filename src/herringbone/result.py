@@ -13,6 +13,7 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from herringbone.core import HerringboneError, Outcome, ParameterError
+from herringbone.core.energy_report import EnergyReport
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,6 +38,7 @@ class RunInfo:
         notes: downgrades and other lines to read.
         steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
             "shortest", "median" and "longest" of the accepted ones [s].
+        energy: what the coupling did to the energy; None if the algorithm does not extrapolate.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
     """
@@ -56,6 +58,7 @@ class RunInfo:
     wall_s: float
     notes: tuple[str, ...] = ()
     steps: Mapping[str, float] | None = None
+    energy: EnergyReport | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     resources: Mapping[str, str] = field(default_factory=dict)
 

@@ -142,6 +142,9 @@ BAD_HEADS = [
     ("valid_to_hz", "high", "'valid_to_hz' = 'high' has the wrong type"),
     ("valid_to_hz", float("nan"), "NaN is not a finite number"),
     ("sha256", {}, "'sha256' lacks modes.csv"),
+    ("certificate", [1], "'certificate' = [1] has the wrong type"),
+    ("certificate", {"error_bound": "low"}, "error_bound = 'low'; it must be a number"),
+    ("certificate", {"error_bound": 0.01}, "error_bound without band_hz"),
     ("frame", {"origin": "here"}, "'frame' needs origin (3 numbers) and rotation (3 x 3)"),
 ]
 

@@ -60,7 +60,7 @@ ONLY_IN: dict[str, set[str]] = {
     "pypardiso": {"housing/eigenmodes.py"},
     "gmsh": {"housing/mesher.py"},
     "pyuff": {"housing/importers/uff.py"},
-    "skfem": {"housing/elasticity.py"},
+    "skfem": {"housing/elasticity.py", "gears/finite_elements/layer.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""
 

@@ -10,7 +10,11 @@ from support_housing import seat_points, small_housing
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.housing import write_housing
 from herringbone.housing.modal_model import ModalHousing
-from herringbone.housing.reduced_housing import reduce_housing, with_residual_modes
+from herringbone.housing.reduced_housing import (
+    certified_bound,
+    reduce_housing,
+    with_residual_modes,
+)
 from herringbone.housing.reduction import receptance_bound, reduce_model
 from herringbone.housing.validation import housing_warnings
 
@@ -158,6 +162,16 @@ def test_reducing_twice_is_reducing_once():
     np.testing.assert_allclose(twice.static_compliance(), once.static, rtol=1e-10)
     np.testing.assert_allclose(np.diag(twice.gram), 1.0, rtol=1e-8)
     assert set(twice.damping_ratio[6:]) == {0.05}
+
+
+def test_certificate_at_a_lower_band():
+    """The bound grows as r^4 / (1 - r^2): at half the band it is that of the same model there."""
+    full = as_housing(reduce_model(*bar(240), band_hz=BAND, tolerance=0.05), BAND)
+    r = BAND / full.certificate["next_frequency_hz"]
+    expected = full.certificate["error_bound"] / 16 * (1 - r**2) / (1 - r**2 / 4)
+    assert certified_bound(full, BAND / 2) == pytest.approx(expected, rel=1e-12)
+    assert certified_bound(full, BAND) == full.certificate["error_bound"]
+    assert certified_bound(replace(full, certificate={}), BAND) == 0.0
 
 
 def test_nothing_is_dropped_if_all_is_needed():

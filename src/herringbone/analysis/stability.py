@@ -147,6 +147,19 @@ def step_limits(
     return StepLimits(str(algorithm), bands, found, frequency)
 
 
+def fastest_bond(system: System) -> float | None:
+    """Highest frequency of all bonds together [rad/s]; None if it cannot be told.
+
+    That is so with foreign parts, without bonds, or with a mesh that is open at the start.
+    """
+    if system.foreign_parts:
+        return None
+    try:
+        return highest_frequency(*linear_network(system)) or None
+    except HerringboneError:
+        return None
+
+
 def warn_if_unstable(system: System, algorithm: Algorithm, step: float) -> str | None:
     """One line if an algorithm is unstable at a step, or None; one matrix at mean stiffness.
 

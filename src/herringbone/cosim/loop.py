@@ -9,6 +9,7 @@ interpolated.
 import numpy as np
 
 from herringbone.cosim.calls import do_step, exchange_reals
+from herringbone.cosim.energy_loop import watch_energy
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
@@ -192,4 +193,5 @@ def run_stages(plan: Plan, history: np.ndarray, order: int, chunk: Chunk) -> tup
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
+        watch_energy(chunk.energy, history, n + 1, h)
     return DONE, chunk.start + chunk.count, -1

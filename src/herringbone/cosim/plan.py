@@ -7,6 +7,7 @@ import numpy as np
 
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
+from herringbone.cosim.energy_loop import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.network import Network
 
 HISTORY = 4
@@ -55,6 +56,7 @@ class Chunk(NamedTuple):
         start, count: first macro step and how many.
         records: one row per `every` macro steps of the run, row 0 at t0.
         every: macro steps per record.
+        energy: watches what the coupling adds, where the algorithm extrapolates.
     """
 
     t0: float
@@ -63,6 +65,7 @@ class Chunk(NamedTuple):
     count: int
     records: np.ndarray
     every: int
+    energy: EnergyMonitor = NOTHING_WATCHED
 
 
 def record_names(network: Network) -> list[list[str]]:

@@ -9,9 +9,11 @@ import numpy as np
 
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.energy_report import EnergyReport
 from herringbone.core.part import Part
 from herringbone.cosim.adaptive_loop import STEP_LIMIT
 from herringbone.cosim.algorithms.base import Algorithm, PreparedRun, StepStatistics
+from herringbone.cosim.energy import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
 from herringbone.cosim.network import Network, build_network
@@ -48,6 +50,7 @@ class Recording:
         wall_seconds: wall time of the loop, without compilation and the first Jacobian.
         notes: downgrades and other lines that the user should read.
         steps: of an adaptive run, the lengths of its macro steps.
+        energy: what the coupling added, where the algorithm extrapolates.
     """
 
     time: np.ndarray
@@ -63,6 +66,7 @@ class Recording:
     wall_seconds: float
     notes: tuple[str, ...]
     steps: StepStatistics | None = None
+    energy: EnergyReport | None = None
 
 
 def make_grid(t_end: float, step: float, record_step: float) -> Grid:
@@ -90,6 +94,8 @@ def simulate(
     algorithm: Algorithm,
     grid: Grid,
     progress: Progress | None = None,
+    *,
+    bond_frequency: float | None = None,
 ) -> Recording:
     """Run a system of instantiated parts, whose start values have been set.
 
@@ -101,6 +107,8 @@ def simulate(
         algorithm: coupling algorithm.
         grid: communication and record points.
         progress: called with the simulated time reached and its end [s].
+        bond_frequency: of the fastest bond [rad/s], if it is known; the energy is watched over
+            five of its periods.
 
     Raises:
         StructureError: the connections are wrong.
@@ -111,8 +119,10 @@ def simulate(
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
-    _initialise(network, prepared.degree, grid.step * grid.count)
-    return _Run(network, prepared, grid).go(progress)
+    plan = prepared.plan if prepared.extrapolates else None
+    watch = EnergyWatch(network, plan, grid.step, bond_frequency)
+    _initialise(network, prepared.degree, grid.step * grid.count, watch)
+    return _Run(network, prepared, grid, watch).go(progress)
 
 
 def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:
@@ -129,7 +139,7 @@ def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:
                     part.set(node, value)
 
 
-def _initialise(network: Network, degrees: Sequence[int], t_end: float) -> None:
+def _initialise(network: Network, degrees: Sequence[int], t_end: float, watch: EnergyWatch) -> None:
     parts = network.parts
     for part in parts:
         part.enter_initialization(0.0, t_end)
@@ -138,6 +148,7 @@ def _initialise(network: Network, degrees: Sequence[int], t_end: float) -> None:
         for c in network.inputs(target):
             value = parts[c.source].get([c.output])[0]
             parts[target].set(c.input, value)
+    watch.start()
     for part in parts:
         part.exit_initialization()
 
@@ -145,8 +156,10 @@ def _initialise(network: Network, degrees: Sequence[int], t_end: float) -> None:
 class _Run:
     """State of one run, outside the compiled loop."""
 
-    def __init__(self, network: Network, prepared: PreparedRun, grid: Grid) -> None:
-        self.network, self.prepared = network, prepared
+    def __init__(
+        self, network: Network, prepared: PreparedRun, grid: Grid, watch: EnergyWatch
+    ) -> None:
+        self.network, self.prepared, self.watch = network, prepared, watch
         self.grid = grid = prepared.grid(grid)
         names = record_names(network)
         self.names = tuple(
@@ -181,7 +194,10 @@ class _Run:
         return self._recording(done, outcome, wall)
 
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
-        chunk = Chunk(0.0, self.grid.step, start, count, self.record.values, self.grid.every)
+        grid = self.grid
+        chunk = Chunk(
+            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor
+        )
         return self.prepared.run(self.history, chunk)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
@@ -246,6 +262,7 @@ class _Run:
             wall,
             (*self.network.notes, *self.prepared.notes),
             self.prepared.steps,
+            self.watch.report(),
         )
 
     def _step(self, done: int) -> float:

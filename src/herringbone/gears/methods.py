@@ -4,15 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
+from herringbone.gears.coupled_slices import CoupledSliceMesh
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
+from herringbone.gears.point_mesh import Progress, silent
 from herringbone.gears.slices import PHASES, SLICES, SliceMesh
 
 _OVERSAMPLING = 4
 """Phases that the slices are solved at, over those of the table."""
-Progress = Callable[[str, float], None]
-"""Called with what is done and how much of it, 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,8 @@ class Task:
         loads: normal forces of one half [N], ascending from zero.
         modification: of the flanks.
         phases: number of equidistant phases.
-        calibration: factor on the compliance of teeth and foundations; of slices only.
-        slices: across the face; of slices only.
+        calibration: factor on the compliance of teeth and foundations; of both slice methods.
+        slices: across the face; of the method "slices".
         corner_contact: follow tip corners outside the path of contact.
     """
 
@@ -49,7 +49,33 @@ def _slices(task: Task, progress: Progress | None = None) -> MeshStiffness:
     return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
 
 
-METHODS: dict[str, Callable[..., MeshStiffness]] = {"slices": _slices}
+def _coupled_slices(task: Task, progress: Progress | None = None) -> MeshStiffness:
+    mesh = CoupledSliceMesh(
+        task.pair,
+        task.modification,
+        calibration=task.calibration,
+        corner_contact=task.corner_contact,
+    )
+    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
+
+
+def _finite_elements(task: Task, progress: Progress | None = None) -> MeshStiffness:
+    from herringbone.gears.finite_elements import FiniteElementMesh  # noqa: PLC0415 (uses METHODS)
+
+    mesh = FiniteElementMesh(
+        task.pair,
+        task.modification,
+        corner_contact=task.corner_contact,
+        progress=progress or silent,
+    )
+    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
+
+
+METHODS: dict[str, Callable[..., MeshStiffness]] = {
+    "slices": _slices,
+    "coupled-slices": _coupled_slices,
+    "fe": _finite_elements,
+}
 """`method(task, progress)`."""
 
 

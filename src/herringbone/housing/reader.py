@@ -27,6 +27,8 @@ from herringbone.housing.file_format import (
 from herringbone.housing.modal_model import SEAT_DOFS, Frame, ModalHousing, Point
 from herringbone.housing.validation import check_housing
 
+_NOTES = ("source", "certificate")
+
 
 def read_housing(path: str | Path) -> ModalHousing:
     """Read and check a modal model.
@@ -48,6 +50,8 @@ def read_housing(path: str | Path) -> ModalHousing:
         hashes = _field(head, "sha256", dict)
         valid_to_hz = float(_field(head, "valid_to_hz", (int, float)))
         damping = _field(head, "damping", dict)
+        source, certificate = (_field({name: {}} | head, name, dict) for name in _NOTES)
+        _check_certificate(certificate)
     except ResourceError as error:
         raise ResourceError(f"{root / HEAD}: {error}") from None
     _check_hashes(root, hashes)
@@ -62,11 +66,11 @@ def read_housing(path: str | Path) -> ModalHousing:
         valid_to_hz,
         damping,
         str(head.get("boundary", "")),
-        head.get("source", {}),
+        source,
         frame,
         **{name: _optional_compliance(root / file, hashes) for name, file in COMPLIANCES.items()},
         gram=_read_gram(root / GRAM, hashes),
-        certificate=head.get("certificate", {}),
+        certificate=certificate,
     )
     check_housing(housing, path)
     return housing
@@ -127,6 +131,16 @@ def _check_head(head: Mapping[str, Any]) -> None:
             f"normalisation '{head.get('normalisation')}'; only mass-normalised shapes ('mass') "
             "have a scale; unscaled ones, as from operational modal analysis, cannot be used"
         )
+
+
+def _check_certificate(certificate: Mapping[str, Any]) -> None:
+    for name in ("error_bound", "band_hz", "next_frequency_hz"):
+        value = certificate.get(name)
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if value is not None and not (number and value >= 0.0):
+            raise ResourceError(f"'certificate' has {name} = {value!r}; it must be a number")
+    if certificate.get("error_bound") and not certificate.get("band_hz"):
+        raise ResourceError("'certificate' has an error_bound without band_hz")
 
 
 def _point(item: object) -> Point:

@@ -9,7 +9,12 @@ import scipy.sparse as sp
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.housing.modal_model import SEAT_DOFS, ModalHousing
-from herringbone.housing.reduction import choose_modes, make_certificate, residual_modes
+from herringbone.housing.reduction import (
+    choose_modes,
+    make_certificate,
+    receptance_bound,
+    residual_modes,
+)
 
 RESIDUAL_DAMPING = 0.05
 """Damping ratio of residual pseudo modes: assumed; above the band it hardly shows."""
@@ -33,8 +38,8 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     Raises:
         ParameterError: band or tolerance out of range, or beyond what the data are good for.
     """
-    _check_request(housing, band_hz, tolerance)
-    before = float(housing.certificate.get("error_bound", 0.0))
+    before = certified_bound(housing, band_hz)
+    _check_request(housing, band_hz, tolerance, before)
     full = with_residual_modes(housing)
     normal = np.array([kind == "normal" for kind in full.kind])
     order = np.flatnonzero(normal)[np.argsort(full.frequency_hz[normal], kind="stable")]
@@ -46,7 +51,7 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
         tolerance - before,
     )
     if chosen is None:
-        return replace(full, valid_to_hz=min(band_hz, housing.valid_to_hz))
+        return replace(full, valid_to_hz=band_hz)
     kept, bound = chosen
     rigid = np.flatnonzero([kind == "rigid" for kind in full.kind])
     keep = np.concatenate([rigid, order[:kept]])
@@ -70,7 +75,18 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     )
 
 
-def _check_request(housing: ModalHousing, band_hz: float, tolerance: float) -> None:
+def certified_bound(housing: ModalHousing, band_hz: float) -> float:
+    """What the certificate of modal data says of their error up to a band; 0 without one."""
+    certificate = housing.certificate
+    bound, following = certificate.get("error_bound", 0.0), certificate.get("next_frequency_hz")
+    if not bound or not following:
+        return float(bound)
+    at = np.array([band_hz, certificate["band_hz"]])
+    here, there = receptance_bound(np.ones(1), at, following)[:, 0]
+    return float(bound * here / there)
+
+
+def _check_request(housing: ModalHousing, band_hz: float, tolerance: float, before: float) -> None:
     if not 0.0 < band_hz < math.inf:
         raise ParameterError(f"band {band_hz:g} Hz must be positive")
     if not 0.0 < tolerance < 1.0:
@@ -80,10 +96,10 @@ def _check_request(housing: ModalHousing, band_hz: float, tolerance: float) -> N
             f"band {band_hz:g} Hz is beyond valid_to_hz = {housing.valid_to_hz:g} Hz of the data; "
             "a reduction cannot make them better"
         )
-    before = float(housing.certificate.get("error_bound", 0.0))
     if before > tolerance:
         raise ParameterError(
-            f"tolerance {tolerance:g}: the data themselves are certified to {before:.2g} only"
+            f"tolerance {tolerance:g}: the data themselves are certified to {before:.2g} only at "
+            f"{band_hz:g} Hz"
         )
 
 

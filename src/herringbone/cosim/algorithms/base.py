@@ -94,6 +94,11 @@ class PreparedRun(ABC):
     problem: str
     culprit: str = ""
 
+    @property
+    def extrapolates(self) -> bool:
+        """True if bodies take forces that are extrapolated from true ones: their error is seen."""
+        return False
+
     def grid(self, grid: Grid) -> Grid:
         """The grid in the units in which `run` counts."""
         return grid
@@ -143,6 +148,14 @@ class Prepared(PreparedRun):
     notes: tuple[str, ...]
     starter: Plan | None = None
     problem: str = ""
+
+    @property
+    def extrapolates(self) -> bool:
+        """True if all elements are stepped after all bodies: their forces are those of their time.
+
+        Neither the parallel schedule nor Gauss-Seidel coupling has that.
+        """
+        return self.starter is None and bool(self.plan.at_end.any())
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""

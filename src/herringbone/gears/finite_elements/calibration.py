@@ -1,0 +1,92 @@
+"""Factor on the slices' compliance of teeth and foundations that finite elements ask for."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from herringbone.core import ParameterError
+from herringbone.gears.coupled_slices import CoupledSliceMesh
+from herringbone.gears.finite_elements.mesh import FiniteElementMesh
+from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.job import GearJob
+from herringbone.gears.mesh_stiffness import MeshStiffness
+from herringbone.gears.slices import PHASES, SliceMesh
+
+_RANGE = (0.2, 4.0)
+_TOLERANCE = 1e-5
+
+SliceModel = Callable[..., SliceMesh | CoupledSliceMesh]
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Slices against finite elements at one load, equal in the mean.
+
+    Attributes:
+        factor: on the slices' compliance of teeth and foundations.
+        elements: mesh stiffness by finite elements.
+        slices: mesh stiffness by the calibrated slices.
+    """
+
+    factor: float
+    elements: MeshStiffness
+    slices: MeshStiffness
+
+    @property
+    def harmonic_ratio(self) -> np.ndarray:
+        """Amplitudes of the mesh harmonics, slices over finite elements."""
+        return self.slices.harmonics()[0] / self.elements.harmonics()[0]
+
+
+def calibrate(
+    mesh: FiniteElementMesh, load: float, model: SliceModel = SliceMesh, phases: int = PHASES
+) -> Calibration:
+    """Calibrate a slice model so that its mean secant stiffness is that of finite elements.
+
+    Args:
+        mesh: finite-element model; its compliance is computed if it was not yet.
+        load: normal force of one half [N].
+        model: `SliceMesh` or `CoupledSliceMesh`.
+        phases: number of equidistant phases.
+
+    Raises:
+        ParameterError: no factor between 0.2 and 4 will do.
+    """
+    elements = mesh.solve([load], phases)
+    wanted = elements.secant.mean()
+
+    def slices(factor: float) -> MeshStiffness:
+        return model(mesh.pair, mesh.modification, calibration=factor).solve([load], phases)
+
+    def excess(factor: float) -> float:
+        return slices(factor).secant.mean() / wanted - 1.0
+
+    if excess(_RANGE[0]) * excess(_RANGE[1]) > 0.0:
+        raise ParameterError(
+            f"no calibration factor between {_RANGE[0]:g} and {_RANGE[1]:g} gives the slices the "
+            f"mean stiffness {wanted:.4g} N/m of the finite elements at {load:g} N; check the "
+            "hub: bore_diameter of the pair"
+        )
+    factor = float(brentq(excess, *_RANGE, xtol=_TOLERANCE))
+    return Calibration(factor, elements, slices(factor))
+
+
+def calibration_factor(
+    pair: GearPair, load: float | None = None, model: SliceModel = SliceMesh
+) -> float:
+    """Calibration factor of a pair.
+
+    Args:
+        pair: gear pair.
+        load: normal force of one half [N]; None: that of 100 N/mm of tangential load per face
+            width, above which ISO 6336-1 takes the stiffness as constant.
+        model: `SliceMesh` or `CoupledSliceMesh`.
+
+    Raises:
+        ParameterError: see `calibrate` and `FiniteElementMesh`.
+    """
+    if load is None:
+        load = pair.tooth_forces(GearJob(pair).pinion_torque).normal
+    return calibrate(FiniteElementMesh(pair), load, model).factor

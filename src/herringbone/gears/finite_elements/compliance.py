@@ -1,0 +1,230 @@
+r"""Compliance of a tooth at its candidate contact points, without the local deformation.
+
+Unit loads act along the flank's normal at a grid of points: stations of the path of contact in
+every section of the mesh.  The displacement under a concentrated load has no limit as a mesh is
+refined, so each deflection is measured at a depth: where the line of the load, in the transverse
+section, meets the axis of the tooth.  There it converges.  The rest, between flank and depth, is
+the local deformation of a line contact, and has a closed form (see `herringbone.gears.slices`;
+C. Weber, The deflection of loaded gears, DSIR Report 3, 1949).
+
+Loads at the flank and measures at the depth are different functionals, so their matrix is symmetric
+up to the local field only.  Its symmetric part is kept, as a compliance has to be (Betti).
+
+The closed form is that of a half-space, while a tooth is twice as thick as its depth: against
+plane-strain elements that resolve the contact's pressure (FZG C gears, 200 N/mm, ten contacts from
+root to tip) the deflection of one tooth comes out 1 to 2 % too small.
+
+What the mesh leaves (27/81 pair, m_n 3.5 mm, 30 deg, b 47.3 mm, at 22.5 kN per half):
+
+    profile x thickness x root, layers    DOF of both gears    mean k error %    H1 error %
+    8 x 3 x 2,  12                              80 460               +0.5           -0.8
+    8 x 3 x 2,  23 (default)                   149 892               +0.05           0.0
+    12 x 4 x 3, 23                             204 606                0               0
+
+Twice the stations change the mean by 0.01 %.  The body is a full ring, held at the hub radius: a
+sector held at its cut sides depends on where it is cut (k +25 to +50 % for 3 to 5 teeth).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from herringbone.gears.finite_elements.layer import layer_stiffness
+from herringbone.gears.finite_elements.section import Profile, Resolution, Section, mesh_section
+from herringbone.gears.finite_elements.sweep import stack_compliance
+from herringbone.gears.gear_pair import GearPair
+
+STATIONS = 9
+"""Candidate points along the path of contact."""
+UNKNOWNS = 150_000
+"""Degrees of freedom of one gear that the default number of layers does not exceed."""
+_LAYER = 0.6
+"""Default thickness of a layer, in normal modules."""
+_FEWEST_LAYERS = 8
+
+
+@dataclass(frozen=True)
+class ToothCompliance:
+    """Compliance of one tooth under normal forces on its flank.
+
+    Attributes:
+        path: stations, distances from the start of the path of contact, shape (s,) [m].
+        face: sections, positions along the face width, shape (k,) [m].
+        matrices: deflection of a point (rows) of the tooth q places ahead under a unit force at a
+            point (columns), station fastest, shape (q, k s, k s) [m/N].
+        asymmetry: largest difference that was removed to make it symmetric, over the largest entry.
+        unknowns: degrees of freedom of the mesh.
+    """
+
+    path: np.ndarray
+    face: np.ndarray
+    matrices: np.ndarray
+    asymmetry: float
+    unknowns: int
+
+    def weights(self, path: np.ndarray, face: np.ndarray) -> np.ndarray:
+        """Weights of the stations in any points: cubic along the path, linear along the face.
+
+        Args:
+            path: positions on the path of contact, shape (n,) [m].
+            face: positions along the face width, shape (n,) [m].
+
+        Returns:
+            Shape (n, k s) [1].
+        """
+        layer = self.face[1] - self.face[0]
+        below = np.clip((face / layer).astype(int), 0, self.face.size - 2)
+        share = face / layer - below
+        along = self._splines(path)
+        weights = np.zeros((path.size, self.face.size, self.path.size))
+        rows = np.arange(path.size)
+        weights[rows, below] = (1.0 - share)[:, None] * along
+        weights[rows, below + 1] = share[:, None] * along
+        return weights.reshape(path.size, -1)
+
+    @cached_property
+    def _splines(self) -> CubicSpline:
+        return CubicSpline(self.path, np.eye(self.path.size))
+
+
+def layer_count(pair: GearPair, resolution: Resolution, section: Section) -> int:
+    """Layers along the face width.
+
+    As given, or one per 0.6 normal modules, at least 8, at most 150 000 degrees of freedom.
+    """
+    if resolution.layers is not None:
+        return resolution.layers
+    wanted = max(_FEWEST_LAYERS, round(pair.face_width / (_LAYER * pair.normal_module)))
+    edge, corner = (np.setdiff1d(nodes, section.bore).size for nodes in _serendipity(section))
+    return min(wanted, int((UNKNOWNS - 3 * edge) / (3 * (edge + corner))))
+
+
+def _serendipity(section: Section) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of the section that carry unknowns in it, and halfway to the next section."""
+    corners = section.nodes[:, ::2, ::2]
+    edges = np.r_[section.nodes[:, 1, ::2].ravel(), section.nodes[:, ::2, 1].ravel()]
+    return np.r_[corners.ravel(), edges], corners
+
+
+def teeth_ahead(pair: GearPair) -> int:
+    """Largest distance of two teeth in contact at the same time, in pitches."""
+    return math.floor(pair.total_contact_ratio)
+
+
+def tooth_mesh(pair: GearPair, gear: int, resolution: Resolution, ahead: int = 0) -> Section:
+    """Transverse section of the pinion (0) or wheel (1), with teeth ahead of the loaded one.
+
+    Raises:
+        ParameterError: the section cannot be meshed.
+    """
+    profile = Profile(
+        pair.tooth_profile(gear).points.T, pair.number_of_teeth[gear], pair.hub_radius[gear]
+    )
+    ahead = max(1, ahead)
+    return mesh_section(profile, resolution, *((1, ahead) if gear == 0 else (ahead, 1)))
+
+
+def tooth_compliance(
+    pair: GearPair,
+    gear: int,
+    resolution: Resolution,
+    ahead: int = 0,
+    progress: Callable[[float], None] = lambda done: None,
+) -> ToothCompliance:
+    """Compliance of a tooth of the pinion (0) or wheel (1).
+
+    The driving flank of the pinion is swept towards its outward normal, the driven flank of the
+    wheel away from it: the contact line runs to the pinion's tip with rising position on the face.
+
+    Args:
+        pair: gear pair.
+        gear: 0 pinion, 1 wheel.
+        resolution: of the mesh.
+        ahead: how many teeth ahead of the loaded one are measured as well.
+        progress: called with the share of the work done.
+
+    Raises:
+        ParameterError: the section cannot be meshed, or scikit-fem is missing.
+    """
+    section = tooth_mesh(pair, gear, resolution, ahead)
+    layers = layer_count(pair, resolution, section)
+    thickness = pair.face_width / layers
+    sense = 1.0 if gear == 0 else -1.0
+    lead = math.tan(abs(pair.base_helix_angle)) / pair.base_radius[gear]
+    layer = layer_stiffness(
+        section, thickness, sense * lead * thickness, pair.youngs_modulus, pair.poissons_ratio
+    )
+    path = np.linspace(0.0, pair.path_of_contact.length, STATIONS)
+    loads, measures = unit_loads(pair, gear, section, layer.unknowns, path, ahead)
+    full = stack_compliance(layer, layers, loads, measures, progress)
+    sections, points = layers + 1, (layers + 1) * STATIONS
+    full = full.reshape(sections, -1, STATIONS, points).transpose(1, 0, 2, 3)
+    full = full.reshape(-1, points, points)
+    own = full[0]
+    asymmetry = float(np.abs(own - own.T).max() / np.abs(own).max())
+    full[0] = 0.5 * (own + own.T)
+    return ToothCompliance(
+        path,
+        np.linspace(0.0, pair.face_width, layers + 1),
+        full,
+        asymmetry,
+        (layers + 1) * len(layer.lower) + layers * layer.inner,
+    )
+
+
+def unit_loads(
+    pair: GearPair,
+    gear: int,
+    section: Section,
+    unknowns: np.ndarray,
+    path: np.ndarray,
+    ahead: int,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Unit loads on the flank, and measures on the axes of this tooth and of those ahead.
+
+    Shapes (n, stations) and (n, teeth stations).
+    """
+    points, profile = pair.path_of_contact, pair.tooth_profile(gear)
+    reach = points.start + path
+    reach = reach if gear == 0 else points.tangent_length - reach
+    base, helix = pair.base_radius[gear], abs(pair.base_helix_angle)
+    sense = 1 if gear == 0 else -1
+    teeth = [sense * q for q in range(ahead + 1)]
+    loads = np.zeros((unknowns.max() + 1, path.size))
+    measures = np.zeros((unknowns.max() + 1, len(teeth), path.size))
+    for i, distance in enumerate(reach):
+        radius = math.hypot(base, distance)
+        half_angle = profile.half_angle(radius)
+        gamma = math.atan2(distance, base) - half_angle
+        x, y = radius * math.sin(half_angle), radius * math.cos(half_angle)
+        nodes, weights = _shape(section.points[1], section.flank, y)
+        loads[unknowns[nodes], i] = np.outer(weights, _normal(gamma, helix, sense))
+        for j, tooth in enumerate(teeth):
+            turn = tooth * profile.pitch_angle
+            radial = math.sin(turn) * section.points[0] + math.cos(turn) * section.points[1]
+            nodes, weights = _shape(radial, section.axes[tooth], y - x * math.tan(gamma))
+            normal = _normal(gamma - turn, helix, sense)
+            measures[unknowns[nodes], j, i] = np.outer(weights, normal)
+    return loads, measures.reshape(len(measures), -1)
+
+
+def _normal(gamma: float, helix: float, sense: int) -> list[float]:
+    """Outward normal of the flank."""
+    return [
+        math.cos(helix) * math.cos(gamma),
+        math.cos(helix) * math.sin(gamma),
+        -sense * math.sin(helix),
+    ]
+
+
+def _shape(y: np.ndarray, edges: np.ndarray, height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of the edge that reaches a height, and their quadratic shape functions there."""
+    edge = edges[np.clip(np.searchsorted(y[edges[:, 0]], height, "right") - 1, 0, len(edges) - 1)]
+    first, middle, last = y[edge]
+    a, b, c = 2.0 * (first - 2.0 * middle + last), 4.0 * middle - 3.0 * first - last, first - height
+    at = -2.0 * c / (b + math.sqrt(b * b - 4.0 * a * c))
+    return edge, np.array([(1.0 - at) * (1.0 - 2.0 * at), 4.0 * at * (1.0 - at), at * (2 * at - 1)])

@@ -1,0 +1,104 @@
+"""Mesh stiffness by finite elements: compliance of the teeth once, contact at every phase and load.
+
+Contact lines, flank modifications and the contact's own compliance are those of the slice method;
+what differs is the structure behind them.  One tooth of each gear stands for all its teeth, turned.
+Tooth pairs in contact at the same time act on each other through the approach of the gears alone,
+as in the slice method, unless `coupled_teeth` is set: then they also move each other's root by
+deforming the common body, which is held at the hub.
+"""
+
+import itertools
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from herringbone.gears.finite_elements.compliance import (
+    ToothCompliance,
+    teeth_ahead,
+    tooth_compliance,
+    tooth_mesh,
+)
+from herringbone.gears.finite_elements.layer import scikit_fem
+from herringbone.gears.finite_elements.section import Resolution
+from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.modification import Modification
+from herringbone.gears.point_mesh import Line, PointMesh, Progress, silent
+from herringbone.gears.slices import SliceMesh
+
+SLICES = 120
+
+
+@dataclass(frozen=True)
+class FiniteElementMesh(PointMesh):
+    """Finite-element model of one half; the other half is its mirror image.
+
+    Args:
+        pair: gear pair.
+        modification: of the flanks.
+        resolution: of the mesh of each gear.
+        slices: points of a contact line across the face.
+        corner_contact: follow tip corners outside the path of contact.
+        coupled_teeth: teeth in contact at the same time move each other through the body.
+        progress: called with what is done and its share.
+
+    Raises:
+        ParameterError: a section cannot be meshed, or scikit-fem is missing.
+    """
+
+    pair: GearPair
+    modification: Modification = field(default_factory=Modification)
+    resolution: Resolution = field(default_factory=Resolution)
+    slices: int = SLICES
+    corner_contact: bool = False
+    coupled_teeth: bool = False
+    progress: Progress = silent
+
+    def __post_init__(self) -> None:
+        scikit_fem()
+        for gear in range(2):
+            tooth_mesh(self.pair, gear, self.resolution)
+
+    @cached_property
+    def teeth(self) -> tuple[ToothCompliance, ToothCompliance]:
+        """Compliance of a tooth of pinion and wheel."""
+        return self._tooth(0, "pinion"), self._tooth(1, "wheel")
+
+    def _tooth(self, gear: int, name: str) -> ToothCompliance:
+        ahead = teeth_ahead(self.pair) if self.coupled_teeth else 0
+        return tooth_compliance(
+            self.pair, gear, self.resolution, ahead, lambda done: self.progress(name, done)
+        )
+
+    @cached_property
+    def lines(self) -> SliceMesh:
+        """Contact lines and their points."""
+        return SliceMesh(
+            self.pair, self.modification, slices=self.slices, corner_contact=self.corner_contact
+        )
+
+    def compliance(self, lines: list[Line]) -> np.ndarray:
+        """Compliance of teeth and bodies among the points of lines [m/N]."""
+        length = self.pair.path_of_contact.length
+        ends = np.cumsum([0, *(face.size for _, face, _ in lines)])
+        parts = [slice(*pair) for pair in itertools.pairwise(ends)]
+        total = np.zeros((ends[-1], ends[-1]))
+        for tooth in self.teeth:
+            weights = [tooth.weights(np.clip(path, 0.0, length), face) for path, face, _ in lines]
+            for i, j in itertools.combinations_with_replacement(range(len(lines)), 2):
+                if j - i < len(tooth.matrices):
+                    block = weights[j] @ tooth.matrices[j - i] @ weights[i].T
+                    total[parts[j], parts[i]] += block
+                    if i != j:
+                        total[parts[i], parts[j]] += block.T
+        return total
+
+    def describe(self) -> str:
+        """The model in one line."""
+        gears = " and ".join(
+            f"{tooth.face.size - 1} layers, {tooth.unknowns} degrees of freedom"
+            for tooth in self.teeth
+        )
+        corner = ", corner contact" if self.corner_contact else ""
+        coupled = ", teeth coupled by the body" if self.coupled_teeth else ""
+        return f"finite elements ({gears}), {self.slices} points across the face{corner}{coupled}"
