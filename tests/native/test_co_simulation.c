@@ -250,6 +250,8 @@ static void test_resources(void) {
     CHECK(get(c, DER_W) == 20.0);
     OK(name_file(c, INERTIAS, "heavy.csv"));
     CHECK(get(c, DER_W) == 2.0);
+    OK(name_file(c, INERTIAS, "schwer gr\xC3\xB6\xC3\x9F" "er.csv"));
+    CHECK(get(c, A) == 2.0);
     OK(name_file(c, SHAPES, "one_shape.csv"));
     REFUSED(fmi2ExitInitializationMode(c), "one_shape.csv: 1 rows, 2 expected");
     fmi2FreeInstance(c);

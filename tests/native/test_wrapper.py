@@ -23,6 +23,7 @@ INERTIAS = "# units: mass kg, speed rad/s\nside,mass,speed\n"
 FILES = {
     "inertias.csv": INERTIAS + "left,0.5,1\nright,0.25,1\n",
     "heavy.csv": INERTIAS + "left,5,1\n",
+    "schwer größer.csv": INERTIAS + "left,5,1\n",
     "empty.csv": "",
     "no_units.csv": "side,mass,speed\nleft,1,1\n",
     "unit.csv": "# units: mass g, speed rad/s\nside,mass,speed\nleft,1,1\n",

@@ -176,11 +176,22 @@ static bool read_units(const Table *table, const HbText *grammar, double values[
     return true;
 }
 
+/* Room for more numbers behind those that count; NULL with a message if memory is short. */
+static double *grow(Numbers *numbers, size_t more, const char *file, Message *message) {
+    double *values = realloc(numbers->values, (numbers->count + more) * sizeof *values);
+    if (!values) {
+        message_write(message, "cannot read %s: out of memory", file);
+        return NULL;
+    }
+    numbers->values = values;
+    return values + numbers->count;
+}
+
 static bool append(const Table *table, const HbText *grammar, Numbers *numbers, int64_t shape[2],
                    Message *message) {
-    double units[16];
-    if (grammar->column_count > sizeof units / sizeof *units ||
-        !read_units(table, grammar, units, message))
+    size_t declared = grammar->column_count;
+    double *values = grow(numbers, declared, table->file, message);
+    if (!values || !read_units(table, grammar, values, message))
         return false;
     if (table->row_count < 2) {
         message_write(message, "%s: it has no rows", table->file);
@@ -190,18 +201,11 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
         table->fields[i] = csv_trim(table->fields[i]);
     if (!check_header(table, grammar, message))
         return false;
-    size_t declared = grammar->column_count, rows = table->row_count - 1;
-    size_t more = declared + rows * table->rows->count;
-    double *values = realloc(numbers->values, (numbers->count + more) * sizeof *values);
-    if (!values) {
-        message_write(message, "cannot read %s: out of memory", table->file);
+    size_t rows = table->row_count - 1, count = declared + rows * table->rows->count;
+    values = grow(numbers, count, table->file, message);
+    if (!values || !read_rows(table, grammar, values + declared, message))
         return false;
-    }
-    numbers->values = values;
-    memcpy(values + numbers->count, units, declared * sizeof *units);
-    if (!read_rows(table, grammar, values + numbers->count + declared, message))
-        return false;
-    numbers->count += more;
+    numbers->count += count;
     shape[0] = (int64_t)rows;
     shape[1] = (int64_t)table->rows->count;
     return true;
