@@ -186,6 +186,7 @@ def _values_text(pair: GearPair) -> str:
     """Values of the gear_mesh component as the [set] table of a scene."""
     lines = [
         "# Values of the gear_mesh component for this pair: the [set] table of a scene.",
+        f"# A steady load of the wheel is {pair.gear_ratio:.6g} times the pinion's torque.",
         "[set]",
     ]
     lines += [f'"gear_mesh.{name}" = {value!r}' for name, value in component_values(pair).items()]

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from herringbone.analysis.housing_contract import STEP, Finding, check_housing
+from herringbone.analysis.housing_behaviour import Finding
+from herringbone.analysis.housing_contract import STEP, check_housing
 from herringbone.core import HerringboneError
 from herringbone.core.paths import cache_folder
 from herringbone.cosim.fmu_part import FmuPart

@@ -42,7 +42,11 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
         "file", nargs="+", type=Path,
         help=".frd, .unv, .uff, .op4, .pch, .bdf; or K.mtx M.mtx and perhaps the seat input B.mtx",
     )  # fmt: skip
-    sub.add_argument("--seats", type=Path, help="TOML file: units, frame, nodes of the seats")
+    sub.add_argument(
+        "--seats",
+        type=Path,
+        help="TOML file: units, frame, nodes of the seats; sample: fmus/modal_housing/seats.toml",
+    )
     _band_options(sub)
 
 

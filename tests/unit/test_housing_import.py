@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError
+from herringbone.core.paths import component_folder
 from herringbone.housing.importers import import_housing
 from herringbone.housing.importers.dmig import read_dmig
 from herringbone.housing.importers.frd import read_frd
@@ -582,6 +583,15 @@ def test_bad_matrices(matrix_files, placed, seats, tmp_path):
     assert "where are the seats?" in text([stiffness, mass], None)
     mass.write_text(mass.read_text()[:200])
     assert "M.mtx is no valid Matrix Market file" in text([stiffness, mass])
+
+
+def test_sample_of_seats():
+    """What the sample says, in SI units."""
+    sample = read_seats(component_folder("modal_housing") / "seats.toml")
+    assert [s.name for s in sample.selections] == [*HALVES, "A"]
+    assert (sample.length, sample.mass, sample.time) == (1e-3, 1e3, 1.0)
+    np.testing.assert_allclose(sample.selections[2].weights, np.array([1, 2, 1, 2]) / 6)
+    assert sample.valid_to_hz == 2000.0
 
 
 BAD_SEATS = [

@@ -15,7 +15,8 @@ from herringbone.housing.reduced_housing import (
     reduce_housing,
     with_residual_modes,
 )
-from herringbone.housing.reduction import receptance_bound, reduce_model
+from herringbone.housing.reduction import reduce_model
+from herringbone.housing.reduction_bound import receptance_bound
 from herringbone.housing.validation import housing_warnings
 
 BAND = 2000.0

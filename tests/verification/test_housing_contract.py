@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 from support_parts import OK, CallbackPart
 
-from herringbone.analysis import housing_contract
-from herringbone.analysis.housing_contract import (
-    FORCES,
-    POSITIONS,
-    STEP,
-    VELOCITIES,
-    check_housing,
-    least_work,
-)
+from herringbone.analysis import housing_behaviour
+from herringbone.analysis.housing_behaviour import FORCES, POSITIONS, VELOCITIES, least_work
+from herringbone.analysis.housing_contract import STEP, check_housing
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import Instance, ParameterError
@@ -157,7 +151,7 @@ class Coarse(Seats):
     ],
 )
 def test_each_fault_fails_its_test(monkeypatch, kind, fails):
-    monkeypatch.setattr(housing_contract, "_SETTLING", 700)
+    monkeypatch.setattr(housing_behaviour, "_SETTLING", 700)
     found = {f.test for f in check_housing(kind) if not f.holds}
     assert found == fails
 

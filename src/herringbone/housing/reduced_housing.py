@@ -9,12 +9,8 @@ import scipy.sparse as sp
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.housing.modal_model import SEAT_DOFS, ModalHousing
-from herringbone.housing.reduction import (
-    choose_modes,
-    make_certificate,
-    receptance_bound,
-    residual_modes,
-)
+from herringbone.housing.reduction import residual_modes
+from herringbone.housing.reduction_bound import choose_modes, make_certificate, receptance_bound
 
 RESIDUAL_DAMPING = 0.05
 """Damping ratio of residual pseudo modes: assumed; above the band it hardly shows."""
@@ -28,12 +24,12 @@ def reduce_housing(housing: ModalHousing, *, band_hz: float, tolerance: float) -
     """Keep the modes that a band and a tolerance ask for; the rest becomes residual modes.
 
     A residual matrix becomes pseudo modes first. The oscillators that are dropped stand for the
-    full model, so the bound of `reduction` holds against the data that came in.
+    full model, so the bound of `reduction_bound` holds against the data that came in.
 
     Args:
         housing: the full data.
         band_hz: highest frequency of interest [Hz].
-        tolerance: see `reduction.choose_modes`.
+        tolerance: see `reduction_bound.choose_modes`.
 
     Raises:
         ParameterError: band or tolerance out of range, or beyond what the data are good for.

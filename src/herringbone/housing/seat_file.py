@@ -1,27 +1,6 @@
 """Which nodes of a foreign model are the seats and sensors, and in which units it is.
 
-valid_to_hz = 2000
-boundary = "base bolts fixed"
-source = "gearbox housing, revision C"
-static = "static.csv"       # optional, to modes: static compliance at the seats, as in the format
-[units]                     # of the file; m, kg, s if not given
-length = "mm"               # m, mm
-mass = "t"                  # kg, t, g
-time = "s"                  # s, ms
-[frame]                     # of the gearbox, in the file's coordinates and length unit
-origin = [0, 0, 0]
-rotation = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-[damping]                   # for modes whose damping the file does not tell
-ratio = 0.01
-source = "assumed"
-[seats.pinion_left]         # pinion_right, wheel_left, wheel_right alike
-nodes = [101, 102]
-weights = [0.5, 0.5]        # equal if not given; the sum is made 1
-[sensors.A]
-nodes = [7]
-dofs = ["z"]
-[matrix]                    # for matrices without labels
-rows = "model.dof"          # lines "node.axis" with axis 1, 2, 3, as CalculiX writes them
+A sample with all keys is `fmus/modal_housing/seats.toml`.
 """
 
 import tomllib

@@ -96,9 +96,9 @@ class FiniteElementMesh(PointMesh):
     def describe(self) -> str:
         """The model in one line."""
         gears = " and ".join(
-            f"{tooth.face.size - 1} layers, {tooth.unknowns} degrees of freedom"
+            f"{tooth.face.size - 1} layers with {tooth.unknowns} degrees of freedom"
             for tooth in self.teeth
         )
         corner = ", corner contact" if self.corner_contact else ""
         coupled = ", teeth coupled by the body" if self.coupled_teeth else ""
-        return f"finite elements ({gears}), {self.slices} points across the face{corner}{coupled}"
+        return f"finite elements, {gears}, {self.slices} points across the face{corner}{coupled}"
