@@ -7,13 +7,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from herringbone.analysis.diagnosis import diagnose
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
 from herringbone.analysis.stability import fastest_bond, warn_if_unstable
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import COMPONENTS, component
-from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core import HerringboneError, Instance, OutcomeKind, ParameterError
+from herringbone.core.energy_report import Verdict
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import (
     AUTO,
@@ -147,10 +149,22 @@ def run(
         for part in parts:
             part.close()
     result = _result(structure, chosen, coupling, fmu, recording, notes)
+    if _unstable(recording):
+        result = replace(
+            result, info=replace(result.info, why=diagnose(structure, coupling, recording.step))
+        )
     if reference:
         result = _with_error(result, structure)
         result = _decimated(result, chosen.record_step)
     return result
+
+
+def _unstable(recording: Recording) -> bool:
+    """True if a run diverged, or its coupling was seen to add energy without end."""
+    energy = recording.energy
+    return recording.outcome.kind is OutcomeKind.DIVERGED or (
+        energy is not None and energy.verdict is Verdict.UNSTABLE
+    )
 
 
 def _stability_warning(system: System, algorithm: Algorithm, step: float) -> str | None:

@@ -14,6 +14,7 @@ from herringbone.output import check_writable, say, show
 if TYPE_CHECKING:
     from herringbone.housing.build import BuiltHousing
 
+_BAR = "stage {n} of {total} |{bar}| {elapsed} {desc}"
 _LEAST_SHARE = 0.1
 """Smaller shares of a mode's energy are not shown."""
 
@@ -81,17 +82,17 @@ def _build(options: argparse.Namespace) -> int:
     design = read_design(file)
     output = options.output or Path("results") / file.stem
     check_writable(output.parent if output.suffix == ".zip" else output)
-    with tqdm(total=STAGES, disable=None, bar_format="{l_bar}{bar}| {elapsed} {desc}") as bar:
+    with tqdm(total=STAGES, disable=None, bar_format=_BAR) as bar:
 
         def progress(what: str) -> None:
             bar.total = max(STAGES, bar.n + 1)
-            bar.set_description_str(what, refresh=False)
             bar.update()
+            bar.set_description_str(what)
 
         found = build_housing(design, mesh_size=options.mesh_size, progress=progress)
     for warning in write_housing(found.model, output):
         say(f"herringbone: note: {warning}")
-    show(_json(found, output) if options.json else _table(found, output))
+    show(_json(found, output) if options.json else _table(found, file, output))
     return 0
 
 
@@ -118,7 +119,7 @@ def _json(found: "BuiltHousing", output: Path) -> str:
     })  # fmt: skip
 
 
-def _table(found: "BuiltHousing", output: Path) -> str:
+def _table(found: "BuiltHousing", file: Path, output: Path) -> str:
     """Figures of the model, and what its lowest modes do."""
     model, shares = found.model, found.shares
     normal, certificate = model.kind.count("normal"), model.certificate
@@ -138,6 +139,7 @@ def _table(found: "BuiltHousing", output: Path) -> str:
     lines += [
         "T, R: rigid translation along, rotation about x (toward the wheel), y (up), z (axial)",
         "",
+        f"Dimensions: {file}",
         f"Files: {output}",
     ]
     return "\n".join(lines)

@@ -156,6 +156,8 @@ def _cost(result: Result) -> Iterator[str]:
         )
     if info.energy:
         yield _line("Coupling energy", _energy(info.energy))
+    for k, line in enumerate(info.why.lines() if info.why else ()):
+        yield _line("" if k else "Why unstable", line)
 
 
 def _operating_point(result: Result) -> Iterator[str]:

@@ -13,7 +13,7 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from herringbone.core import HerringboneError, Outcome, ParameterError
-from herringbone.core.energy_report import EnergyReport
+from herringbone.core.energy_report import Diagnosis, EnergyReport
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,6 +39,7 @@ class RunInfo:
         steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
             "shortest", "median" and "longest" of the accepted ones [s].
         energy: what the coupling did to the energy; None if the algorithm does not extrapolate.
+        why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
     """
@@ -59,6 +60,7 @@ class RunInfo:
     notes: tuple[str, ...] = ()
     steps: Mapping[str, float] | None = None
     energy: EnergyReport | None = None
+    why: Diagnosis | None = None
     parameters: Mapping[str, float] = field(default_factory=dict)
     resources: Mapping[str, str] = field(default_factory=dict)
 

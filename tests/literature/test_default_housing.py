@@ -70,6 +70,7 @@ def test_record_has_the_figures_of_the_data():
     assert re.search(rf"below {re.escape(bound)} % of the static\s+compliance", RECORD)
 
 
+@pytest.mark.slow
 def test_convergence_table():
     """Frequencies fall with the mesh size; the row of the data is theirs; two rows again.
 

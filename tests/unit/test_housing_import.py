@@ -283,13 +283,13 @@ def node_set(pyuff, coordinates):
     )
 
 
-def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03):
+def shape_sets(pyuff, frequency, shapes, *, mass=2.0, zeta=0.03, eta=0.0):
     for n, f in enumerate(frequency):
         yield pyuff.prepare_55(
             id1="NONE", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
             model_type=1, analysis_type=2, data_ch=2, spec_data_type=8, data_type=2,
             n_data_per_node=3, load_case=1, mode_n=n + 1, freq=f, modal_m=mass,
-            modal_damp_vis=zeta, modal_damp_his=0.0, node_nums=np.arange(1, NODES + 1),
+            modal_damp_vis=zeta, modal_damp_his=eta, node_nums=np.arange(1, NODES + 1),
             r1=shapes[:, 0, n], r2=shapes[:, 1, n], r3=shapes[:, 2, n],
         )  # fmt: skip
 
@@ -332,6 +332,13 @@ def test_uff_55_to_its_digits(pyuff, write_uff, seats, model):
     housing = load(path, seats)
     assert_same_receptance(housing, model, 1e-4)
     assert housing.damping["source"] == "file"
+
+
+@pytest.mark.parametrize(("zeta", "eta", "expected"), [(0, 0.05, 0.025), (0, 0, 0.02)])
+def test_uff_damping(pyuff, write_uff, seats, model, zeta, eta, expected):
+    """Half the loss factor; without either the seat file's 2 %."""
+    path = write_uff(*shape_sets(pyuff, *modes_of(model), zeta=float(zeta), eta=float(eta)))
+    np.testing.assert_allclose(load(path, seats).damping_ratio, expected, rtol=1e-5)
 
 
 def test_complex_modes_that_are_nearly_real(pyuff, write_uff, seats, model):

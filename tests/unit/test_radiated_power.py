@@ -7,14 +7,8 @@ import numpy as np
 import pytest
 from support_result import make_result
 
-from herringbone.analysis.radiated_power import (
-    AIR_DENSITY,
-    SPEED_OF_SOUND,
-    housing_of,
-    modal_velocity,
-    radiated_power,
-    seat_forces,
-)
+from herringbone.analysis.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.analysis.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, radiated_power
 from herringbone.core import Outcome, OutcomeKind, ParameterError
 from herringbone.core.paths import resources_folder
 from herringbone.housing import SEAT_DOFS, ModalHousing, Point, default_housing, write_housing

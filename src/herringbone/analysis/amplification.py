@@ -9,7 +9,8 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 1061-1081, section 3: recurrence equations of co-simulation; here the parts are the real ones.)
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -125,37 +126,70 @@ class Amplification:
             self._used = _coupled(self._differences(step, everything))
         return self._differences(step, self._used)
 
-    def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
+    def motion(self, step: float) -> np.ndarray:
+        """All connected outputs (n,), complex amplitudes of the fastest growing motion.
+
+        Raises:
+            HerringboneError: a part fails at this step.
+        """
+        eigenvalues, vectors = np.linalg.eig(self.matrix(step))
+        sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
+        vector = vectors[:, int(np.argmax(sizes))]
+        vector = vector / np.abs(vector / self._change[self._used]).max()
+        history = self._base.copy()
+        with self._prepared(step) as prepared:
+            self._advance(prepared, step, history)
+            self._advance(prepared, step, history)
+            base = history[0].copy()
+            found = []
+            for changes in (vector.real, vector.imag):
+                self._advance(prepared, step, history, dict(zip(self._used, changes, strict=True)))
+                found.append(history[0] - base)
+        return found[0] + 1j * found[1]
+
+    @contextmanager
+    def _prepared(self, step: float) -> Iterator[PreparedRun]:
+        """A run of the algorithm; afterwards the parts are as they were."""
         prepared = self.algorithm.prepare(self.network)
         degrees = [part.instance.block[part.degree_index] for part in self._parts]
         try:
             for part, degree in zip(self._parts, prepared.degree, strict=True):
                 part.prepare(step, degree)
-            return self._columns(prepared, step, used)
+            yield prepared
         finally:
+            self._restore(self._base.copy())
             for part, degree in zip(self._parts, degrees, strict=True):
                 part.instance.block[part.degree_index] = degree
 
-    def _columns(self, prepared: PreparedRun, step: float, used: np.ndarray) -> np.ndarray:
-        history = self._base.copy()
-
-        def advance(entry: int | None) -> np.ndarray:
-            self._restore(history)
-            if entry is not None:
-                self._perturb(history, entry)
-            chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
-            status, _, culprit = prepared.run(history, chunk)
-            if status != DONE:
-                name = self._parts[culprit].name if culprit >= 0 else "the coupling"
-                raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
-            return self._vector(history)[used]
-
-        advance(None)  # an algorithm may build its correction in the first call
-        base = advance(None)
-        matrix = np.empty((used.size, used.size))
-        for column, entry in enumerate(used):
-            matrix[:, column] = (advance(int(entry)) - base) / self._change[entry]
+    def _advance(
+        self,
+        prepared: PreparedRun,
+        step: float,
+        history: np.ndarray,
+        changes: Mapping[int, float] | None = None,
+    ) -> np.ndarray:
+        """z after one macro step from the operating point, some of its entries changed."""
         self._restore(history)
+        for entry, change in (changes or {}).items():
+            self._perturb(history, int(entry), change)
+        chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
+        status, _, culprit = prepared.run(history, chunk)
+        if status != DONE:
+            name = self._parts[culprit].name if culprit >= 0 else "the coupling"
+            raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
+        return self._vector(history)
+
+    def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
+        history = self._base.copy()
+        matrix = np.empty((used.size, used.size))
+        with self._prepared(step) as prepared:
+            # An algorithm may build its correction in the first call.
+            self._advance(prepared, step, history)
+            base = self._advance(prepared, step, history)[used]
+            for column, entry in enumerate(used):
+                change = self._change[entry]
+                moved = self._advance(prepared, step, history, {entry: change})[used]
+                matrix[:, column] = (moved - base) / change
         return matrix
 
     def _restore(self, history: np.ndarray) -> None:
@@ -163,8 +197,8 @@ class Amplification:
         for part, start in zip(self._parts, self._start, strict=True):
             part.values[:] = start
 
-    def _perturb(self, history: np.ndarray, entry: int) -> None:
-        change, rest = self._change[entry], entry
+    def _perturb(self, history: np.ndarray, entry: int, change: float) -> None:
+        rest = entry
         for part, count in zip(self._parts, self._counts, strict=True):
             if rest < count:
                 part.values[rest] += change

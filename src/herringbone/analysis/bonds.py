@@ -69,7 +69,7 @@ class Bond:
 
 
 @dataclass(frozen=True)
-class _Direction:
+class Direction:
     """A bond's forces by connection, for unit compression."""
 
     name: str
@@ -81,7 +81,7 @@ class _Direction:
 def bond_table(network: Network, instances: Sequence[Instance]) -> tuple[Bond, ...]:
     """All bonds of a system of components at their present operating point."""
     bonds = []
-    for direction in _directions(network, instances):
+    for direction in bond_directions(network, instances):
         by_body: dict[int, list[tuple[str, float]]] = {}
         for c, value in direction.forces:
             by_body.setdefault(c.target, []).append((c.input, value))
@@ -101,7 +101,7 @@ def bond_table(network: Network, instances: Sequence[Instance]) -> tuple[Bond, .
 
 def highest_frequency(network: Network, instances: Sequence[Instance]) -> float:
     """Angular frequency [rad/s] of all bonds together: the largest at fixed inner springs."""
-    directions = _directions(network, instances)
+    directions = bond_directions(network, instances)
     coupling = np.zeros((len(directions), len(directions)))
     for i, one in enumerate(directions):
         for j, other in enumerate(directions):
@@ -117,7 +117,7 @@ def highest_frequency(network: Network, instances: Sequence[Instance]) -> float:
     return math.sqrt(max(0.0, float(np.linalg.eigvalsh(0.5 * (coupling + coupling.T))[-1])))
 
 
-def _motion(force: str) -> tuple[str, str]:
+def motion_of(force: str) -> tuple[str, str]:
     """Names of position and velocity that belong to a force: f_y -> s_y, v_y; tau -> phi, w."""
     port, _, name = force.rpartition(".")
     if name == "tau":
@@ -125,14 +125,14 @@ def _motion(force: str) -> tuple[str, str]:
     return f"{port}.s{name[1:]}", f"{port}.v{name[1:]}"
 
 
-def _directions(network: Network, instances: Sequence[Instance]) -> list[_Direction]:
+def bond_directions(network: Network, instances: Sequence[Instance]) -> list[Direction]:
     """The bonds of all elements that give forces for motions of the same ports."""
     found = []
     bodies = set(network.bodies)
     for e in network.elements:
         forces = [c for c in network.connections if c.source == e and c.target in bodies]
         index = instances[e].component.declaration.index
-        forces = [c for c in forces if all(name in index for name in _motion(c.output))]
+        forces = [c for c in forces if all(name in index for name in motion_of(c.output))]
         if not forces:
             continue
         stiffness, damping = (_slopes(instances[e], forces, kind) for kind in (0, 1))
@@ -149,7 +149,7 @@ def _of_block(
     stiffness: np.ndarray,
     damping: np.ndarray,
     at: np.ndarray,
-) -> list[_Direction]:
+) -> list[Direction]:
     own = 0.5 * (stiffness[np.ix_(at, at)] + stiffness[np.ix_(at, at)].T)
     values, vectors = np.linalg.eigh(own)
     found = []
@@ -163,7 +163,7 @@ def _of_block(
         name = forces[first[int(np.argmax(np.abs(vector[first])))]].output
         c = float(d @ damping[np.ix_(at, at)] @ d) / size**2
         pairs = list(zip(forces, map(float, d), strict=True))
-        found.append(_Direction(f"{element}.{name}", pairs, float(value) / size, c))
+        found.append(Direction(f"{element}.{name}", pairs, float(value) / size, c))
     return found
 
 
@@ -176,7 +176,7 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
     kept = block.copy()
     matrix = np.zeros((len(forces), len(forces)))
     for column, c in enumerate(forces):
-        name = _motion(c.output)[kind]
+        name = motion_of(c.output)[kind]
         change = _CHANGE.get(units[name], 1e-6)
         values = []
         for sign in (1.0, -1.0):
@@ -210,7 +210,7 @@ def _response(
             block[declaration.index[name]] += value
         kernels.rhs(block, 0.0, dx[k])
     block[:] = kept
-    velocities = [(_motion(name)[1], x) for name, x in along]
+    velocities = [(motion_of(name)[1], x) for name, x in along]
     rows = [declaration.index[name] for name, _ in velocities if name in read]
     kernels.out(block, 0.0)
     before = block[rows].copy()

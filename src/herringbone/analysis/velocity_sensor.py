@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import butter, sosfilt
 
-from herringbone.analysis.radiated_power import housing_of, modal_velocity, seat_forces
+from herringbone.analysis.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.core import ParameterError
 from herringbone.result import TIME, Result
 
@@ -137,11 +137,12 @@ def sensor_velocity(
         axis: direction that they feel; axial by default.
 
     Returns:
-        (n, len(sensors)) [m/s] at the records.
+        (n, len(sensors)) [m/s] at the records, equidistant ones if the step was adaptive.
 
     Raises:
         ParameterError: no forces are recorded, or there is no such sensor.
     """
+    result = result.uniform()
     housing = housing_of(result)
     known = housing.dofs if housing else ()
     if missing := [name for name in sensors if (name, axis) not in known]:

@@ -1,4 +1,4 @@
-"""What the energy monitor of a run found."""
+"""What the energy monitor of a run found, and why a coupled run is unstable."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -31,3 +31,34 @@ class EnergyReport:
     bond: str | None
     ratio: float | None
     window: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Why an algorithm is unstable at a step.
+
+    Attributes:
+        algorithm: what it is called on the command line.
+        step: macro step [s].
+        growth: of the fastest growing motion per macro step; 0.01 is 1 %.
+        frequency: of that motion [Hz], at most half the rate of communication points.
+        bonds: names and shares, the largest first.
+        remedies: one line each.
+    """
+
+    algorithm: str
+    step: float
+    growth: float
+    frequency: float
+    bonds: tuple[tuple[str, float], ...]
+    remedies: tuple[str, ...]
+
+    def lines(self) -> list[str]:
+        """For people."""
+        shares = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in self.bonds[:3])
+        return [
+            f"{self.algorithm} at {self.step:.4g} s: a motion at {self.frequency:.0f} Hz grows by "
+            f"{100.0 * self.growth:.3g} % per step",
+            f"bonds: {shares}",
+            *(f"({k}) {remedy}" for k, remedy in enumerate(self.remedies, 1)),
+        ]

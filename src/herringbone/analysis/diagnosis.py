@@ -1,0 +1,133 @@
+"""Why a coupled run is unstable: the motion that grows, the bonds that feed it, and remedies.
+
+The leading eigenvector of the amplification matrix is the motion; a bond's share in it is the
+magnitude of its force times that of its relative velocity, divided by the sum over all bonds.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis.bonds import Direction, bond_directions, motion_of
+from herringbone.analysis.linear_parts import linear_network
+from herringbone.analysis.stability import default_algorithms
+from herringbone.analysis.step_scan import unstable_bands
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import HerringboneError
+from herringbone.core.energy_report import Diagnosis
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.network import Network
+from herringbone.cosim.plan import connected_outputs
+from herringbone.cosim.system import System
+
+_BELOW, _ABOVE = 20.0, 4.0
+"""Steps are looked for down to this part of the given one, and up to so many times of it."""
+_FACTORS = (1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
+_DAMPING_UNIT = {"N": "N.s/m", "N.m": "N.m.s/rad"}
+
+
+def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | None:
+    """Why an algorithm is unstable at a step; None if the linear parts are stable there.
+
+    None also where nothing can be said: foreign parts, or a start with an open mesh.
+
+    Args:
+        system: as it is started.
+        algorithm: coupling algorithm.
+        step: macro step [s].
+    """
+    if system.foreign_parts:
+        return None
+    try:
+        network, instances = linear_network(system)
+        amplification = Amplification(network, instances, algorithm)
+        growth = amplification.growth(step)
+        if growth.radius <= 1.0 + GROWTH:
+            return None
+        outputs = amplification.motion(step)
+    except HerringboneError:
+        return None
+    directions = bond_directions(network, instances)
+    shares = _shares(network, directions, outputs)
+    order = np.argsort(-shares)
+    bonds = tuple((directions[i].name, float(shares[i])) for i in order)
+    remedies = (
+        _smaller_step(amplification, step),
+        *_other_algorithms(system, algorithm, step),
+        *_more_damping(system, algorithm, step, directions[order[0]]),
+    )
+    return Diagnosis(
+        str(algorithm), step, growth.radius - 1.0, growth.frequency, bonds, tuple(remedies)
+    )
+
+
+def _shares(network: Network, directions: Sequence[Direction], outputs: np.ndarray) -> np.ndarray:
+    """Share of each bond in a motion, from all connected outputs (complex amplitudes)."""
+    names = connected_outputs(network)
+    first = np.concatenate(([0], np.cumsum([len(n) for n in names])))
+    feeding = {(c.target, c.input): c for c in network.connections}
+    found = []
+    for direction in directions:
+        force = velocity = 0.0
+        size = sum(d * d for _, d in direction.forces)
+        for c, d in direction.forces:
+            back = feeding[c.source, motion_of(c.output)[1]]
+            force += d * outputs[first[c.source] + names[c.source].index(c.output)] / size
+            velocity += d * outputs[first[back.source] + names[back.source].index(back.output)]
+        found.append(abs(force) * abs(velocity))
+    return np.array(found) / max(sum(found), 1e-300)
+
+
+def _smaller_step(amplification: Amplification, step: float) -> str:
+    bands = unstable_bands(amplification.growth, step / _BELOW, step)
+    if not bands or bands[0][0] <= step / _BELOW:
+        return f"no step down to {step / _BELOW:.3g} s is stable"
+    return f"a step below {bands[0][0]:.3g} s"
+
+
+def _other_algorithms(system: System, algorithm: Algorithm, step: float) -> list[str]:
+    """The first algorithm with one pass and the first with several that are stable at the step."""
+    found: dict[bool, str] = {}
+    for other in default_algorithms():
+        repeats = "rollback" in other.needs
+        if repeats in found or str(other) == str(algorithm):
+            continue
+        try:
+            growth = Amplification(*linear_network(system), other).growth
+            if growth(step).radius <= 1.0 + GROWTH:
+                bands = unstable_bands(growth, step, _ABOVE * step)
+                limit = (
+                    f"below {bands[0][0]:.3g} s"
+                    if bands
+                    else f"up to {_ABOVE:g} times the step at least"
+                )
+                found[repeats] = f"{other}, stable {limit}"
+        except HerringboneError:
+            continue
+    return list(found.values())
+
+
+def _more_damping(
+    system: System, algorithm: Algorithm, step: float, direction: Direction
+) -> list[str]:
+    """The damping of a bond with which the step would be stable, if up to ten times is enough."""
+    instance, _, force = direction.name.partition(".")
+    part = system.part(instance)
+    declaration = COMPONENTS[str(part.component)].declaration
+    now = {
+        f"{instance}.{v.name}": float(part.values.get(v.name, v.start))
+        for v in declaration.parameters
+        if v.name.endswith("damping")
+    }
+    for factor in _FACTORS:
+        stronger = system.with_values({name: factor * value for name, value in now.items()})
+        growth = Amplification(*linear_network(stronger), algorithm).growth(step)
+        if growth.radius <= 1.0 + GROWTH:
+            unit = _DAMPING_UNIT.get(declaration.variable(force).unit, "")
+            needed = factor * direction.damping
+            return [
+                f"{instance} with at least about {needed:.3g} {unit} of damping at {force}, "
+                f"{factor:g} times as much"
+            ]
+    return []
