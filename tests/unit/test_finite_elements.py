@@ -10,10 +10,12 @@ from support_gears import HELICAL, SPUR, THESIS, gear_pair
 from herringbone.core import ParameterError
 from herringbone.gears.equilibrium import ContactPoints, balance
 from herringbone.gears.finite_elements import FiniteElementMesh, Resolution
-from herringbone.gears.finite_elements.compliance import layer_count, tooth_mesh, unit_loads
+from herringbone.gears.finite_elements.blocks import Profile
+from herringbone.gears.finite_elements.compliance import layer_count, tooth_mesh
 from herringbone.gears.finite_elements.layer import layer_stiffness
-from herringbone.gears.finite_elements.section import Profile, Section, mesh_section
+from herringbone.gears.finite_elements.section import Section, mesh_section
 from herringbone.gears.finite_elements.sweep import stack_compliance
+from herringbone.gears.finite_elements.unit_loads import sweep_lead, unit_loads
 from herringbone.gears.methods import Task, mesh_stiffness
 
 pytest.importorskip("skfem", reason="scikit-fem (extra 'fe') is not installed")
@@ -69,6 +71,17 @@ def test_section_covers_ring_and_three_teeth(data, gear):
     wanted = [profile.half_angle(r) for r in radius[on_involute]]
     assert on_involute.sum() > 10
     np.testing.assert_allclose(np.arctan2(x, y)[on_involute], wanted, atol=1e-6)
+
+
+@pytest.mark.parametrize("left", [1, 3])
+def test_section_has_no_cracks(left):
+    """Vertices - edges + faces of a ring: 0; a node that was not merged would change it."""
+    pair = gear_pair(THESIS)
+    profile = Profile(pair.tooth_profile(0).points.T, 27, pair.hub_radius[0])
+    corners = mesh_section(profile, Resolution(), left, 1).nodes[:, ::2, ::2]
+    around = corners.reshape(-1, 4)[:, [0, 1, 3, 2]]
+    edges = np.sort(np.stack([around, np.roll(around, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    assert np.unique(corners).size - len(np.unique(edges, axis=0)) + len(corners) == 0
 
 
 @pytest.mark.parametrize("data", [SPUR, HELICAL, THESIS], ids=["spur", "helical", "thesis"])
@@ -144,7 +157,7 @@ def test_loads_are_normal_to_the_flank(gear):
     unknowns = np.arange(section.points[0].size * 3).reshape(-1, 3)
     path = np.linspace(0.0, pair.path_of_contact.length, 5)
     loads, _ = unit_loads(pair, gear, section, unknowns, path, 0)
-    lead = np.tan(pair.base_helix_angle) / pair.base_radius[gear] * (1.0 if gear == 0 else -1.0)
+    lead = sweep_lead(pair, gear)
     x, y = section.points
     screw = np.c_[lead * y, -lead * x, np.ones_like(x)].ravel()
     assert np.abs(screw @ loads).max() < 2e-4

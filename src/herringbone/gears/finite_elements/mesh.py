@@ -3,8 +3,13 @@
 Contact lines, flank modifications and the contact's own compliance are those of the slice method;
 what differs is the structure behind them.  One tooth of each gear stands for all its teeth, turned.
 Tooth pairs in contact at the same time act on each other through the approach of the gears alone,
-as in the slice method, unless `coupled_teeth` is set: then they also move each other's root by
-deforming the common body, which is held at the hub.
+as in the slice method, unless `coupled_teeth` is set: then they also move each other by deforming
+the common body, which is held at the hub radius.
+
+That is no small effect.  FZG C spur gears at 200 N m: mean stiffness -11 %, first mesh harmonic
+20.6 instead of 33.5 % of the mean.  The 27/81 double-helical pair at 2000 N m: 1.30e9 instead of
+2.03e9 N/m, of which much is the tilt of the wheel under its axial force, because each half is held
+at its own hub; in the gearbox the halves hold each other.  Hence the default.
 """
 
 import itertools
@@ -13,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import (
     ToothCompliance,
     teeth_ahead,
@@ -20,7 +26,6 @@ from herringbone.gears.finite_elements.compliance import (
     tooth_mesh,
 )
 from herringbone.gears.finite_elements.layer import scikit_fem
-from herringbone.gears.finite_elements.section import Resolution
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.modification import Modification
 from herringbone.gears.point_mesh import Line, PointMesh, Progress, silent
