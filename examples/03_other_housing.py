@@ -1,4 +1,4 @@
-"""Another housing: the thesis' four modes instead of the calibrated 52 oscillators."""
+"""Another housing: the thesis' four modes instead of the calibrated housing."""
 
 import herringbone as hb
 

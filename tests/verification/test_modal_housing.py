@@ -89,7 +89,7 @@ def test_exact_for_polynomial_forces(housing, degree, h):
         expected = exact(q, v, polynomials, h, node / max(degree, 1))
         for quantity in "sv":
             found = motion(housing, quantity, f".node{node}")
-            # w h <= 40: 7 squarings lose 2**7 eps, in both computations; sums of 52 modes.
+            # w h <= 44: 7 squarings lose 2**7 eps, in both computations; sums of 60 modes.
             np.testing.assert_allclose(
                 found, expected[quantity], atol=1e-12 * 10 * np.abs(expected[quantity]).max()
             )
