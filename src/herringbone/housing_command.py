@@ -76,7 +76,7 @@ def _import(options: argparse.Namespace) -> int:
 def _build(options: argparse.Namespace) -> int:
     from herringbone.housing import write_housing  # noqa: PLC0415 (only when it is asked for)
     from herringbone.housing.build import STAGES, build_housing  # noqa: PLC0415
-    from herringbone.housing.dimensions import read_design  # noqa: PLC0415
+    from herringbone.housing.design import read_design  # noqa: PLC0415
 
     file = options.file or component_folder("modal_housing") / "welded_housing.toml"
     design = read_design(file)

@@ -12,7 +12,7 @@ from support_fe import require_gmsh
 import herringbone as hb
 from herringbone.core.paths import component_folder
 from herringbone.housing import write_housing
-from herringbone.housing.dimensions import read_design
+from herringbone.housing.design import read_design
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.importers import import_housing
 from herringbone.housing.mesher import mesh_housing

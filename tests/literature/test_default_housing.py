@@ -14,7 +14,7 @@ from herringbone.housing import default_housing
 
 require_gmsh()
 from herringbone.housing import default_data  # noqa: E402 (needs the extra fe)
-from herringbone.housing.dimensions import read_design  # noqa: E402
+from herringbone.housing.design import read_design  # noqa: E402
 
 HOUSING = default_housing()
 RECORD = default_data.RECORD.read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ import pytest
 
 from herringbone.core import ParameterError
 from herringbone.core.paths import component_folder
-from herringbone.housing.dimensions import read_design
+from herringbone.housing.design import read_design
 
 SHIPPED = component_folder("modal_housing") / "welded_housing.toml"
 TEXT = SHIPPED.read_text(encoding="utf-8")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.housing.dimensions import Material
+from herringbone.housing.design import Material
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.mesher import Mesh
 

@@ -13,7 +13,7 @@ from herringbone.cli import main
 from herringbone.core import HerringboneError
 from herringbone.core.paths import component_folder
 from herringbone.housing import read_housing
-from herringbone.housing.dimensions import read_design
+from herringbone.housing.design import read_design
 from herringbone.housing.eigenmodes import Factorisation, eigenmodes
 from herringbone.housing.mesher import mesh_housing
 

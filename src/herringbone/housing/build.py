@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.housing.dimensions import HousingDesign, ModeOptions, check_mesh_size
+from herringbone.housing.design import HousingDesign, ModeOptions, check_mesh_size
 from herringbone.housing.mesher import mesh_housing
 from herringbone.housing.modal_model import ModalHousing
 from herringbone.housing.reduction import Reduction, reduce_model

@@ -18,7 +18,7 @@ import numpy as np
 from herringbone.core.paths import component_folder, resources_folder
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.housing.build import BuiltHousing, build_housing
-from herringbone.housing.dimensions import HousingDesign, read_design
+from herringbone.housing.design import HousingDesign, read_design
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.mesher import mesh_housing
 from herringbone.housing.mode_shares import ModeShares

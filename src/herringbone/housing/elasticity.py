@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 from skfem import Basis, BilinearForm, ElementTetP2, FacetBasis, LinearForm, MeshTet
 
-from herringbone.housing.dimensions import Material
+from herringbone.housing.design import Material
 from herringbone.housing.mesher import Mesh
 
 _STIFFNESS_DEGREE, _MASS_DEGREE = 2, 4  # of the integrands: the quadratures are exact

@@ -15,7 +15,8 @@ import scipy.sparse as sp
 
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError
-from herringbone.housing.dimensions import Dimensions, HousingDesign, Sensors
+from herringbone.housing.design import HousingDesign, Sensors
+from herringbone.housing.dimensions import Dimensions
 from herringbone.housing.elasticity import Solid
 from herringbone.housing.mesher import Mesh
 from herringbone.housing.modal_model import Point

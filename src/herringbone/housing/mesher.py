@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.housing.dimensions import Dimensions, check_mesh_size
+from herringbone.housing.design import check_mesh_size
+from herringbone.housing.dimensions import Dimensions
 
 _MM = 1e3  # the modeller's tolerances suit millimetres
 _CURVATURE = 10  # elements around a circle, at least
