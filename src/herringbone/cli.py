@@ -1,4 +1,4 @@
-"""Command line: list, build, check, run, chart, stability, export, gear, housing."""
+"""Command line: what `herringbone --help` shows."""
 
 import argparse
 import traceback
@@ -10,7 +10,7 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
-from herringbone import build_command, export_command, gear_command, housing_command
+from herringbone import bench_command, build_command, export_command, gear_command, housing_command
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
 
@@ -71,6 +71,7 @@ def _parser() -> argparse.ArgumentParser:
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
+    bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
     export_command.add_options(sub)
     sub.add_argument("--set", action="append", default=[], metavar=_SET)
@@ -283,6 +284,11 @@ def _stability(options: argparse.Namespace) -> int:
 
         atlas_picture(panels).savefig(output / "stability_atlas.png")
     show(report.stability_json(found) if options.json else report.stability_text(found))
+    return 0
+
+
+def _bench(options: argparse.Namespace) -> int:
+    show(bench_command.bench(options))
     return 0
 
 

@@ -70,6 +70,8 @@ def export_ssp(
     scene: str | Scene | None = None,
     step: float = PARALLEL_STEP,
     values: Mapping[str, float | str] | None = None,
+    native: bool = False,
+    platforms: Sequence[str] = (),
 ) -> Path:
     """Write a system as an .ssp file: structure, FMUs, and start values of a scene.
 
@@ -83,6 +85,8 @@ def export_ssp(
         scene: name or file of a scene; the system's default if not given.
         step: communication step size [s]; shortened so that a whole number makes the end time.
         values: variables to set, by `instance.variable`.
+        native: FMUs without Python, instead of Python FMUs.
+        platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
 
     Returns:
         The file.
@@ -101,7 +105,8 @@ def export_ssp(
         _log.warning(note)
     _check_texts(structure)
     step = make_grid(chosen.t_end, step, step).step
-    fmus = build_python_fmus(sorted({str(p.component) for p in structure.parts if not p.foreign}))
+    names = sorted({str(p.component) for p in structure.parts if not p.foreign})
+    fmus = build_native_fmus(names, platforms=platforms) if native else build_python_fmus(names)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)

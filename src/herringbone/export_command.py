@@ -20,6 +20,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         metavar="INSTANCE",
         help="leave this instance out of the FMU; what it feeds becomes inputs",
     )
+    sub.add_argument("--native", action="store_true", help="an .ssp file with native FMUs")
     add_platform_options(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="file; SYSTEM.ssp or SYSTEM.fmu if not given"
@@ -37,10 +38,10 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     from herringbone.system_fmu import export_fmu  # noqa: PLC0415
 
     name = Path(options.system).stem
+    platforms = chosen_platforms(options)
     if options.as_fmu:
         if options.step is not None:
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
-        platforms = chosen_platforms(options)
         file = export_fmu(
             options.system,
             options.output or Path(f"{name}.fmu"),
@@ -51,13 +52,17 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
             fmi=options.fmi,
         )
         return [str(file), *untested(platforms)]
-    if options.outside or options.platforms or options.fmi != 2:
-        raise ParameterError("--outside, --platforms and --fmi choose among FMUs; add --as-fmu")
+    if options.outside or options.fmi != 2:
+        raise ParameterError("--outside and --fmi belong to one FMU; add --as-fmu")
+    if platforms and not options.native:
+        raise ParameterError("--platforms chooses among native FMUs; add --native or --as-fmu")
     file = export_ssp(
         options.system,
         options.output or Path(f"{name}.ssp"),
         scene=options.scene,
         step=PARALLEL_STEP if options.step is None else options.step,
         values=values,
+        native=options.native,
+        platforms=platforms,
     )
-    return [str(file)]
+    return [str(file), *untested(platforms)]

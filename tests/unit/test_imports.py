@@ -38,6 +38,8 @@ TOP = {
     "listing",
     "export",
     "export_command",
+    "bench_command",
+    "benchmarks",
     "system_fmu",
     "ssp_import",
     "chart_command",

@@ -1,6 +1,7 @@
 """A host for one FMU, for checks and golden results; co-simulation has its own loop."""
 
 from collections.abc import Mapping
+from time import perf_counter
 from types import TracebackType
 from typing import Self
 
@@ -42,6 +43,22 @@ class Host(FmuPart):
         self.set_values(values or {})
         self.enter_initialization(0.0, 1.0)
         self.exit_initialization()
+
+    def start_seconds(self) -> float:
+        """Wall time [s] to instantiate and initialise one more instance.
+
+        Raises:
+            FmuError: it does not initialise.
+        """
+        first = self.slave.component
+        begin = perf_counter()
+        self.slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        try:
+            self.initialise()
+            return perf_counter() - begin
+        finally:
+            self.slave.fmi2FreeInstance(self.slave.component)
+            self.slave.component = first
 
     def step(self, time: float, step_size: float) -> None:
         """Advance from `time` by `step_size` [s].

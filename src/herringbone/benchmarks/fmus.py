@@ -1,0 +1,56 @@
+"""Start and size of the native FMUs."""
+
+import statistics
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from herringbone.fmi.host import Host
+from herringbone.fmi.native import PLATFORMS, build_native_fmus, find_compiler
+
+_RESOURCES = "resources/"
+
+
+@dataclass(frozen=True)
+class NativeFmu:
+    """A native FMU that was measured.
+
+    Attributes:
+        name: component.
+        start_seconds: to instantiate and initialise, the median of the repeats.
+        bytes: size of the packed file without its resources.
+        platforms: for which it has a binary.
+    """
+
+    name: str
+    start_seconds: float
+    bytes: int
+    platforms: tuple[str, ...]
+
+
+def measure(repeats: int = 20) -> list[NativeFmu]:
+    """Start and size of all native FMUs, with all platforms that can be built here.
+
+    Raises:
+        HerringboneError: native FMUs cannot be built, or one does not initialise.
+    """
+    platforms = tuple(name for name, platform in PLATFORMS.items() if find_compiler(platform))
+    fmus = build_native_fmus(platforms=platforms)
+    return [
+        NativeFmu(name, _start_seconds(name, file, repeats), _size(file), platforms)
+        for name, file in fmus.items()
+    ]
+
+
+def _start_seconds(name: str, file: Path, repeats: int) -> float:
+    with Host(name, file) as host:
+        return statistics.median(host.start_seconds() for _ in range(repeats))
+
+
+def _size(file: Path) -> int:
+    """Packed size [bytes] without resources."""
+    with zipfile.ZipFile(file) as archive:
+        entries: Sequence[zipfile.ZipInfo] = archive.infolist()
+    resources = sum(e.compress_size for e in entries if e.filename.startswith(_RESOURCES))
+    return file.stat().st_size - resources

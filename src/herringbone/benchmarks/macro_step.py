@@ -1,0 +1,120 @@
+"""Cost of a macro step of the test rig: this master against others, on the same native FMUs.
+
+One micro step per macro step, Jacobi with held inputs and all parts in parallel, which is what the
+other masters do; recording included.
+"""
+
+import statistics
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from herringbone.api import load_scene, load_system, open_parts
+from herringbone.benchmarks.other_masters import PACKAGES, macro_step
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms import Jacobi
+from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.network import build_network
+from herringbone.cosim.plan import connected_outputs
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.ssp_write import write_ssp
+from herringbone.cosim.system import System
+from herringbone.fmi.native import build_native_fmus
+from herringbone.start import started
+
+STEP = 2.5e-6
+"""The gear mesh's micro step [s]."""
+_SLOW = 4
+"""Loops that are run through Python do this fraction of the steps."""
+PARALLEL = Jacobi(order=0, schedule="parallel")
+OURS = "this master, native FMUs"
+
+
+@dataclass(frozen=True)
+class MacroStep:
+    """Time of a macro step [s] by loop, the median of the repeats; None: not installed.
+
+    Attributes:
+        loops: by name; the first one is this master with native FMUs.
+        kernels: doStep of all parts alone: nothing set, read or recorded.
+    """
+
+    loops: Mapping[str, float | None]
+    kernels: float
+
+
+def measure(steps: int = 20000, repeats: int = 5) -> MacroStep:
+    """Measure all loops, one after another, repeatedly.
+
+    Args:
+        steps: macro steps of each measurement.
+        repeats: measurements of each loop.
+
+    Raises:
+        HerringboneError: native FMUs cannot be built, or another master fails.
+    """
+    structure, folder = load_system("test_rig")
+    system, _ = started(structure, load_scene(folder, "loaded"))
+    components = sorted({str(p.component) for p in system.parts})
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / "test_rig.ssp"
+        write_ssp(system, build_native_fmus(components), file, step=STEP, t_end=steps * STEP)
+        loops: dict[str, Callable[[], float | None]] = {
+            OURS: lambda: _ours(system, "native", steps),
+            "this master, in-process": lambda: _ours(system, "in-process", steps),
+            "this master, Python FMUs": lambda: _ours(system, "python", steps // _SLOW),
+            "plain fmpy loop": lambda: _fmpy(system, steps // _SLOW),
+            **{m: lambda m=m: macro_step(m, file, STEP, steps // _SLOW) for m in PACKAGES},
+        }
+        kernels = lambda: _ours(replace(system, connections=()), "native", steps, steps)  # noqa: E731
+        found = {name: [measure_() for _ in range(repeats)] for name, measure_ in loops.items()}
+        alone = [kernels() for _ in range(repeats)]
+    medians = {n: None if None in v else statistics.median(v) for n, v in found.items()}
+    return MacroStep(medians, statistics.median(alone))
+
+
+def _ours(system: System, fmu: str, steps: int, every: int = 1) -> float:
+    """Time of a macro step [s]; records every so many steps."""
+    parts = open_parts(system, fmu)
+    try:
+        grid = make_grid(steps * STEP, STEP, every * STEP)
+        return simulate(system, parts, PARALLEL, grid).wall_seconds / steps
+    finally:
+        for part in parts:
+            part.close()
+
+
+def _fmpy(system: System, steps: int) -> float:
+    """As one would write it with fmpy: setReal, doStep, getReal of all parts."""
+    parts = open_parts(system, "native")
+    try:
+        simulate(system, parts, PARALLEL, make_grid(STEP, STEP, STEP))
+        return plain_loop(system, parts, steps)
+    finally:
+        for part in parts:
+            part.close()
+
+
+def plain_loop(system: System, parts: list[Part], steps: int) -> float:
+    """Go on from the first macro step of initialised FMUs; time of a macro step [s]."""
+    network = build_network(system, parts)
+    slaves = [part.slave for part in parts if isinstance(part, FmuPart)]
+    wires = [network.inputs(p) for p in range(len(parts))]
+    feeds = [[(c.source, c.output) for c in wire] for wire in wires]
+    ins = [[parts[c.target].variables[c.input].reference for c in wire] for wire in wires]
+    names = connected_outputs(network)
+    outs = [[parts[p].variables[n].reference for n in names[p]] for p in range(len(parts))]
+    values = [dict(zip(n, parts[p].get(n), strict=True)) for p, n in enumerate(names)]
+    record = []
+    begin = time.perf_counter()
+    for n in range(1, steps + 1):
+        for p, slave in enumerate(slaves):
+            slave.setReal(ins[p], [values[s][name] for s, name in feeds[p]])
+        for slave in slaves:
+            slave.doStep(n * STEP, STEP)
+        for p, slave in enumerate(slaves):
+            values[p] = dict(zip(names[p], slave.getReal(outs[p]), strict=True))
+        record.append(list(values))
+    return (time.perf_counter() - begin) / steps
