@@ -30,7 +30,9 @@ from herringbone.gears.slices import SliceMesh
 
 COUPLING = 2.5
 """Default coupling length along the face, in normal modules."""
-SLICES = 60
+_FEWEST_SLICES = 60
+_SLICES_PER_COUPLING = 8
+"""Sums over slices of width L / 8 miss the kernel's integral by 0.13 %."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class CoupledSliceMesh(PointMesh):
         pair: gear pair.
         modification: of the flanks.
         calibration: factor on the compliance of teeth and foundations.
-        slices: number of slices across the face.
+        slices: number of slices across the face; None: eight per coupling length, at least 60.
         corner_contact: follow tip corners outside the path of contact.
         coupling: length L along the face, in normal modules.
     """
@@ -49,13 +51,21 @@ class CoupledSliceMesh(PointMesh):
     pair: GearPair
     modification: Modification = field(default_factory=Modification)
     calibration: float = 1.0
-    slices: int = SLICES
+    slices: int | None = None
     corner_contact: bool = False
     coupling: float = COUPLING
 
     def __post_init__(self) -> None:
         if not 0.0 < self.coupling < math.inf:
             raise ParameterError(f"coupling length {self.coupling:g} modules must be positive")
+        if self.slices is None:
+            wanted = math.ceil(_SLICES_PER_COUPLING * self.pair.face_width / self._length)
+            object.__setattr__(self, "slices", max(_FEWEST_SLICES, wanted))
+
+    @property
+    def _length(self) -> float:
+        """L [m]."""
+        return self.coupling * self.pair.normal_module
 
     @cached_property
     def lines(self) -> SliceMesh:
@@ -79,11 +89,10 @@ class CoupledSliceMesh(PointMesh):
 
     def _spread(self, face: np.ndarray) -> np.ndarray:
         """K times the length of face per length of line [1/m]; by exponentials that do not grow."""
-        length = self.coupling * self.pair.normal_module
-        b, z = self.pair.face_width / length, face / length
+        b, z = self.pair.face_width / self._length, face / self._length
         apart, both = np.abs(z[:, None] - z), z[:, None] + z
         terms = np.exp(-apart) + np.exp(apart - 2.0 * b) + np.exp(-both) + np.exp(both - 2.0 * b)
-        kernel = terms / (-2.0 * length * math.expm1(-2.0 * b))
+        kernel = terms / (-2.0 * self._length * math.expm1(-2.0 * b))
         return kernel * math.cos(self.pair.base_helix_angle)
 
     def describe(self) -> str:

@@ -8,7 +8,8 @@ the local deformation of a line contact, and has a closed form (see `herringbone
 C. Weber, The deflection of loaded gears, DSIR Report 3, 1949).
 
 Loads at the flank and measures at the depth are different functionals, so their matrix is symmetric
-up to the local field only.  Its symmetric part is kept, as a compliance has to be (Betti).
+up to the local field only: by 4 % of the largest entry for a spur gear, by 13 % at a helix of 30
+degrees.  The symmetric part is kept, as a compliance has to be (Betti).
 
 The closed form is that of a half-space, while a tooth is twice as thick as its depth: against
 plane-strain elements that resolve the contact's pressure (FZG C gears, 200 N/mm, ten contacts from
