@@ -79,6 +79,7 @@ def run(
     algorithm: str | Algorithm | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    slow: Mapping[str, int] | None = None,
     t_end: float | None = None,
     record_step: float | None = None,
     start: str | None = None,
@@ -99,6 +100,8 @@ def run(
             the largest one, and the others go down to 1/200 of it.
         tolerance: relative error (see `analysis.error`) for which `li` adapts its step, as in
             "li:tolerance=1e-3".
+        slow: heavy bodies that step once in several macro steps, and in how many, such as
+            {"drive_motor": 5, "load_motor": 5}; the others see their predicted motion.
         t_end: duration [s]; the scene's if not given.
         record_step: time between records [s]; the scene's if not given.
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.
@@ -140,11 +143,18 @@ def run(
             coupling = coupling if tolerance is None else with_tolerance(coupling, tolerance)
             notes = (*notes, why)
         step = coupling.start_step if step is None else step
-        if warning := _stability_warning(structure, coupling, step):
+        if warning := _stability_warning(structure, coupling, step, slow):
             notes = (*notes, warning)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
-        frequency = fastest_bond(structure)
-        recording = simulate(structure, parts, coupling, grid, progress, bond_frequency=frequency)
+        recording = simulate(
+            structure,
+            parts,
+            coupling,
+            grid,
+            progress,
+            bond_frequency=fastest_bond(structure),
+            slow=slow,
+        )
     finally:
         for part in parts:
             part.close()
@@ -167,9 +177,14 @@ def _unstable(recording: Recording) -> bool:
     )
 
 
-def _stability_warning(system: System, algorithm: Algorithm, step: float) -> str | None:
-    """A line if the step is unstable; an adaptive one finds that out, and goes below."""
-    if system.foreign_parts or algorithm.adaptive:
+def _stability_warning(
+    system: System, algorithm: Algorithm, step: float, slow: Mapping[str, int] | None
+) -> str | None:
+    """A line if the step is unstable; nothing is predicted with slow bodies.
+
+    An adaptive step needs none: it finds the limit, and goes below.
+    """
+    if system.foreign_parts or algorithm.adaptive or slow:
         return None
     return warn_if_unstable(system, algorithm, step)
 
@@ -269,6 +284,7 @@ def _result(
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
         energy=recording.energy,
+        slow=recording.slow,
         parameters=parameters,
         resources=_resources(system),
     )

@@ -24,6 +24,7 @@ EXIT_CODES = {
 }
 BAD_INPUT = 2
 _FMU = "native, python, in-process, or auto (default): native if there is a C compiler"
+_SLOW = "INSTANCE=N,..."
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 
 
@@ -94,6 +95,9 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
     )
+    sub.add_argument(
+        "--slow", metavar=_SLOW, help="heavy bodies that step once in N communication steps"
+    )
     sub.add_argument("--t-end", type=float, help="duration in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
@@ -140,6 +144,16 @@ def _assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]
     return found
 
 
+def _multiples(text: str | None) -> dict[str, int]:
+    """Whole numbers by instance, of an option that lists them."""
+    found = {}
+    for name, number in _assignments(text.split(",") if text else [], "--slow", _SLOW).items():
+        if not number.isdecimal():
+            raise ParameterError(f"--slow {name}={number}: it must be a whole number of steps")
+        found[name] = int(number)
+    return found
+
+
 def _values(items: Sequence[str]) -> dict[str, float | str]:
     """Numbers where they read as numbers, text otherwise."""
     found: dict[str, float | str] = {}
@@ -168,6 +182,7 @@ def _run(options: argparse.Namespace) -> int:
             fmu=options.fmu,
             replace_parts=_assignments(options.replace, "--replace", _REPLACE),
             values=_values(options.set),
+            slow=_multiples(options.slow),
             reference=options.reference,
             progress=bar.show,
         )

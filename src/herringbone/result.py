@@ -40,6 +40,7 @@ class RunInfo:
             "shortest", "median" and "longest" of the accepted ones [s].
         energy: what the coupling did to the energy; None if the algorithm does not extrapolate.
         why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
+        slow: bodies that step once in several macro steps, and in how many.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
     """
@@ -61,6 +62,7 @@ class RunInfo:
     steps: Mapping[str, float] | None = None
     energy: EnergyReport | None = None
     why: Diagnosis | None = None
+    slow: Mapping[str, int] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     resources: Mapping[str, str] = field(default_factory=dict)
 
@@ -157,8 +159,9 @@ class Result:
         """The JSON summary of the run."""
         info = asdict(self.info)
         del info["parameters"], info["resources"]
-        if self.info.steps is None:
-            del info["steps"]
+        for name in ("steps", "slow"):
+            if not info[name]:
+                del info[name]
         found: dict[str, Any] = {
             "outcome": self.outcome.kind.value,
             **{name: info[name] for name in ("system", "scene", "model", "t_end")},

@@ -9,7 +9,6 @@ interpolated.
 import numpy as np
 
 from herringbone.cosim.calls import do_step, exchange_reals
-from herringbone.cosim.energy_loop import watch_energy
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
@@ -118,7 +117,10 @@ def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, ro
         place = row * records.shape[1] + at
         status = exchange(plan, p, plan.get_real, plan.record_reference, at, count, records, place)
     for i in range(first, end):
-        history[0, i] = records[row, plan.output_record[i]]
+        if plan.slow.waiting[p]:  # its connected outputs are predicted meanwhile
+            records[row, plan.output_record[i]] = history[0, i]
+        else:
+            history[0, i] = records[row, plan.output_record[i]]
     return status
 
 
@@ -167,31 +169,3 @@ def not_finite(plan: Plan, history: np.ndarray) -> int:
             if not abs(history[0, i]) < BOUND:
                 return p
     return -1
-
-
-@kernel
-def run_stages(plan: Plan, history: np.ndarray, order: int, chunk: Chunk) -> tuple[int, int, int]:
-    """Run macro steps, stage after stage: Jacobi and Gauss-Seidel schemes.
-
-    Args:
-        plan: parts and signals.
-        history: signals; row 0 holds the values at the first step.
-        order: degree of extrapolation and interpolation.
-        chunk: macro steps.
-
-    Returns:
-        Status, macro steps done in all, and the part that ended the run (or -1).
-    """
-    h = chunk.h
-    for n in range(chunk.start, chunk.start + chunk.count):
-        start_step(history)
-        t, row = chunk.t0 + n * h, record_row(chunk, n)
-        for stage in range(plan.stage_first.size - 1):
-            failed = step_stage(plan, history, stage, order, n + 1, t, h, chunk.records, row)
-            if failed >= 0:
-                return PART_FAILED, n, failed
-        culprit = not_finite(plan, history)
-        if culprit >= 0:
-            return NOT_FINITE, n + 1, culprit
-        watch_energy(chunk.energy, history, n + 1, h)
-    return DONE, chunk.start + chunk.count, -1

@@ -1,12 +1,15 @@
 """A system's connections, resolved on its parts' variables and checked."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from graphlib import CycleError, TopologicalSorter
 
-from herringbone.core import StructureError
+from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.system import System
+
+MOST_MULTIPLE = 100
+"""Most macro steps that a slow body may wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +34,7 @@ class Network:
         mixed: elements that also have motion of their own: outputs that no input passes to.
         sources: parts without connected inputs.
         notes: lines that the user should read, such as undeclared dependencies.
+        slow: bodies that step once in several macro steps, and in how many.
     """
 
     parts: tuple[Part, ...]
@@ -39,16 +43,43 @@ class Network:
     sources: tuple[int, ...]
     mixed: frozenset[int] = frozenset()
     notes: tuple[str, ...] = field(default=())
+    slow: Mapping[int, int] = field(default_factory=dict)
 
     @property
     def bodies(self) -> tuple[int, ...]:
-        """Parts that are neither elements nor sources, in the system's order."""
-        other = {*self.elements, *self.sources}
+        """Parts that are neither elements, sources nor slow, in the system's order."""
+        other = {*self.elements, *self.sources, *self.slow}
         return tuple(i for i in range(len(self.parts)) if i not in other)
 
     def inputs(self, part: int) -> list[Connection]:
         """Connections that feed a part."""
         return [c for c in self.connections if c.target == part]
+
+    def with_slow(self, multiples: Mapping[str, int]) -> "Network":
+        """The network with some bodies stepping once in a number of macro steps.
+
+        Raises:
+            ParameterError: no such instance, no body, a multiple below 1, or no body is left.
+        """
+        index = {part.name: p for p, part in enumerate(self.parts)}
+        slow = {}
+        for name, multiple in multiples.items():
+            what = f"slow: {name}={multiple}"
+            if name not in index:
+                raise ParameterError(f"{what}: there is no instance '{name}'")
+            if index[name] not in self.bodies:
+                kind = "has direct feedthrough" if index[name] in self.elements else "has no input"
+                raise ParameterError(
+                    f"{what}: {name} {kind}; only bodies can be slow, which send motion"
+                )
+            if int(multiple) != multiple or not 1 <= multiple <= MOST_MULTIPLE:
+                raise ParameterError(f"{what}: it must be a whole number, 1 to {MOST_MULTIPLE}")
+            if multiple > 1:
+                slow[index[name]] = int(multiple)
+        found = replace(self, slow=slow)
+        if slow and not found.bodies and not found.mixed:
+            raise ParameterError("slow: no body is left at the macro step; use a longer step")
+        return found
 
 
 def build_network(system: System, parts: Sequence[Part]) -> Network:

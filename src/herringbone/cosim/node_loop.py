@@ -21,6 +21,7 @@ from herringbone.cosim.loop import (
 from herringbone.cosim.node_pass import begin, one_pass, restore
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, Plan
+from herringbone.cosim.slow_loop import finish_slow, trace_slow
 from herringbone.kernels.jit import kernel
 
 REFRESH = 3
@@ -115,11 +116,17 @@ def run_iterated(
         if failed >= 0:
             return PART_FAILED, n, failed
         finish(plan, nodes, buffers)
+        for node in range(1, nodes.degree + 1):
+            trace_slow(plan, buffers.nodes[node], n, node, nodes.degree)
+        failed = finish_slow(plan, buffers.history, chunk, n)
+        if failed >= 0:
+            return PART_FAILED, n, failed
         culprit = not_finite(plan, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
         for p in range(plan.component.size if row >= 0 else 0):
-            if get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:
+            fast = plan.slow.taken[p] < 0
+            if fast and get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:
                 return PART_FAILED, n + 1, p
         if contraction > control.slow:
             return REFRESH, n + 1, -1

@@ -11,6 +11,7 @@ from herringbone.cosim.calls import do_step, state_call
 from herringbone.cosim.loop import LAST_GOOD, exchange, start_step
 from herringbone.cosim.node_plan import Buffers, NodePlan
 from herringbone.cosim.plan import Plan
+from herringbone.cosim.slow_loop import predict_slow_nodes
 from herringbone.kernels.jit import kernel
 
 
@@ -180,6 +181,7 @@ def begin(
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
             buffers.trial[k, i] = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
+    predict_slow_nodes(plan, buffers.nodes, buffers.history[1], known - 1, h)
     for s in range(nodes.sources.size):
         p = nodes.sources[s]
         if trial and nodes.get_state[p] == 0:

@@ -9,6 +9,8 @@ from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
 from herringbone.cosim.energy_loop import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.network import Network
+from herringbone.cosim.rates import rates
+from herringbone.cosim.slow_plan import Slow, lay_out_slow
 
 HISTORY = 4
 """Rows of the signal history: the newest values, and the three communication points before."""
@@ -44,6 +46,7 @@ class Plan(NamedTuple):
     record_reference: np.ndarray
     stage_first: np.ndarray
     stage_part: np.ndarray
+    slow: Slow
 
 
 class Chunk(NamedTuple):
@@ -121,11 +124,13 @@ def node_references(
 def connected_outputs(
     network: Network, extra: Sequence[Sequence[str]] | None = None
 ) -> list[list[str]]:
-    """Outputs of each part that the loop reads: the connected ones, then the extra ones."""
+    """Outputs of each part that the loop reads: connected ones, rates of slow ones, extra ones."""
     outputs: list[list[str]] = [[] for _ in network.parts]
     for c in network.connections:
         if c.output not in outputs[c.source]:
             outputs[c.source].append(c.output)
+    for p in network.slow:
+        outputs[p] += rates(network.parts[p], outputs[p])
     for p, names in enumerate(extra or ()):
         outputs[p] += [name for name in names if name not in outputs[p]]
     return outputs
@@ -137,6 +142,7 @@ def build_plan(
     degree: Sequence[int],
     parallel: bool,
     extra: Sequence[Sequence[str]] | None = None,
+    per: int = 1,
 ) -> Plan:
     """Lay a network out for stages that are stepped one after another.
 
@@ -147,6 +153,7 @@ def build_plan(
         parallel: elements take their inputs at the start of the macro step, as in masters that
             step all parts in parallel.
         extra: further outputs of each part that the loop needs, such as accelerations.
+        per: values of the signals that the loop knows in a macro step, for slow parts.
     """
     parts = network.parts
     inputs = [network.inputs(p) for p in range(len(parts))]
@@ -159,7 +166,8 @@ def build_plan(
     records = record_names(network)
     record_first = _offsets([len(r) for r in records])
     set_first = _offsets([len(r) for r in set_references])
-    position = {p: s for s, stage in enumerate(stages) for p in stage}
+    position = dict.fromkeys(network.slow, -1)
+    position |= {p: s for s, stage in enumerate(stages) for p in stage}
     addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
     return Plan(
         component=addresses[:, 0].copy(),
@@ -180,7 +188,12 @@ def build_plan(
             dtype=np.int64,
         ),
         input_fresh=np.array(
-            [position[c.source] < position[p] for p, i in enumerate(inputs) for c in i], np.int64
+            [
+                p in network.slow or position[c.source] < position[p]
+                for p, i in enumerate(inputs)
+                for c in i
+            ],
+            np.int64,
         ),
         set_first=set_first,
         set_reference=_references(set_references),
@@ -195,4 +208,5 @@ def build_plan(
         record_reference=_named_references(parts, records),
         stage_first=_offsets([len(s) for s in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
+        slow=lay_out_slow(network, outputs, degree, per),
     )

@@ -2,8 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,7 +12,12 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.energy_report import EnergyReport
 from herringbone.core.part import Part
 from herringbone.cosim.adaptive_loop import STEP_LIMIT
-from herringbone.cosim.algorithms.base import Algorithm, PreparedRun, StepStatistics
+from herringbone.cosim.algorithms.base import (
+    Algorithm,
+    PreparedRun,
+    StepStatistics,
+    check_multirate,
+)
 from herringbone.cosim.energy import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
@@ -51,6 +56,7 @@ class Recording:
         notes: downgrades and other lines that the user should read.
         steps: of an adaptive run, the lengths of its macro steps.
         energy: what the coupling added, where the algorithm extrapolates.
+        slow: bodies that step once in several macro steps, and in how many.
     """
 
     time: np.ndarray
@@ -67,6 +73,7 @@ class Recording:
     notes: tuple[str, ...]
     steps: StepStatistics | None = None
     energy: EnergyReport | None = None
+    slow: Mapping[str, int] = field(default_factory=dict)
 
 
 def make_grid(t_end: float, step: float, record_step: float) -> Grid:
@@ -96,6 +103,7 @@ def simulate(
     progress: Progress | None = None,
     *,
     bond_frequency: float | None = None,
+    slow: Mapping[str, int] | None = None,
 ) -> Recording:
     """Run a system of instantiated parts, whose start values have been set.
 
@@ -109,12 +117,18 @@ def simulate(
         progress: called with the simulated time reached and its end [s].
         bond_frequency: of the fastest bond [rad/s], if it is known; the energy is watched over
             five of its periods.
+        slow: bodies that step once in several macro steps, and in how many; the step is shortened
+            so that the end is a communication point of all.
 
     Raises:
         StructureError: the connections are wrong.
+        ParameterError: a body cannot be slow, or the algorithm takes no slow bodies.
         HerringboneError: a part refuses to initialise.
     """
-    network = build_network(system, parts)
+    network = build_network(system, parts).with_slow(slow or {})
+    if network.slow:
+        check_multirate(algorithm)
+        grid = _common(grid, math.lcm(*network.slow.values()))
     prepared = algorithm.prepare(network)
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
@@ -123,6 +137,12 @@ def simulate(
     watch = EnergyWatch(network, plan, grid.step, bond_frequency)
     _initialise(network, prepared.degree, grid.step * grid.count, watch)
     return _Run(network, prepared, grid, watch).go(progress)
+
+
+def _common(grid: Grid, multiple: int) -> Grid:
+    """The grid with a whole multiple of macro steps."""
+    count = math.ceil(grid.count / multiple) * multiple
+    return Grid(grid.step * grid.count / count, count, grid.every)
 
 
 def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:
@@ -144,7 +164,7 @@ def _initialise(network: Network, degrees: Sequence[int], t_end: float, watch: E
     for part in parts:
         part.enter_initialization(0.0, t_end)
     _hold_unconnected_inputs(network, degrees)
-    for target in (*network.elements, *network.bodies):
+    for target in (*network.elements, *network.bodies, *network.slow):
         for c in network.inputs(target):
             value = parts[c.source].get([c.output])[0]
             parts[target].set(c.input, value)
@@ -263,6 +283,7 @@ class _Run:
             (*self.network.notes, *self.prepared.notes),
             self.prepared.steps,
             self.watch.report(),
+            {self.network.parts[p].name: m for p, m in self.network.slow.items()},
         )
 
     def _step(self, done: int) -> float:

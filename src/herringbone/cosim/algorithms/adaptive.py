@@ -136,7 +136,7 @@ class PreparedAdaptive(PreparedNodes):
         held_by = {
             (c.source, c.output)
             for c in self.network.connections
-            if c.target in self.network.bodies and self.degree[c.target] == 0
+            if self.degree[c.target] == 0 and not self.plan.at_end[c.target]
         }
         rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size
         adaptive = Adaptive(

@@ -14,10 +14,11 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
-from herringbone.cosim.loop import run_stages
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Chunk, Plan, build_plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
+from herringbone.cosim.slow_plan import slow_degrees
+from herringbone.cosim.stage_loop import run_stages
 
 
 class Algorithm(ABC):
@@ -45,6 +46,11 @@ class Algorithm(ABC):
     @property
     def adaptive(self) -> bool:
         """True if the macro step follows a tolerance."""
+        return False
+
+    @property
+    def multirate(self) -> bool:
+        """True if bodies may be slow: step once in several macro steps."""
         return False
 
     @property
@@ -118,7 +124,8 @@ class PreparedRun(ABC):
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""
-        return [macro_steps] * len(self.degree)
+        taken = self.plan.slow.taken
+        return [int(n) if n >= 0 else macro_steps for n in taken]
 
     @property
     def rollbacks(self) -> int:
@@ -153,9 +160,11 @@ class Prepared(PreparedRun):
     def extrapolates(self) -> bool:
         """True if all elements are stepped after all bodies: their forces are those of their time.
 
-        Neither the parallel schedule nor Gauss-Seidel coupling has that.
+        Neither the parallel schedule nor Gauss-Seidel coupling has that; slow bodies take forces
+        that are fitted afterwards.
         """
-        return self.starter is None and bool(self.plan.at_end.any())
+        slow = self.plan.slow.parts.size > 0
+        return self.starter is None and not slow and bool(self.plan.at_end.any())
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loop.run_stages`."""
@@ -183,8 +192,12 @@ def prepare_stages(
     network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
 ) -> Prepared:
     """Lay out a network for stages, with as many nodes as the order asks and the parts have."""
-    degree, notes = [], []
+    degree: list[int] = []
+    slow, notes = slow_degrees(network, 1)
     for p, part in enumerate(network.parts):
+        if p in slow:
+            degree.append(slow[p])
+            continue
         inputs = [c.input for c in network.inputs(p)]
         wanted = order if p in network.bodies or p in network.mixed else 0
         if wanted and not has_nodes(part, inputs, wanted):
@@ -196,3 +209,15 @@ def prepare_stages(
         degree.append(wanted)
     plan = build_plan(network, stages, degree, parallel)
     return Prepared(plan, tuple(degree), order, tuple(notes))
+
+
+def check_multirate(algorithm: Algorithm) -> None:
+    """Check that an algorithm takes slow bodies.
+
+    Raises:
+        ParameterError: it does not.
+    """
+    if not algorithm.multirate:
+        raise ParameterError(
+            f"slow: {algorithm} steps all bodies alike; use jacobi, or li without a tolerance"
+        )

@@ -19,6 +19,7 @@ from herringbone.cosim.network import Network
 from herringbone.cosim.node_loop import REFRESH, run_iterated
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
+from herringbone.cosim.slow_plan import slow_degrees
 
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
@@ -41,8 +42,12 @@ def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
 
 def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
     """Degree at which each part takes and gives signals, and what that costs."""
-    found, notes = [], []
+    found: list[int] = []
+    slow, notes = slow_degrees(network, degree)
     for p, part in enumerate(network.parts):
+        if p in slow:
+            found.append(slow[p])
+            continue
         inputs = [c.input for c in network.inputs(p)]
         outputs = [c.output for c in network.connections if c.source == p]
         if has_nodes(part, inputs, degree) and _has_output_nodes(part, outputs, degree):
@@ -66,7 +71,7 @@ def check_rollback(name: str, network: Network) -> None:
     unable = [
         part.name
         for p, part in enumerate(network.parts)
-        if network.inputs(p) and not part.addresses.can_restore
+        if network.inputs(p) and p not in network.slow and not part.addresses.can_restore
     ]
     if unable:
         raise ParameterError(
@@ -95,7 +100,7 @@ class PreparedNodes(PreparedRun):
         self.degree, self._downgrades = tuple(degrees), tuple(notes)
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
-        self.plan = build_plan(network, stages, degrees, parallel=False)
+        self.plan = build_plan(network, stages, degrees, parallel=False, per=degree)
         self._outputs = connected_outputs(network)
         self.nodes = self._node_plan(degree)
         self._same_unit = self._units_agree()
@@ -108,6 +113,7 @@ class PreparedNodes(PreparedRun):
 
     def _node_plan(self, degree: int) -> NodePlan:
         network, parts = self.network, self.network.parts
+        node_degrees = [0 if p in network.slow else d for p, d in enumerate(self.degree)]
         unknown = np.unique(self.plan.input_source[self.plan.input_fresh == 0])
         state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
         return NodePlan(
@@ -116,7 +122,7 @@ class PreparedNodes(PreparedRun):
             np.array(network.bodies, dtype=np.int64),
             np.array(network.elements, dtype=np.int64),
             np.array(network.sources, dtype=np.int64),
-            *node_references(parts, self._outputs, self.degree),
+            *node_references(parts, self._outputs, node_degrees),
             _mean_weights(degree),
             *(state[:, k].copy() for k in range(3)),
         )
@@ -136,7 +142,9 @@ class PreparedNodes(PreparedRun):
     def passes(self, macro_steps: int) -> list[int]:
         """doStep calls of each part, those for Jacobians included."""
         del macro_steps
-        return self._buffers.passes.tolist() if self._buffers else [0] * len(self.degree)
+        if self._buffers is None:
+            return [0] * len(self.degree)
+        return np.maximum(self._buffers.passes, self.plan.slow.taken).tolist()
 
     @property
     def rollbacks(self) -> int:

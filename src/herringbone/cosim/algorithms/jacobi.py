@@ -58,6 +58,11 @@ class Jacobi(Algorithm):
         """Order + 1; 1 in the parallel schedule, because of the elements' delay."""
         return self.order + 1 if self.schedule == "bodies_first" else 1
 
+    @property
+    def multirate(self) -> bool:
+        """If elements are stepped after the bodies."""
+        return self.schedule == "bodies_first"
+
     def prepare(self, network: Network) -> Prepared:
         """Stages: sources; bodies; elements one after another."""
         if self.schedule == "parallel":

@@ -75,6 +75,11 @@ class LI(Algorithm):
         return self.tolerance > 0.0
 
     @property
+    def multirate(self) -> bool:
+        """With a fixed step."""
+        return not self.adaptive
+
+    @property
     def start_step(self) -> float:
         """Macro step [s] if none is given; the largest one if it is adaptive."""
         return self.default_largest_step if self.adaptive else self.default_step

@@ -19,7 +19,7 @@ from typing import ClassVar
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.part import Part, has_nodes
+from herringbone.core.part import has_nodes
 from herringbone.cosim.algorithms.base import (
     Algorithm,
     PreparedRun,
@@ -35,27 +35,9 @@ from herringbone.cosim.plan import (
     node_references,
 )
 from herringbone.cosim.predict_loop import NODES, Prediction, run_predicted
+from herringbone.cosim.rates import rate_of, rates
 
-_RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
 _FORCE = -2
-
-
-def _rate(name: str) -> str | None:
-    """Name of the time derivative of an output, if the name tells: `x.s_y` -> `x.v_y`."""
-    port, dot, last = name.rpartition(".")
-    quantity, bar, axis = last.partition("_")
-    return f"{port}{dot}{_RATES[quantity]}{bar}{axis}" if quantity in _RATES else None
-
-
-def _rates(part: Part, names: list[str]) -> list[str]:
-    """The given outputs' rates, and the rates of these, as far as the part has them."""
-    found: list[str] = []
-    for name in names:
-        first = _rate(name)
-        for candidate in (first, _rate(first) if first else None):
-            if candidate in part.variables and candidate not in found:
-                found.append(str(candidate))
-    return found
 
 
 @dataclass(frozen=True)
@@ -96,7 +78,7 @@ class PreparedPrediction(PreparedRun):
         degree = [NODES if p in elements else d for p, d in enumerate(staged.degree)]
         moved = connected_outputs(network)
         extra = [
-            _rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
+            rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
         ]
         self.degree, self.notes, self.problem = tuple(degree), tuple(staged.notes), ""
         self.plan: Plan = build_plan(network, stages, degree, parallel=False, extra=extra)
@@ -108,12 +90,12 @@ class PreparedPrediction(PreparedRun):
             (p, n) for p, names in enumerate(outputs) for n in names)}  # fmt: skip
         rate, second = (np.full(len(place), -1, dtype=np.int64) for _ in range(2))
         for (p, name), k in place.items():
-            first = _rate(name)
+            first = rate_of(name)
             if p in elements:
                 rate[k] = _FORCE
             elif first and (p, first) in place:
                 rate[k] = place[p, first]
-                second[k] = place.get((p, _rate(first) or ""), -1)
+                second[k] = place.get((p, rate_of(first) or ""), -1)
         moved = {place[c.source, c.output] for c in network.connections if c.target in elements}
         blind = [f"{network.parts[p].name}.{n}" for (p, n), k in place.items()
                  if k in moved and rate[k] == -1]  # fmt: skip
