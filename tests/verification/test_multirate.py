@@ -4,6 +4,7 @@ On the rig a prototype of the same scheme had an error of 0.0039, 0.025, 0.13 an
 motors at 2, 5, 10 and 20 times 20 us: their inertia is many times that of the gear they drive.
 """
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from support_parts import (
 
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
+from herringbone.cli import main
 from herringbone.components.ports import HALVES
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
@@ -94,6 +96,17 @@ def test_python_fmus_give_the_same_bits(rig, python_fmus):
             part.close()
     assert found.macro_steps == 20
     assert np.array_equal(columns(found, wanted.names), wanted.values)
+
+
+def test_command_line(tmp_path, capsys):
+    """The step becomes that of 10 = lcm(5, 2) macro steps, twice."""
+    arguments = ["run", "test_rig", "--algorithm=li", "--step=5e-5", "--t-end=1e-3", "--json"]
+    slow = "--slow=drive_motor=5,load_motor=2"
+    assert main([*arguments, slow, "--fmu=in-process", "-o", str(tmp_path)]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["slow"] == {"drive_motor": 5, "load_motor": 2}
+    assert (summary["passes"]["drive_motor"], summary["passes"]["load_motor"]) == (4, 10)
+    assert any("drive_motor steps once in 5 macro steps" in note for note in summary["notes"])
 
 
 # -- two masses ---------------------------------------------------------------------------------

@@ -200,7 +200,7 @@ def run_adaptive(
     adaptive: Adaptive,
     chunk: Chunk,
 ) -> tuple[int, int, int]:
-    """Run macro steps up to a time; the result is that of `loop.run_stages`, in ticks.
+    """Run macro steps up to a time; the result is that of `stage_loop.run_stages`, in ticks.
 
     Args:
         chunk: in ticks; ends early when the rows are full. `every` is the least number of ticks

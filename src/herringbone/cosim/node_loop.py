@@ -100,7 +100,7 @@ def run_iterated(
     control: Control,
     chunk: Chunk,
 ) -> tuple[int, int, int]:
-    """Run macro steps; the result is that of `loop.run_stages`.
+    """Run macro steps; the result is that of `stage_loop.run_stages`.
 
     Args:
         correction: C, (unknowns p) squared.

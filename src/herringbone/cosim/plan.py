@@ -34,7 +34,7 @@ class Plan(NamedTuple):
     input_source: np.ndarray
     """Index of the output that feeds an input."""
     input_fresh: np.ndarray
-    """1 if that output's part is stepped before this part in a macro step."""
+    """1 if that output's part is stepped before this part in a macro step, or this part is slow."""
     set_first: np.ndarray
     set_reference: np.ndarray
     set_value: np.ndarray

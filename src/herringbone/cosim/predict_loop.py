@@ -155,7 +155,7 @@ def _read_parts(
 def run_predicted(
     plan: Plan, prediction: Prediction, history: np.ndarray, chunk: Chunk
 ) -> tuple[int, int, int]:
-    """Run macro steps; arguments and result as of `loop.run_stages`."""
+    """Run macro steps; arguments and result as of `stage_loop.run_stages`."""
     h = chunk.h
     for n in range(chunk.start, chunk.start + chunk.count):
         start_step(history)

@@ -162,7 +162,7 @@ class PreparedAdaptive(PreparedNodes):
         return adaptive
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run up to the end of the chunk, which counts ticks; see `loop.run_stages`."""
+        """Run up to the end of the chunk, which counts ticks; see `stage_loop.run_stages`."""
         if self._buffers is None or self._adaptive is None:
             self._buffers = self._make_buffers(history)
             self._adaptive = self._make_adaptive(self._buffers)

@@ -1,7 +1,7 @@
 """What an algorithm is.
 
 A new algorithm is one file in this folder: a frozen dataclass of its options that derives from
-`Algorithm`, and, if stages do not suffice, a compiled loop of its own beside `loop.run_stages`.
+`Algorithm`, and, if stages do not suffice, a compiled loop of its own beside that of `stage_loop`.
 Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 """
 
@@ -134,7 +134,7 @@ class PreparedRun(ABC):
 
     @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; arguments and result are those of `loop.run_stages`."""
+        """Run macro steps; arguments and result are those of `stage_loop.run_stages`."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ class Prepared(PreparedRun):
         return self.starter is None and not slow and bool(self.plan.at_end.any())
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `loop.run_stages`."""
+        """Run macro steps; see `stage_loop.run_stages`."""
         plan = self.plan
         if self.starter is not None and chunk.start < self.order:
             plan = self.starter

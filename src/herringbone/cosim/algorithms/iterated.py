@@ -169,7 +169,7 @@ class PreparedNodes(PreparedRun):
         )
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `loop.run_stages`."""
+        """Run macro steps; see `stage_loop.run_stages`."""
         if self._buffers is None:
             self._buffers = self._make_buffers(history)
         self._update_scale()

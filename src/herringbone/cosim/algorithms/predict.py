@@ -116,5 +116,5 @@ class PreparedPrediction(PreparedRun):
         )
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `loop.run_stages`."""
+        """Run macro steps; see `stage_loop.run_stages`."""
         return run_predicted(self.plan, self._prediction, history, chunk)
