@@ -231,6 +231,10 @@ def test_a_slow_body_that_fails_ends_the_run_with_results_so_far():
         ({"left": 0}, "slow: left=0: it must be a whole number, 1 to 100"),
         ({"left": 101}, "slow: left=101: it must be a whole number, 1 to 100"),
         ({"left": 2.5}, "slow: left=2.5: it must be a whole number, 1 to 100"),
+        (
+            {"left": 11},
+            "slow: the bodies meet only every 11 macro steps of 0.1 s, later than t_end",
+        ),
         ({"left": 2, "right": 2}, "slow: no body is left at the macro step"),
     ],
 )

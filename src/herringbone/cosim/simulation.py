@@ -140,7 +140,12 @@ def simulate(
 
 
 def _common(grid: Grid, multiple: int) -> Grid:
-    """The grid with a whole multiple of macro steps."""
+    """The grid with a whole multiple of macro steps; raises ParameterError if it has fewer."""
+    if multiple > grid.count:
+        raise ParameterError(
+            f"slow: the bodies meet only every {multiple} macro steps of {grid.step:g} s, later "
+            f"than t_end = {grid.count * grid.step:g} s; use numbers that divide each other"
+        )
     count = math.ceil(grid.count / multiple) * multiple
     return Grid(grid.step * grid.count / count, count, grid.every)
 
