@@ -10,6 +10,10 @@ the influence of an elastic foundation (springs) under a layer that shears, with
 integral, so that a uniform load deflects as before.  L = 2.5 m_n is one value for all pairs, found
 by comparison with finite elements (see `finite_elements.calibration`).
 
+Harmonics above the tenth are stronger than those of plain slices, up to 0.09 % of the mean for the
+27/81 pair: the supported ends of a line take up load at once.  They do not depend on the number of
+slices (0.0907, 0.0914, 0.0915 % with 60, 120, 240), and finite elements show the same 0.092 %.
+
 Sources: P. L. Pasternak, On a new method of analysis of an elastic foundation (1954), for the
 layer; M. Ajmi and P. Velex, A model for simulating the quasi-static and dynamic behaviour of solid
 wide-faced spur and helical gears, Mech. Mach. Theory 40 (2005), for its use in gears.
