@@ -57,7 +57,7 @@ def _teeth(axes: Axes, pair: GearPair) -> None:
     axes.plot(0.0, 0.0, "o", color=MARKER_COLOUR, markersize=4.0, label="pitch point")
     reach = 2.2 * _MM * math.pi * pair.transverse_module / 2.0
     axes.set(
-        title="Teeth, transverse section", xlabel="tangential (mm)", ylabel="toward the wheel (mm)",
+        title="Teeth", xlabel="tangential (mm)", ylabel="toward the wheel (mm)",
         xlim=(-reach, reach), ylim=(-0.8 * reach, 0.8 * reach), aspect="equal",
     )  # fmt: skip
     legend(axes, 2)
