@@ -58,7 +58,7 @@ PLATFORMS: dict[str, Platform] = {
             "generic",
             "aarch64-linux-gnu.2.17",
             "so",
-            tested=False,
+            tested=True,
         ),
         Platform(
             "x86_64-darwin",
