@@ -134,7 +134,7 @@ def test_all_platforms_in_one_small_file(fmi, tmp_path, capsys):
     said = capsys.readouterr().out.splitlines()
     file = tmp_path / "gear_mesh.fmu"
     assert said[0] == str(file)
-    assert said[1] == "built, not run: aarch64-linux, x86_64-darwin, aarch64-darwin"
+    assert said[1] == "built, not run: x86_64-darwin, aarch64-darwin"
     assert validate_fmu(str(file)) == []
     with zipfile.ZipFile(file) as archive:
         entries = archive.infolist()
