@@ -1,6 +1,7 @@
 """The README: its test command is the one that CI runs, and what it links to exists."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -34,3 +35,13 @@ def test_there_are_links():
 def test_files_in_text_exist():
     files = re.findall(r"`((?:examples|fmus|tests|system_models)/[\w./-]+)`", README)
     assert [file for file in files if not (ROOT / file).exists()] == []
+
+
+def test_versions_of_other_tools_are_those_that_the_tests_run():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    pinned = [word.split("==") for word in project["optional-dependencies"]["dev"] if "==" in word]
+    assert len(pinned) == 3
+    for package, version in pinned:
+        assert f"| {package} {version} " in README
+    assert "fmpy>=0.3.23,<0.4" in project["dependencies"]
+    assert "| fmpy 0.3 |" in README

@@ -30,8 +30,8 @@ from herringbone.export import export_ssp
 STEP, COUNT, EVERY = 1e-6, 400, 50
 PARALLEL = Jacobi(order=0, schedule="parallel")
 TOLERANCE = 1e-9
-"""Of the largest value of a channel. Times are given as sums of steps by some masters and as
-products by others, so that step sizes differ in the last digits; that leaves about 1e-11."""
+"""Of the largest value of a channel. libcosim's step sizes are differences of times, so that
+they differ in the last digits; that leaves about 2e-10."""
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +112,7 @@ def assert_same_results(result, rows, names):
 def test_ecos_gives_our_results(exported, ours, tmp_path):
     names = result_names(ours)
     rows = run_in("ecos", "ecospy", exported, names, tmp_path)
-    assert_same_results(ours, rows, names)
+    assert largest_differences(ours, rows, names).max() == 0.0
 
 
 def test_libcosim_gives_our_results(unpacked, ours, tmp_path):
