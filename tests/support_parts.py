@@ -8,7 +8,7 @@ import ctypes
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -250,6 +250,38 @@ class Mass(CallbackPart):
         if "flange.a" in self.variables:
             self.write("flange.a", force[min(1, count - 1) :] / self.mass)
         return self.misbehave(self, t + h) or OK if self.misbehave else OK
+
+
+class ResidualMass(Mass):
+    """A mass whose flange also gives way directly under its force: s = position + compliance f.
+
+    Args:
+        compliance: [m/N]; the velocity knows nothing of it, as in MacNeal's residual.
+        declared: the dependence of the position on the force is declared; if not, no output's is.
+    """
+
+    def __init__(self, *arguments, compliance, declared=True, **more):
+        super().__init__(*arguments, **more)
+        self.compliance = compliance
+        self._add("position", "local")
+        self["position"] = self["flange.s"]
+        for name, v in self.variables.items():
+            if v.causality == "output":
+                direct = frozenset({"flange.f"} if name.startswith("flange.s") else ())
+                self.variables[name] = replace(v, dependencies=direct if declared else None)
+
+    def out(self):
+        self["flange.s"] = self["position"] + self.compliance * self["flange.f"]
+
+    def step(self, t, h):
+        self["flange.s"] = self["position"]
+        status = super().step(t, h)
+        names = [f"flange.s.node{i}" for i in range(1, self.degree + 1)] or ["flange.s"]
+        self["position"] = self["flange.s"]
+        force = self.nodal("flange.f")[min(1, self.degree) :]
+        moved = [self[name] + self.compliance * f for name, f in zip(names, force, strict=True)]
+        self.write("flange.s", moved)
+        return status
 
 
 class Forgetful(Mass):

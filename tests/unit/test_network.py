@@ -192,6 +192,23 @@ def test_a_part_may_be_body_and_element_at_once():
             algorithm.prepare(found)
 
 
+def yielding(name):
+    """A body that gives way directly under its force."""
+    return (
+        FakePart(name).real("a.f", "input", "N").real("a.s", "output", "m", frozenset({"a.f"}))
+        .real("a.v", "output", "m/s", frozenset())
+    )  # fmt: skip
+
+
+def test_loop_is_cut_at_the_force_on_a_body():
+    parts = [spring(), yielding("seat"), mass("m")]
+    found = network(parts, ("seat.a", "spring.a"), ("m.flange", "spring.b"))
+    assert (found.elements, found.bodies) == ((0,), (1, 2))
+    assert (found.feedthrough, found.mixed) == ({1}, frozenset())
+    with pytest.raises(ParameterError, match="seat has direct feedthrough"):
+        found.with_slow({"seat": 2})
+
+
 def undeclared(name):
     part = FakePart(name).real("u", "input").real("y", "output")
     part.variables["y"] = type(part.variables["y"])("y", 1, "output", "1", dependencies=None)
@@ -209,6 +226,4 @@ def test_undeclared_dependencies_count_as_an_element():
 def test_undeclared_dependencies_in_a_circle_make_a_body():
     found = network([undeclared("p"), passing("q")], ("p.y", "q.u"), ("q.y", "p.u"))
     assert (found.elements, found.bodies) == ((1,), (0,))
-    assert found.notes == (
-        "p declares no output dependencies; taken as a body (no direct feedthrough)",
-    )
+    assert found.notes == ("p declares no output dependencies; taken as a body",)

@@ -22,7 +22,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from herringbone.core import Instance
-from herringbone.cosim.network import Connection, Network
+from herringbone.cosim.connection import Connection
+from herringbone.cosim.network import Network
 
 TWO_MASS_RULES: dict[str, Callable[[float], float]] = {
     "jacobi:order=0": lambda zeta: 4.0 * zeta,

@@ -13,21 +13,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core.energy_report import EnergyReport, Verdict
+from herringbone.cosim.connection import Connection
 from herringbone.cosim.energy_loop import (
     INACCURATE_AT,
     NOTHING_WATCHED,
     UNSTABLE_AT,
     energy_monitor,
 )
-from herringbone.cosim.network import Connection, Network
+from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Plan, connected_outputs
+from herringbone.cosim.rates import motion_of_force
 
 PERIODS = 5.0
 """Length of the window, in periods of the fastest bond."""
 UNKNOWN_WINDOW = 100
 """Length of the window [macro steps] where the bonds are not known."""
 _SHORTEST, _LONGEST = 20, 5000
-_VELOCITY = {"f": "v", "tau": "w"}
 _CHANGE = 1e-3
 """Difference of a velocity [m/s or rad/s]."""
 _NOTHING = 1e-9
@@ -52,19 +53,12 @@ def power_pairs(network: Network) -> tuple[PowerPair, ...]:
     by_input = {(c.target, c.input): c for c in network.connections}
     found = []
     for c in network.connections:
-        velocity = _velocity_name(c.output)
-        back = by_input.get((c.source, velocity)) if velocity else None
+        motion = motion_of_force(c.output)
+        back = by_input.get((c.source, motion[1])) if motion else None
         loads_body = c.source in network.elements and c.target in bodies
         if loads_body and back is not None and back.source == c.target:
             found.append(PowerPair(c, back))
     return tuple(found)
-
-
-def _velocity_name(force: str) -> str | None:
-    """Input that belongs to a force: f_y -> v_y, tau -> w."""
-    port, dot, last = force.rpartition(".")
-    quantity, bar, axis = last.partition("_")
-    return f"{port}{dot}{_VELOCITY[quantity]}{bar}{axis}" if quantity in _VELOCITY else None
 
 
 def pair_damping(network: Network, pairs: Sequence[PowerPair]) -> np.ndarray:

@@ -2,24 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from graphlib import CycleError, TopologicalSorter
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.connection import Connection
+from herringbone.cosim.roles import find_roles
 from herringbone.cosim.system import System
 
 MOST_MULTIPLE = 100
 """Most macro steps that a slow body may wait."""
-
-
-@dataclass(frozen=True, slots=True)
-class Connection:
-    """An output that feeds an input; parts by their place in the network."""
-
-    source: int
-    output: str
-    target: int
-    input: str
 
 
 @dataclass(frozen=True)
@@ -35,6 +26,8 @@ class Network:
         sources: parts without connected inputs.
         notes: lines that the user should read, such as undeclared dependencies.
         slow: bodies that step once in several macro steps, and in how many.
+        feedthrough: bodies whose motion depends directly on the forces on them.
+        undeclared: bodies of which that is not known.
     """
 
     parts: tuple[Part, ...]
@@ -44,6 +37,8 @@ class Network:
     mixed: frozenset[int] = frozenset()
     notes: tuple[str, ...] = field(default=())
     slow: Mapping[int, int] = field(default_factory=dict)
+    feedthrough: frozenset[int] = frozenset()
+    undeclared: frozenset[int] = frozenset()
 
     @property
     def bodies(self) -> tuple[int, ...]:
@@ -67,8 +62,8 @@ class Network:
             what = f"slow: {name}={multiple}"
             if name not in index:
                 raise ParameterError(f"{what}: there is no instance '{name}'")
-            if index[name] not in self.bodies:
-                kind = "has direct feedthrough" if index[name] in self.elements else "has no input"
+            if index[name] not in self.bodies or index[name] in self.feedthrough:
+                kind = "has no input" if index[name] in self.sources else "has direct feedthrough"
                 raise ParameterError(
                     f"{what}: {name} {kind}; only bodies can be slow, which send motion"
                 )
@@ -101,10 +96,19 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
         more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
         notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
     _check_single_sources(connections, parts)
-    elements, mixed = _order_elements(connections, parts, notes)
+    roles = find_roles(connections, parts)
     targets = {c.target for c in connections}
     sources = tuple(i for i in range(len(parts)) if i not in targets)
-    return Network(tuple(parts), tuple(connections), elements, sources, mixed, tuple(notes))
+    return Network(
+        tuple(parts),
+        tuple(connections),
+        roles.elements,
+        sources,
+        roles.mixed,
+        (*notes, *roles.notes),
+        feedthrough=roles.feedthrough,
+        undeclared=roles.undeclared,
+    )
 
 
 def _split(
@@ -232,67 +236,3 @@ def _check_single_sources(connections: Sequence[Connection], parts: Sequence[Par
                 f"'{parts[other.source].name}.{other.output}' and "
                 f"'{parts[c.source].name}.{c.output}'"
             )
-
-
-def _order_elements(
-    connections: Sequence[Connection], parts: Sequence[Part], notes: list[str]
-) -> tuple[tuple[int, ...], frozenset[int]]:
-    """Elements in the order in which they feed each other, and those that also have motion.
-
-    A part whose dependencies are not declared counts as an element unless that makes a loop.
-    """
-    used = {(c.source, c.output) for c in connections}
-    feeding = {c.source for c in connections}
-    used |= {  # an observer feeds nothing; all that it shows counts
-        (i, name)
-        for i, part in enumerate(parts)
-        if i not in feeding
-        for name, v in part.variables.items()
-        if v.causality == "output"
-    }
-    fed = {i: {c.input for c in connections if c.target == i} for i in range(len(parts))}
-    passed: dict[int, set[str]] = {i: set() for i in range(len(parts))}
-    undeclared, moving = set(), set()
-    for part, output in used:
-        dependencies = parts[part].variables[output].dependencies
-        if dependencies is None:
-            if fed[part]:
-                undeclared.add(part)
-        elif dependencies & fed[part]:
-            passed[part] |= dependencies & fed[part]
-        else:
-            moving.add(part)
-    declared = {part for part, inputs in passed.items() if inputs}
-    order = _sorted(declared, passed, connections, parts)
-    for part in sorted(undeclared - declared):
-        name = parts[part].name
-        try:
-            order = _sorted({*order, part}, {**passed, part: fed[part]}, connections, parts)
-            notes.append(f"{name} declares no output dependencies; taken as an element")
-            passed[part] = fed[part]
-        except StructureError:
-            notes.append(
-                f"{name} declares no output dependencies; taken as a body (no direct feedthrough)"
-            )
-    return order, frozenset(moving & declared)
-
-
-def _sorted(
-    elements: set[int],
-    passed: Mapping[int, set[str]],
-    connections: Sequence[Connection],
-    parts: Sequence[Part],
-) -> tuple[int, ...]:
-    """Elements in order; only inputs that are passed to outputs make an element wait."""
-    graph: dict[int, set[int]] = {e: set() for e in elements}
-    for c in connections:
-        if c.source in elements and c.target in elements and c.input in passed[c.target]:
-            graph[c.target].add(c.source)
-    try:
-        return tuple(TopologicalSorter(graph).static_order())
-    except CycleError as error:
-        names = " -> ".join(parts[i].name for i in error.args[1])
-        raise StructureError(
-            f"algebraic loop: {names}; these parts pass inputs directly to outputs in a circle, "
-            "put a body (with inertia) between them"
-        ) from error

@@ -12,6 +12,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.energy_report import EnergyReport
 from herringbone.core.part import Part
 from herringbone.cosim.adaptive_loop import STEP_LIMIT
+from herringbone.cosim.algebraic_loop import AlgebraicLoop, measure_loop, solve_loop
 from herringbone.cosim.algorithms.base import (
     Algorithm,
     PreparedRun,
@@ -135,8 +136,15 @@ def simulate(
             part.set(INTERFACE_DEGREE, float(degree))
     plan = prepared.plan if prepared.extrapolates else None
     watch = EnergyWatch(network, plan, grid.step, bond_frequency)
-    _initialise(network, prepared.degree, grid.step * grid.count, watch)
-    return _Run(network, prepared, grid, watch).go(progress)
+    loop = _initialise(network, prepared.degree, grid.step * grid.count, watch)
+    run = _Run(network, prepared, grid, watch)
+    if loop is None:
+        run.loop_notes = tuple(
+            f"{parts[p].name} declares that its motion depends directly on forces, but shows none "
+            "of it in initialisation mode: the gain of the algebraic loop is not known"
+            for p in sorted(network.feedthrough)
+        )
+    return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
 
 
 def _common(grid: Grid, multiple: int) -> Grid:
@@ -164,7 +172,10 @@ def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:
                     part.set(node, value)
 
 
-def _initialise(network: Network, degrees: Sequence[int], t_end: float, watch: EnergyWatch) -> None:
+def _initialise(
+    network: Network, degrees: Sequence[int], t_end: float, watch: EnergyWatch
+) -> AlgebraicLoop | None:
+    """Enter and leave initialisation; the algebraic loop, solved, if there is one."""
     parts = network.parts
     for part in parts:
         part.enter_initialization(0.0, t_end)
@@ -173,9 +184,13 @@ def _initialise(network: Network, degrees: Sequence[int], t_end: float, watch: E
         for c in network.inputs(target):
             value = parts[c.source].get([c.output])[0]
             parts[target].set(c.input, value)
+    loop = measure_loop(network)
+    if loop is not None:
+        solve_loop(network, loop)
     watch.start()
     for part in parts:
         part.exit_initialization()
+    return loop
 
 
 class _Run:
@@ -197,6 +212,24 @@ class _Run:
         )
         self.record = prepared.record(grid, len(self.names))
         self.history = np.zeros((HISTORY, prepared.plan.output_reference.size))
+        self.loop_notes: tuple[str, ...] = ()
+
+    def go_around(
+        self, loop: AlgebraicLoop, algorithm: str, progress: Progress | None
+    ) -> Recording:
+        """Run with an algebraic loop; an outcome before the first step if it diverges anyway."""
+        growth, what = self.prepared.close_loop(loop), loop.describe()
+        if growth < 1.0:
+            self.loop_notes = (what,)
+            return self.go(progress)
+        get_all(self.prepared.plan, self.history, self.record.values, 0)
+        instead = "" if loop.gain >= 1.0 else "use li, fixed_point or jacobi:order=0; or "
+        message = (
+            f"{what}: with {algorithm} the forces grow {growth:.3g} times per macro step, and no "
+            f"step helps; {instead}{loop.remedy()}"
+        )
+        outcome = Outcome(OutcomeKind.COUPLING_FAILED, 0.0, loop.culprit, message)
+        return self._recording(0, outcome, 0.0)
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
@@ -285,9 +318,9 @@ class _Run:
             ),
             self.prepared.rollbacks,
             wall,
-            (*self.network.notes, *self.prepared.notes),
+            (*self.network.notes, *self.loop_notes, *self.prepared.notes),
             self.prepared.steps,
-            self.watch.report(),
+            self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
         )
 

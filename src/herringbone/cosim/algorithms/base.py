@@ -14,6 +14,7 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
+from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Chunk, Plan, build_plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
@@ -133,6 +134,13 @@ class PreparedRun(ABC):
         return 0
 
     @abstractmethod
+    def close_loop(self, loop: AlgebraicLoop) -> float:
+        """Growth of forces in an algebraic loop, per macro step as the step goes to zero.
+
+        The run is made ready for it; at 1 or more the coupling diverges at any step.
+        """
+
+    @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; arguments and result are those of `stage_loop.run_stages`."""
 
@@ -166,6 +174,11 @@ class Prepared(PreparedRun):
         slow = self.plan.slow.parts.size > 0
         return self.starter is None and not slow and bool(self.plan.at_end.any())
 
+    def close_loop(self, loop: AlgebraicLoop) -> float:
+        """Growth by the extrapolation over a step; parallel elements answer a step late."""
+        degrees = [min(self.order, self.degree[c.target]) for c in loop.forces]
+        return extrapolated_growth(loop.matrix, degrees, 0 if self.plan.at_end.any() else 1)
+
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `stage_loop.run_stages`."""
         plan = self.plan
@@ -176,15 +189,20 @@ class Prepared(PreparedRun):
 
 
 def refuse_mixed(network: Network, algorithm: str) -> None:
-    """Check that each part is either a body or an element.
+    """Check that each part is either a body without direct feedthrough or an element.
 
     Raises:
-        ParameterError: a part is both, and the algorithm treats them differently.
+        ParameterError: a part is not, and the algorithm treats bodies and elements differently.
     """
     for p in sorted(network.mixed):
         raise ParameterError(
             f"{algorithm}: {network.parts[p].name} is body and element at once (some outputs "
             "depend directly on inputs, others do not); use li, fixed_point or jacobi"
+        )
+    for p in sorted(network.feedthrough):
+        raise ParameterError(
+            f"{algorithm}: the motion of {network.parts[p].name} depends directly on the forces "
+            "on it (an algebraic loop with its elements); use li, fixed_point or jacobi"
         )
 
 

@@ -1,5 +1,6 @@
 """What `fixed_point` and `li` share: a network laid out for passes with rollback."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
+from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
@@ -25,6 +27,8 @@ REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
 SLOW = 0.1
 """Contraction of a correction above which the Jacobian is computed again."""
+MOST_SWEEPS = 1000
+"""Sweeps of a fixed point over an algebraic loop at the most."""
 PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
 
@@ -167,6 +171,19 @@ class PreparedNodes(PreparedRun):
             np.zeros(2),
             np.ones(2),
         )
+
+    def close_loop(self, loop: AlgebraicLoop) -> float:
+        """Growth after the loop has been solved in every step: by the Jacobian, or by sweeps.
+
+        The fixed point takes as many sweeps as the contraction by the gain asks for.
+        """
+        if not self.newton:
+            gain = loop.gain
+            if gain >= 1.0:
+                return gain
+            self.most = max(self.most, min(math.ceil(math.log(REST) / math.log(gain)), MOST_SWEEPS))
+            self._downgrades += (f"up to {self.most} sweeps a macro step solve the loop",)
+        return solved_growth(loop.matrix, [self.degree[c.target] == 0 for c in loop.forces])
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `stage_loop.run_stages`."""

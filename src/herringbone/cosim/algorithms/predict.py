@@ -20,6 +20,7 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
+from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.algorithms.base import (
     Algorithm,
     PreparedRun,
@@ -114,6 +115,11 @@ class PreparedPrediction(PreparedRun):
             np.zeros((NODES + 1, len(place))),
             np.zeros(max(1, int(np.diff(node_first).max()))),
         )
+
+    def close_loop(self, loop: AlgebraicLoop) -> float:
+        """Growth by the extrapolation over a step, of a body that does not declare feedthrough."""
+        degrees = [min(2, self.degree[c.target]) for c in loop.forces]
+        return extrapolated_growth(loop.matrix, degrees, 0)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `stage_loop.run_stages`."""
