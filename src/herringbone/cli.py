@@ -24,6 +24,7 @@ EXIT_CODES = {
 }
 BAD_INPUT = 2
 _FMU = "native, python, in-process, or auto (default): native if there is a C compiler"
+_OVERRIDE = "start value in SI units, instead of the scene's; may be repeated"
 _SLOW = "INSTANCE=N,..."
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 
@@ -66,7 +67,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("name", nargs="?", help="component whose variables are shown")
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
-    sub.add_argument("fmu", type=Path)
+    sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
     sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
     sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
     _run_options(add("run", _run, "run a system"))
@@ -75,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
     export_command.add_options(sub)
-    sub.add_argument("--set", action="append", default=[], metavar=_SET)
+    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
     gear_command.register(commands)
     housing_command.register(commands)
     return parser
@@ -91,7 +92,9 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
-    sub.add_argument("--step", type=float, help="communication step size in s")
+    sub.add_argument(
+        "--step", type=float, help="communication step size in s; the largest, with --tolerance"
+    )
     sub.add_argument(
         "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
     )
@@ -102,8 +105,11 @@ def _run_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     sub.add_argument("--fmu", default="auto", help=_FMU)
-    sub.add_argument("--replace", action="append", default=[], metavar=_REPLACE)
-    sub.add_argument("--set", action="append", default=[], metavar=_SET)
+    sub.add_argument(
+        "--replace", action="append", default=[], metavar=_REPLACE,
+        help="FMU in the place of an instance; may be repeated",
+    )  # fmt: skip
+    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
@@ -121,7 +127,9 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     sub.add_argument("--fmu", default="auto", help=_FMU)
-    sub.add_argument("-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if none")
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -129,7 +137,7 @@ def _stability_options(sub: argparse.ArgumentParser) -> None:
     _comparison_options(sub)
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
     sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
-    sub.add_argument("--set", action="append", default=[], metavar=_SET)
+    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
     sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -232,6 +240,8 @@ def _build(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
+    if options.against and not options.role:
+        raise ParameterError("--against belongs to the test of a housing; add --as housing")
     if options.role:
         from herringbone.housing_check import check_command  # noqa: PLC0415 (numba)
 

@@ -60,7 +60,9 @@ def build_fmus(
         folder.mkdir(parents=True, exist_ok=True)
         return [Path(shutil.copyfile(file, folder / file.name)) for file in files]
     except OSError as error:
-        raise ResourceError(f"cannot write to {folder}: {error.strerror}") from error
+        raise ResourceError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder"
+        ) from error
 
 
 def export_ssp(
@@ -111,7 +113,9 @@ def export_ssp(
         file.parent.mkdir(parents=True, exist_ok=True)
         write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)
     except OSError as error:
-        raise ResourceError(f"cannot write {file}: {error.strerror}") from error
+        raise ResourceError(
+            f"cannot write {file}: {error.strerror}; choose another file"
+        ) from error
     return file
 
 

@@ -10,7 +10,7 @@ from herringbone.build_command import add_platform_options, chosen_platforms, un
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options, `--set` excepted."""
     sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
-    sub.add_argument("--scene")
+    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
     sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
     sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
     sub.add_argument(

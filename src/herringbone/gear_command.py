@@ -17,9 +17,10 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub.add_argument("file", type=Path, help="gear file (.toml) or REXS file (.rexs)")
     sub.add_argument("--method", default="slices", help="slices (default), coupled-slices or fe")
     sub.add_argument("--torque", type=float, help="of the pinion in N m; the file's if not given")
-    sub.add_argument("--stage", help="id or name of the stage of a REXS file")
-    sub.add_argument("--halves", type=int, default=1, help="of a REXS stage; 2: double helical")
+    sub.add_argument("--stage", help="id or name of the stage; of REXS files of several")
+    sub.add_argument("--halves", type=int, help="of a REXS stage: 1 (default) or 2, double helical")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/gear-FILE if not given")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def _gear(options: argparse.Namespace) -> int:
@@ -35,6 +36,7 @@ def _gear(options: argparse.Namespace) -> int:
             stage=options.stage,
             halves=options.halves,
             progress=bar.show,
+            as_json=options.json,
         )
     show(text)
     return 0

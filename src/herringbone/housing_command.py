@@ -31,9 +31,13 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
         return sub
 
     sub = add("build", _build, "mesh and solve a welded housing, write its modal data")
-    sub.add_argument("file", nargs="?", type=Path, help="TOML file; the default housing's if none")
+    sub.add_argument(
+        "file", nargs="?", type=Path, help="TOML file; the default housing's if not given"
+    )
     sub.add_argument("--mesh-size", type=float, help="largest edge of an element in m")
-    sub.add_argument("-o", "--output", type=Path, help="folder or .zip file; results/FILE if none")
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder or .zip file; results/FILE if not given"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
     sub = add("reduce", _reduce, "keep the modes that a band needs, with a certified error")
     sub.add_argument("data", type=Path, help="folder or .zip file of the format modal-housing")
@@ -57,7 +61,9 @@ def _band_options(sub: argparse.ArgumentParser) -> None:
         "--tolerance", type=float, default=0.05,
         help="error of the receptance at the seats, relative to the static compliance",
     )  # fmt: skip
-    sub.add_argument("-o", "--output", type=Path, help="folder or .zip file; under results if none")
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder or .zip file; under results if not given"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 

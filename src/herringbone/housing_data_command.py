@@ -23,6 +23,8 @@ def reduce_command(options: argparse.Namespace) -> int:
     full = read_housing(options.data)
     stem = options.data.name.removesuffix(".zip")
     output = options.output or Path("results") / f"{stem}-{options.band:g}Hz"
+    if output.resolve() == options.data.resolve():
+        raise HerringboneError(f"-o {output} would overwrite the full data; choose another place")
     check_writable(_folder(output))
     reduced = reduce_housing(full, band_hz=options.band, tolerance=options.tolerance)
     frequency_hz = options.band * np.logspace(-_DECADES, 0.0, _POINTS)

@@ -64,7 +64,9 @@ def export_fmu(
         file.parent.mkdir(parents=True, exist_ok=True)
         return Path(shutil.copyfile(built, file))
     except OSError as error:
-        raise ResourceError(f"cannot write {file}: {error.strerror}") from error
+        raise ResourceError(
+            f"cannot write {file}: {error.strerror}; choose another file"
+        ) from error
 
 
 def unpacked_component(argument: str) -> Component:

@@ -139,3 +139,8 @@ def test_export_of_bad_input(capsys, tmp_path):
     assert "there is no system 'nope'" in refused(capsys, "export", "nope")
     wrong = str(tmp_path / "rig.zip")
     assert "must end in .ssp" in refused(capsys, "export", "test_rig", "-o", wrong)
+
+
+def test_modal_data_belong_to_the_test_of_a_housing(capsys):
+    said = refused(capsys, "check", "housing.fmu", "--against", "data")
+    assert "--against belongs to the test of a housing; add --as housing" in said

@@ -1,5 +1,6 @@
 """The gear command: its table, its files, and what it refuses."""
 
+import json
 import tomllib
 from pathlib import Path
 
@@ -28,6 +29,18 @@ def test_table_and_files(tmp_path, capsys):
     assert (tmp_path / "gear_pair.png").stat().st_size > 10_000
 
 
+def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
+    assert main(["gear", str(THESIS), "-o", str(tmp_path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["pair"]["transverse_contact_ratio"] == pytest.approx(1.4024, abs=5e-5)
+    assert found["forces"]["normal"] == pytest.approx(2252.228, abs=1e-3)
+    stiffness, at = found["mesh_stiffness"], 5
+    assert stiffness["load"][at] == pytest.approx(found["forces"]["normal"], rel=1e-12)
+    ratio = stiffness["load"][at] / stiffness["deflection"][at] / stiffness["secant"][at]
+    assert ratio == pytest.approx(1.0, abs=1e-3)  # harmonics of 2 %: means of s and 1/s differ
+    assert all(Path(file).is_file() for file in found["files"])
+
+
 def test_component_values_are_those_of_the_component(tmp_path):
     """The gear_mesh component declares the values of its gear file, to the digits it gives."""
     gear(THESIS, tmp_path)
@@ -54,6 +67,7 @@ def test_rexs_with_torque_and_halves(tmp_path):
         ([str(THESIS), "--method", "guess"], "method 'guess' is none of slices"),
         ([str(THESIS), "--torque", "-3"], "torque -3 N m must be positive"),
         ([str(THESIS), "--stage", "1"], "--stage is of REXS files only"),
+        ([str(THESIS), "--halves", "2"], "--halves is of REXS files only"),
         ([str(STAGE), "--stage", "7"], "stage '7' is none of 10 (First stage)"),
         ([str(STAGE), "--halves", "3"], "halves = 3 must be 1"),
         ([str(THESIS), "--torque", "5e9"], "too large"),

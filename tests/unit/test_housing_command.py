@@ -57,12 +57,15 @@ def test_reduce_as_json(data, capsys):
         (["reduce", "data", "--band", "2500"], "band 2500 Hz is beyond valid_to_hz = 2000 Hz"),
         (["reduce", "data", "--tolerance", "2"], "tolerance 2 must lie between 0 and 1"),
         (["import", "modes.op2"], "modes.op2: '.op2' cannot be imported; export DMIG cards"),
+        (["reduce", "data", "-o", "data"], "-o data would overwrite the full data"),
+        (["import", "modes"], "modes: a file without suffix cannot be imported; it takes .mtx"),
+        (["build", "none.toml"], "cannot read none.toml: No such file or directory\n"),
         (["import", "K.mtx"], "1 Matrix Market file(s); give stiffness, mass"),
     ],
 )
 def test_one_line_and_nothing_written(data, capsys, arguments, expected):
     before = sorted(data.parent.rglob("*"))
-    assert cli.main(["housing", *arguments, "-o", "out"]) == 2
+    assert cli.main(["housing", arguments[0], "-o", "out", *arguments[1:]]) == 2
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err.startswith("herringbone: ")

@@ -46,6 +46,7 @@ TOP = {
     "build_command",
     "gear_command",
     "gear_report",
+    "gear_tables",
     "housing_command",
     "housing_data_command",
     "housing_check",

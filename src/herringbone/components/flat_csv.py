@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 
 
 def _units(line: str, file: Path) -> dict[str, str]:
@@ -54,7 +54,7 @@ def read_flat_csv(
     try:
         lines = file.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {file}: {error}") from error
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
     rows = [(n, r) for n, r in enumerate(csv.reader(lines), 1) if r and not r[0].startswith("#")]

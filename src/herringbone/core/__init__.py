@@ -9,6 +9,7 @@ from herringbone.core.errors import (
     ParameterError,
     ResourceError,
     StructureError,
+    reason,
 )
 from herringbone.core.instance import Instance
 from herringbone.core.outcome import Outcome, OutcomeKind
@@ -43,5 +44,6 @@ __all__ = [
     "local",
     "output",
     "parameter",
+    "reason",
     "state",
 ]

@@ -23,3 +23,8 @@ class EquilibriumError(HerringboneError):
 
 class FmuError(HerringboneError):
     """An FMU cannot be read, loaded, instantiated or initialised."""
+
+
+def reason(error: Exception) -> str:
+    """Why a file could not be read or written, without its name, which the message already has."""
+    return error.strerror if isinstance(error, OSError) and error.strerror else str(error)

@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import StructureError
+from herringbone.core import StructureError, reason
 from herringbone.core.paths import systems_folder
 from herringbone.cosim.system import PartSpec, System
 
@@ -67,7 +67,7 @@ def read_toml(file: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise StructureError(f"cannot read {file}: {error}") from error
+        raise StructureError(f"cannot read {file}: {reason(error)}") from error
 
 
 def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:

@@ -19,7 +19,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.modification import Modification
@@ -54,10 +54,8 @@ def read_gear_file(file: Path) -> GearJob:
     """
     try:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ResourceError(f"cannot read {file}: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ResourceError(f"cannot read {file}: {error}") from error
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
     known = {
         "gear_pair": {field.name for field in fields(GearPair)},
         "modification": {field.name for field in fields(Modification)},

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.quantity import in_si
 
@@ -92,10 +92,8 @@ def read_rexs(file: Path, *, stage: str | None = None, halves: int = 1) -> GearP
 def _read(file: Path) -> _Model:
     try:
         root = ElementTree.parse(file).getroot()
-    except OSError as error:
-        raise ResourceError(f"cannot read {file}: {error.strerror}") from error
-    except ElementTree.ParseError as error:
-        raise ResourceError(f"cannot read {file}: {error}") from error
+    except (OSError, ElementTree.ParseError) as error:
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
     if root.tag != "model":
         raise ResourceError(f"{file}: root element '{root.tag}' is not the 'model' of a REXS file")
     components = {

@@ -301,8 +301,8 @@ class SliceMesh:
         """The contact's formula holds while it is narrow against the teeth's depth."""
         if np.any(slices.logarithm - np.log(load + _LEAST_LINE_LOAD) < _NARROW):
             raise ParameterError(
-                f"load {force:g} N presses the contact as wide as the teeth are thick; it is too "
-                "large for the pair"
+                f"load {force:g} N of one half presses the contact as wide as the teeth are thick; "
+                "it is too large for the pair: lower the torque or the loads of the table"
             )
 
     @staticmethod

@@ -21,7 +21,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from herringbone.core import ParameterError
+from herringbone.core import ParameterError, reason
 from herringbone.housing.dimensions import Dimensions
 
 FINEST, COARSEST = 5e-3, 0.2
@@ -129,7 +129,7 @@ def read_design(file: Path) -> HousingDesign:
     try:
         data = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ParameterError(f"cannot read {file}: {error}") from error
+        raise ParameterError(f"cannot read {file}: {reason(error)}") from error
     known = {
         "description",
         "length_unit",

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.components.ports import HALVES
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.modal_model import AXES, ModalHousing, Point
 from herringbone.housing.mode_set import make_frame, make_point
 from herringbone.housing.reduced_housing import RESIDUAL_DAMPING
@@ -59,7 +59,7 @@ def read_rows(path: Path) -> tuple[Row, ...]:
         lines = path.read_text(encoding="ascii").split()
         rows = tuple((int(node), int(axis)) for node, axis in (li.split(".") for li in lines))
     except OSError as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     except ValueError as error:
         raise ResourceError(f"{path}: each line must be 'node.axis', such as 12.3") from error
     if bad := [row for row in rows if not 1 <= row[1] <= 6]:

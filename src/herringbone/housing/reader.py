@@ -10,7 +10,7 @@ import numpy as np
 
 from herringbone.components.flat_csv import read_flat_csv
 from herringbone.components.modal_data import read_mode_table, read_shape_table
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.file_format import (
     COMPLIANCES,
     FORMAT,
@@ -100,7 +100,7 @@ def _read_json(file: Path | zipfile.Path) -> dict[str, Any]:
     try:
         head = json.loads(file.read_text(encoding="utf-8-sig"), parse_constant=refuse)
     except (OSError, KeyError) as error:
-        raise ResourceError(f"cannot read {file}: {error}") from None
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from None
     except ValueError as error:
         raise ResourceError(f"{file} is no valid JSON: {error}") from None
     if not isinstance(head, dict):
@@ -188,7 +188,7 @@ def _check_hashes(root: Path | zipfile.Path, hashes: Mapping[str, str]) -> None:
         try:
             found = digest((root / name).read_bytes())
         except (OSError, KeyError) as error:
-            raise ResourceError(f"cannot read {root / name}: {error}") from None
+            raise ResourceError(f"cannot read {root / name}: {reason(error)}") from None
         if found != expected:
             raise ResourceError(
                 f"{root / name} is not the file that housing.json describes: its SHA-256 is "

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from herringbone.components.ports import HALVES
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.modal_model import AXES
 
 _UNITS: Mapping[str, Mapping[str, float]] = {
@@ -99,7 +99,7 @@ def read_seats(path: str | Path) -> SeatFile:
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     except tomllib.TOMLDecodeError as error:
         raise ResourceError(f"{path} is no valid TOML: {error}") from error
     try:

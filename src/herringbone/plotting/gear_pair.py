@@ -43,9 +43,9 @@ def write_gear_pair_picture(stiffness: MeshStiffness, title: str, file: Path) ->
 def _teeth(axes: Axes, pair: GearPair) -> None:
     """Transverse section, seen along the axis; the pitch point is the origin."""
     centres = (-pair.pitch_radius[0], pair.pitch_radius[1])
-    for gear, colour in ((0, _PINION), (1, _WHEEL)):
+    for gear, colour in enumerate((_PINION, _WHEEL)):
         x, y = _outline(pair, gear)
-        axes.plot(_MM * x, _MM * (y + centres[gear]), color=colour)
+        axes.plot(_MM * x, _MM * (y + centres[gear]), color=colour, label=("pinion", "wheel")[gear])
     angle = pair.working_transverse_pressure_angle
     along = (-math.cos(angle), math.sin(angle))  # the pinion turns counter-clockwise and drives
     points = pair.path_of_contact
@@ -57,10 +57,10 @@ def _teeth(axes: Axes, pair: GearPair) -> None:
     axes.plot(0.0, 0.0, "o", color=MARKER_COLOUR, markersize=4.0, label="pitch point")
     reach = 2.2 * _MM * math.pi * pair.transverse_module / 2.0
     axes.set(
-        title="Teeth", xlabel="tangential (mm)", ylabel="toward the wheel (mm)",
+        title="Teeth", xlabel="tangential [mm]", ylabel="toward the wheel [mm]",
         xlim=(-reach, reach), ylim=(-0.8 * reach, 0.8 * reach), aspect="equal",
     )  # fmt: skip
-    legend(axes, 2)
+    legend(axes, 4)
 
 
 def _outline(pair: GearPair, gear: int) -> tuple[np.ndarray, np.ndarray]:
@@ -99,8 +99,8 @@ def _contact_lines(axes: Axes, pair: GearPair) -> None:
         if inside.any():
             axes.plot(_MM * x[inside], _MM * s[inside], color=_PATH, linewidth=2.0)
     axes.set(
-        title="Contact lines, phase 0", xlabel="along the face (mm)",
-        ylabel="path of contact: A (bottom) to E (mm)",
+        title="Contact lines, phase 0", xlabel="along the face [mm]",
+        ylabel="path of contact, A to E [mm]",
     )  # fmt: skip
 
 
@@ -112,11 +112,11 @@ def _curves(axes: Axes, stiffness: MeshStiffness) -> None:
     for row in shown:
         axes.plot(
             phases,
-            1e-9 * np.tile(stiffness.secant[row], 2),
-            label=f"{stiffness.loads[row]:.4g} N",
+            1e-6 * np.tile(stiffness.secant[row], 2),
+            label=f"{stiffness.loads[row]:.0f} N",
         )
     axes.set(
-        title="Secant mesh stiffness, one half", xlabel="phase (mesh periods)",
-        ylabel="stiffness (N/nm)", xlim=(0.0, 2.0),
+        title="Secant mesh stiffness, one half", xlabel="phase [mesh periods]",
+        ylabel="stiffness [N/µm]", xlim=(0.0, 2.0),
     )  # fmt: skip
     legend_beside(axes)

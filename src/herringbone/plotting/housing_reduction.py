@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from herringbone.components.ports import HALVES
 from herringbone.plotting.style import COLOURS, styled
@@ -40,8 +41,9 @@ def reduction_picture(
             drive = (np.abs(data[:, at, at]) * 1e9 for data in (full, reduced))
             ax.plot(frequency_hz, next(drive), color=COLOURS[k], alpha=0.45, linewidth=2.4)
             ax.plot(frequency_hz, next(drive), color=COLOURS[k], label=axis, linewidth=1.0)
-        ax.set(xscale="log", yscale="log", title=f"Receptance at {seat}, |s/f|")
-        ax.set(xlabel="frequency [Hz]", ylabel="[µm/kN]")
+        ax.set(xscale="log", yscale="log", title=f"{seat.replace('_', ' ').capitalize()}, |s/f|")
+        ax.set_ylabel("receptance [µm/kN]")
+        _label_frequencies(ax)
     panels[0].legend(title="direction", loc="lower left")
     _draw_errors(axes[0, 2], frequency_hz, errors, bound)
     _draw_stiffness(axes[1, 2], *static)
@@ -52,6 +54,14 @@ def reduction_picture(
     return figure
 
 
+def _label_frequencies(ax: Axes) -> None:
+    """Whole numbers at 1, 2, 5 of each decade; a decade and a half has too few powers of ten."""
+    ax.set_xlabel("frequency [Hz]")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_formatter(NullFormatter())
+
+
 def _draw_errors(ax: Axes, frequency_hz: np.ndarray, errors: np.ndarray, bound: float) -> None:
     shown = np.maximum(errors.max(axis=1), 1e-10)
     ax.plot(frequency_hz, 100.0 * shown, label="largest of 12 directions")
@@ -60,7 +70,8 @@ def _draw_errors(ax: Axes, frequency_hz: np.ndarray, errors: np.ndarray, bound: 
             100.0 * bound, color=COLOURS[1], linestyle="--", label="certified up to the band"
         )
     ax.set(xscale="log", yscale="log", title="Error over static compliance")
-    ax.set(xlabel="frequency [Hz]", ylabel="[%]")
+    ax.set_ylabel("error [%]")
+    _label_frequencies(ax)
     ax.legend(loc="lower right")
 
 
@@ -71,6 +82,6 @@ def _draw_stiffness(ax: Axes, full: np.ndarray, reduced: np.ndarray) -> None:
         ax.barh(at + shift, 1e-6 / np.diag(compliance), 0.4, label=label)
     ax.set_yticks(at, names)
     ax.invert_yaxis()
-    ax.set(title="Static stiffness", xlabel="[N/µm]")
+    ax.set(title="Static stiffness", xlabel="stiffness [N/µm]")
     ax.set_xlim(right=1.4 * ax.get_xlim()[1])
     ax.legend(loc="upper right")

@@ -64,9 +64,9 @@ def import_housing(
         )  # fmt: skip
     if suffix not in {".frd", ".uff", ".unv"}:
         known = ", ".join([".mtx", ".frd", ".uff", ".unv", *_MATRICES])
+        kind = f"'{suffix}'" if suffix else "a file without suffix"
         raise ResourceError(
-            f"{paths[0]}: '{suffix}' cannot be imported; "
-            + _ADVICE.get(suffix, f"it takes {known}")
+            f"{paths[0]}: {kind} cannot be imported; " + _ADVICE.get(suffix, f"it takes {known}")
         )
     if where is None:
         raise ResourceError(f"{paths[0]}: where are the seats? Give --seats SEATS.toml")

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.matrix_model import MatrixModel, Row, only_name
 
 _SYMMETRIC = 6
@@ -33,7 +33,7 @@ def read_dmig(path: str | Path) -> MatrixModel:
     try:
         text = path.read_text(encoding="ascii", errors="replace")
     except OSError as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     entries: dict[str, dict[tuple[Row, Row], float]] = {}
     coordinates: dict[int, np.ndarray] = {}
     try:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.mode_set import ModeSet, check_modal_mass
 
 _LABEL_WIDTHS = {"0": 5, "1": 10}
@@ -30,7 +30,7 @@ def read_frd(path: str | Path) -> ModeSet:
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     if not lines or not lines[0].startswith("    1C"):
         raise ResourceError(f"{path} is no CalculiX result file: it does not begin with '    1C'")
     if lines[-1].strip() != "9999":

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.matrix_model import MatrixModel
 
 
@@ -44,7 +44,7 @@ def _read(file: Path) -> sp.csr_array:
     try:
         matrix = scipy.io.mmread(file)
     except OSError as error:
-        raise ResourceError(f"cannot read {file}: {error}") from error
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
     except (ValueError, OverflowError) as error:
         raise ResourceError(f"{file} is no valid Matrix Market file: {error}") from error
     if np.iscomplexobj(matrix):

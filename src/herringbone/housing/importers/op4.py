@@ -11,7 +11,7 @@ from pathlib import Path
 
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError
+from herringbone.core import ResourceError, reason
 from herringbone.housing.matrix_model import MatrixModel, only_name
 
 _HEADER = re.compile(r"^(.{8})(.{8})(.{8})(.{8})(.{8})\s*\d*P?,?(\d+)[ED](\d+)\.(\d+)")
@@ -31,7 +31,7 @@ def read_op4(path: str | Path) -> MatrixModel:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     if b"\x00" in data[:4096] or not data[:4096].isascii():
         raise ResourceError(
             f"{path} is a binary OUTPUT4 file; write it formatted: "

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core import HerringboneError, ResourceError
+from herringbone.core import HerringboneError, ResourceError, reason
 from herringbone.housing.mode_set import (
     ModeSet,
     check_modal_mass,
@@ -70,7 +70,7 @@ def _read_sets(path: Path) -> list[dict[str, Any]]:
     try:
         lines = path.read_bytes().splitlines()
     except OSError as error:
-        raise ResourceError(f"cannot read {path}: {error}") from error
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
     marks = sum(line.rstrip() == b"    -1" for line in lines)
     if marks == 0:
         raise ResourceError(f"{path} is no universal file: it has no mark '    -1'")
