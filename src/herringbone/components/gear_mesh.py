@@ -353,15 +353,24 @@ def _normal_force(
 
 
 @kernel
-def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    for i in range(_HALF):
-        dx[i] = b[i + _HALF]
+def _meshes(b: np.ndarray) -> tuple[float, float, float, float, float, float, float]:
+    """cos(beta_b), sin(beta_b), eps_z [m], deflections [m] and normal forces [N] of both meshes."""
     cos_b, sin_b = cosine(b[_BETA]), sine(b[_BETA])
     eps, eps_rate = _axial_offset(b)
-    deflection, rate = _deflection(b, 0, cos_b, sin_b, eps, eps_rate)
-    left = _normal_force(b, 0, cos_b, sin_b, deflection, rate)
-    deflection, rate = _deflection(b, 1, cos_b, sin_b, eps, eps_rate)
-    right = _normal_force(b, 1, cos_b, sin_b, deflection, rate)
+    left, left_rate = _deflection(b, 0, cos_b, sin_b, eps, eps_rate)
+    right, right_rate = _deflection(b, 1, cos_b, sin_b, eps, eps_rate)
+    force_left = _normal_force(b, 0, cos_b, sin_b, left, left_rate)
+    force_right = _normal_force(b, 1, cos_b, sin_b, right, right_rate)
+    return cos_b, sin_b, eps, left, right, force_left, force_right
+
+
+@kernel
+def _derivatives(
+    b: np.ndarray, dx: np.ndarray, cos_b: float, sin_b: float, left: float, right: float
+) -> None:
+    """Derivatives of all states under the normal forces of both meshes."""
+    for i in range(_HALF):
+        dx[i] = b[i + _HALF]
     for gear in range(2):
         sign = -1.0 if gear == 0 else 1.0
         first = 2 * gear
@@ -397,10 +406,27 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 
 
 @kernel
-def _accelerations(b: np.ndarray, t: float) -> None:
-    """Write the outputs that depend on the inputs."""
-    dx = b[_SCRATCH : _SCRATCH + _STATES]
-    _rhs(b, t, dx)
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    cos_b, sin_b, _, _, _, left, right = _meshes(b)
+    _derivatives(b, dx, cos_b, sin_b, left, right)
+
+
+@kernel
+def _motions(b: np.ndarray) -> None:
+    """Write positions and velocities at the ports."""
+    for i in range(4):
+        b[_S_Y[i]], b[_V_Y[i]] = b[_Y + i], b[_Y + _HALF + i]
+        b[_S_Z[i]], b[_V_Z[i]] = b[_Z + i], b[_Z + _HALF + i]
+    for o in range(0, _HALF + 1, _HALF):
+        wheel = (b[_RB[0]] * b[_ANGLE + o] - b[_APPROACH + o]) / b[_RB[1]]
+        at = _PHI if o == 0 else _W
+        b[at[0]] = b[_ANGLE + o] + (1.0 - b[_SHARE[0]]) * b[_TWIST_P + o]
+        b[at[1]] = wheel + (1.0 - b[_SHARE[1]]) * b[_TWIST_W + o]
+
+
+@kernel
+def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
+    """Write the outputs that depend on the inputs, from the derivatives of the states."""
     for i in range(4):
         b[_A_Y[i]] = dx[_Y + _HALF + i]
         b[_A_Z[i]] = dx[_Z + _HALF + i]
@@ -411,23 +437,14 @@ def _accelerations(b: np.ndarray, t: float) -> None:
 
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
-    for i in range(4):
-        b[_S_Y[i]], b[_V_Y[i]] = b[_Y + i], b[_Y + _HALF + i]
-        b[_S_Z[i]], b[_V_Z[i]] = b[_Z + i], b[_Z + _HALF + i]
-    for o in range(0, _HALF + 1, _HALF):
-        wheel = (b[_RB[0]] * b[_ANGLE + o] - b[_APPROACH + o]) / b[_RB[1]]
-        at = _PHI if o == 0 else _W
-        b[at[0]] = b[_ANGLE + o] + (1.0 - b[_SHARE[0]]) * b[_TWIST_P + o]
-        b[at[1]] = wheel + (1.0 - b[_SHARE[1]]) * b[_TWIST_W + o]
-    cos_b, sin_b = cosine(b[_BETA]), sine(b[_BETA])
-    eps, eps_rate = _axial_offset(b)
-    for side in range(2):
-        deflection, rate = _deflection(b, side, cos_b, sin_b, eps, eps_rate)
-        b[_FORCE[side]] = _normal_force(b, side, cos_b, sin_b, deflection, rate)
-        b[_DEFLECTION[side]] = deflection
+    _motions(b)
+    cos_b, sin_b, eps, left, right, force_left, force_right = _meshes(b)
+    b[_OFFSET], b[_DEFLECTION[0]], b[_DEFLECTION[1]] = eps, left, right
+    b[_FORCE[0]], b[_FORCE[1]] = force_left, force_right
     b[_TE] = b[_APPROACH] + 0.5 * (b[_RB[0]] * b[_TWIST_P] - b[_RB[1]] * b[_TWIST_W])
-    b[_OFFSET] = eps
-    _accelerations(b, t)
+    dx = b[_SCRATCH : _SCRATCH + _STATES]
+    _derivatives(b, dx, cos_b, sin_b, force_left, force_right)
+    _accelerations(b, dx)
 
 
 @kernel

@@ -93,7 +93,7 @@ def collect(
         wanted: see `wanted_rows`.
         most: largest number of modes.
         out, at: the number of modes, `most` frequencies [Hz], `most` damping ratios [1] and the
-            shapes [kg^-1/2] by mode, then by dof, are written to `out[at:]`.
+            shapes [kg^-1/2] by dof, each with room for `most` modes, are written to `out[at:]`.
         report: numbers of a refusal.
 
     Returns:
@@ -124,7 +124,7 @@ def collect(
             if values[here] == wanted[k, 0] and values[here + 1] == wanted[k, 1]:
                 found += 1
                 for mode in range(modes):
-                    out[at + 1 + 2 * most + mode * dofs + k] = values[here + _NAMING + mode]
+                    out[at + 1 + (2 + k) * most + mode] = values[here + _NAMING + mode]
         if found > 1:
             return _TWICE
         if found == 0:
@@ -160,7 +160,7 @@ def read_modes(
         raise refusals(dofs, most)[refusal - 1].error([modes, shapes], report)
     n = int(out[0])
     frequency_hz, damping_ratio = out[1 : 1 + n], out[1 + most : 1 + most + n]
-    return frequency_hz, damping_ratio, out[1 + 2 * most :][: n * len(dofs)].reshape(n, -1).T
+    return frequency_hz, damping_ratio, out[1 + 2 * most :].reshape(len(dofs), most)[:, :n]
 
 
 def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:

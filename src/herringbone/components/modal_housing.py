@@ -62,18 +62,19 @@ def _port(seat: str, axis: str) -> list[Variable]:
     ]
 
 
-# Tables: number of modes, angular frequency, damping ratio, shapes by mode.
-_TABLE_SIZE = 1 + MODES * (2 + _N)
+# Tables: number of modes, angular frequency, damping ratio, shapes by dof, modal accelerations.
+_TABLE_SIZE = 1 + MODES * (2 + _N + 1)
 STEPS = 24
 """Steps whose propagators are kept, for masters that come back to a step."""
-# Work: slots filled so far, step of each slot, slots of propagators, scratch, polynomial forces.
+# Work: slots filled so far, step of each slot, slots of propagators (by entry, then by mode), room
+# for one propagator and for its making, polynomial forces.
 _FILLED, _STEP_OF = 0, 1
 _PROPAGATORS = _STEP_OF + STEPS
 _SLOT = MODES * modal.PROPAGATOR
-_SCRATCH = _PROPAGATORS + STEPS * _SLOT
+_ONE = _PROPAGATORS + STEPS * _SLOT
+_SCRATCH = _ONE + modal.PROPAGATOR
 _POLYNOMIALS = _SCRATCH + modal.SCRATCH_SIZE
-_MODAL_FORCE = _POLYNOMIALS + _N * STRIDE
-_WORK = _MODAL_FORCE + STRIDE
+_WORK = _POLYNOMIALS + _N * STRIDE
 
 _d = Declaration(
     "modal_housing",
@@ -93,7 +94,7 @@ _d = Declaration(
     work=_WORK,
 )
 
-_F, _START = _d.indices(*_FORCES), _d.indices(*(f"start.{name}" for name in _FORCES))
+_START = _d.index[f"start.{_FORCES[0]}"]
 _S, _V, _A = (_d.indices(*(f"{seat}.{q}_{axis}" for seat, axis in _DOFS)) for q in "sva")
 _FIRST_INPUT, _FIRST_OUTPUT, _OUTPUTS = _d.first_input, _d.first_output, len(_d.node_outputs)
 _DEGREE = _d.index["interface_degree"]
@@ -101,50 +102,67 @@ _COUNT = _d.first_table
 _OMEGA = _COUNT + 1
 _ZETA = _OMEGA + MODES
 _SHAPES = _ZETA + MODES
+_ACCELERATIONS = _SHAPES + _N * MODES
 
 
 @kernel
-def _force(b: np.ndarray, mode: int) -> float:
-    """Modal force at the present inputs."""
+def _count(b: np.ndarray) -> int:
+    """Number of modes; with the bound, the compiler sees that no index is negative."""
+    return min(int(b[_COUNT]), MODES)
+
+
+@kernel
+def _modal_force(b: np.ndarray, mode: int, forces: np.ndarray, stride: int) -> float:
+    """Force on a mode, under forces at the seats that lie `stride` apart."""
     total = 0.0
     for k in range(_N):
-        total += b[_SHAPES + mode * _N + k] * b[_F[k]]
+        total += b[_SHAPES + k * MODES + mode] * forces[k * stride]
     return total
 
 
 @kernel
-def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    count = int(b[_COUNT])
-    for i in range(MODES):
-        dx[i] = b[MODES + i]
-        dx[MODES + i] = 0.0
-    for i in range(count):
-        w = b[_OMEGA + i]
-        dx[MODES + i] = _force(b, i) - w * (2.0 * b[_ZETA + i] * b[MODES + i] + w * b[i])
+def _acceleration(b: np.ndarray, mode: int, force: float) -> float:
+    w = b[_OMEGA + mode]
+    return force - w * (2.0 * b[_ZETA + mode] * b[MODES + mode] + w * b[mode])
 
 
 @kernel
-def _motion(b: np.ndarray) -> None:
-    """Write positions and velocities of the seats."""
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    for i in range(MODES):
+        dx[i] = b[MODES + i]
+        dx[MODES + i] = 0.0
+    forces = b[_FIRST_INPUT:_FIRST_OUTPUT]
+    for i in range(_count(b)):
+        dx[MODES + i] = _acceleration(b, i, _modal_force(b, i, forces, STRIDE))
+
+
+@kernel
+def _seats(b: np.ndarray) -> None:
+    """Write the motion of the seats from that of the modes.
+
+    Even and odd modes are summed apart, so that two can be added at a time.
+    """
+    pairs = (_count(b) + 1) // 2
     for k in range(_N):
-        b[_S[k]] = b[_V[k]] = 0.0
-    for i in range(int(b[_COUNT])):
-        row = _SHAPES + i * _N
-        for k in range(_N):
-            b[_S[k]] += b[row + k] * b[i]
-            b[_V[k]] += b[row + k] * b[MODES + i]
+        row = b[_SHAPES + k * MODES : _SHAPES + (k + 1) * MODES]
+        s_even, s_odd, v_even, v_odd, a_even, a_odd = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(pairs):
+            even, odd = 2 * i, 2 * i + 1
+            s_even += row[even] * b[even]
+            s_odd += row[odd] * b[odd]
+            v_even += row[even] * b[MODES + even]
+            v_odd += row[odd] * b[MODES + odd]
+            a_even += row[even] * b[_ACCELERATIONS + even]
+            a_odd += row[odd] * b[_ACCELERATIONS + odd]
+        b[_S[k]], b[_V[k]], b[_A[k]] = s_even + s_odd, v_even + v_odd, a_even + a_odd
 
 
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
-    _motion(b)
-    for k in range(_N):
-        b[_A[k]] = 0.0
-    for i in range(int(b[_COUNT])):
-        w = b[_OMEGA + i]
-        a = _force(b, i) - w * (2.0 * b[_ZETA + i] * b[MODES + i] + w * b[i])
-        for k in range(_N):
-            b[_A[k]] += b[_SHAPES + i * _N + k] * a
+    forces = b[_FIRST_INPUT:_FIRST_OUTPUT]
+    for i in range(_count(b)):
+        b[_ACCELERATIONS + i] = _acceleration(b, i, _modal_force(b, i, forces, STRIDE))
+    _seats(b)
 
 
 @kernel
@@ -155,51 +173,57 @@ def _propagators(b: np.ndarray, w: np.ndarray, h: float) -> int:
         if w[_STEP_OF + k] == h:
             return _PROPAGATORS + k * _SLOT
     slot = filled % STEPS
+    at = _PROPAGATORS + slot * _SLOT
     scratch = w[_SCRATCH:_POLYNOMIALS]
-    for i in range(int(b[_COUNT])):
-        at = _PROPAGATORS + slot * _SLOT + i * modal.PROPAGATOR
-        modal.propagator(b[_OMEGA + i], b[_ZETA + i], h, w, at, scratch)
+    for i in range(_count(b)):
+        modal.propagator(b[_OMEGA + i], b[_ZETA + i], h, w, _ONE, scratch)
+        for entry in range(modal.PROPAGATOR):
+            w[at + entry * MODES + i] = w[_ONE + entry]
     w[_STEP_OF + slot], w[_FILLED] = h, filled + 1.0
-    return _PROPAGATORS + slot * _SLOT
+    return at
 
 
 @kernel
-def _propagate(b: np.ndarray, w: np.ndarray, propagators: int, degree: int) -> None:
-    """Advance all modes by the step of the propagators, under the forces in the work space."""
-    for i in range(int(b[_COUNT])):
-        at = propagators + i * modal.PROPAGATOR
-        q = w[at] * b[i] + w[at + 1] * b[MODES + i]
-        v = w[at + 2] * b[i] + w[at + 3] * b[MODES + i]
-        for j in range(degree + 1):
-            force = 0.0
-            for k in range(_N):
-                force += b[_SHAPES + i * _N + k] * w[_POLYNOMIALS + k * STRIDE + j]
-            q += w[at + 4 + 2 * j] * force
-            v += w[at + 5 + 2 * j] * force
-        b[i], b[MODES + i] = q, v
+def _propagate(b: np.ndarray, phi: np.ndarray, forces: np.ndarray, degree: int) -> None:
+    """Advance all modes, and write their accelerations.
+
+    Args:
+        b: block.
+        phi: propagators of the step, by entry and mode.
+        forces: their polynomials over the step, by dof and power.
+        degree: of the polynomials.
+    """
+    count = _count(b)
+    for i in range(count):
+        q, v = b[i], b[MODES + i]
+        b[i] = phi[i] * q + phi[MODES + i] * v
+        b[MODES + i] = phi[2 * MODES + i] * q + phi[3 * MODES + i] * v
+        b[_ACCELERATIONS + i] = 0.0
+    for j in range(degree + 1):
+        power = forces[j:]
+        gamma = phi[(4 + 2 * j) * MODES : (6 + 2 * j) * MODES]
+        for i in range(count):
+            force = _modal_force(b, i, power, STRIDE)
+            b[i] += gamma[i] * force
+            b[MODES + i] += gamma[MODES + i] * force
+            b[_ACCELERATIONS + i] += force  # all powers are 1 at the end of the step
+    for i in range(count):
+        b[_ACCELERATIONS + i] = _acceleration(b, i, b[_ACCELERATIONS + i])
 
 
 @kernel
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     degree = int(b[_DEGREE])
     intervals = max(degree, 1)
-    propagators = _propagators(b, w, h / intervals)
+    at = _propagators(b, w, h / intervals)
+    phi, forces = w[at : at + _SLOT], w[_POLYNOMIALS:]
     for node in range(1, intervals + 1):
         for k in range(_N):
-            at = _POLYNOMIALS + k * STRIDE
-            monomial(b, _F[k], degree, w, at)
-            shift(w, at, degree, (node - 1.0) / intervals, 1.0 / intervals)
-        _propagate(b, w, propagators, degree)
-        if node < intervals:
-            _motion(b)
-            store_node(b, _FIRST_OUTPUT, _OUTPUTS, node)
-    for k in range(_N):
-        w[_POLYNOMIALS + k] = b[_F[k]]
-        b[_F[k]] = b[_F[k] + degree]
-    _out(b, t + h)
-    store_node(b, _FIRST_OUTPUT, _OUTPUTS, intervals)
-    for k in range(_N):
-        b[_F[k]] = w[_POLYNOMIALS + k]
+            monomial(b, _FIRST_INPUT + k * STRIDE, degree, forces, k * STRIDE)
+            shift(forces, k * STRIDE, degree, (node - 1.0) / intervals, 1.0 / intervals)
+        _propagate(b, phi, forces, degree)
+        _seats(b)
+        store_node(b, _FIRST_OUTPUT, _OUTPUTS, node)
     return 0 if all_finite(b, 0, 2 * MODES) else NOT_FINITE
 
 
@@ -208,13 +232,11 @@ def _start(b: np.ndarray) -> None:
     """Static deflection under the start forces; rigid modes stay at zero."""
     for i in range(2 * MODES):
         b[i] = 0.0
-    for i in range(int(b[_COUNT])):
+    forces = b[_START : _START + _N]
+    for i in range(_count(b)):
         w = b[_OMEGA + i]
         if w > 0.0:
-            force = 0.0
-            for k in range(_N):
-                force += b[_SHAPES + i * _N + k] * b[_START[k]]
-            b[i] = force / (w * w)
+            b[i] = _modal_force(b, i, forces, 1) / (w * w)
 
 
 _WANTED = modal_data.wanted_rows(_DOFS)
@@ -226,7 +248,7 @@ def _load(
 ) -> int:
     refusal = modal_data.collect(values, shape, _WANTED, MODES, b, _COUNT, report)
     if refusal == 0:
-        for i in range(int(b[_COUNT])):
+        for i in range(_count(b)):
             b[_OMEGA + i] *= 2.0 * math.pi
     return refusal
 

@@ -78,7 +78,8 @@ def _take_back(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
     """Parts and history as before the step; -1, or the part that refused."""
     history = buffers.history
     for row in range(history.shape[0] - 1):
-        history[row] = history[row + 1]
+        for i in range(history.shape[1]):
+            history[row, i] = history[row + 1, i]
     return restore(plan, nodes, buffers, True)
 
 

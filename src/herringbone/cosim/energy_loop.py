@@ -143,7 +143,8 @@ def _judge(monitor: EnergyMonitor) -> None:
         monitor.least[0] = np.inf
     if counts[UNSTABLE_AT] < 0 and mean > RISE * monitor.least[0]:
         counts[UNSTABLE_AT] = counts[STEPS]
-        monitor.at_flag[:] = monitor.sums
+        for i in range(count + 1):
+            monitor.at_flag[i] = monitor.sums[i]
     counts[INACCURATE_FOR] = counts[INACCURATE_FOR] + 1 if added > INACCURATE * taken else 0
     if counts[INACCURATE_AT] < 0 and PATIENCE * counts[INACCURATE_FOR] > window:
         counts[INACCURATE_AT] = counts[STEPS]

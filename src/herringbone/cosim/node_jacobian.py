@@ -5,10 +5,10 @@ import numpy as np
 from herringbone.cosim.node_pass import begin, one_pass, restore
 from herringbone.cosim.node_plan import Buffers, NodePlan
 from herringbone.cosim.plan import Plan
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import allocating
 
 
-@kernel
+@allocating
 def sensitivity(
     plan: Plan,
     nodes: NodePlan,

@@ -23,7 +23,7 @@ import numpy as np
 
 from herringbone.cosim.node_plan import Buffers, NodePlan
 from herringbone.cosim.plan import HISTORY
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import allocating
 
 ORDER = np.array([0, 2, 4, 4, 6])
 """Order q by degree p."""
@@ -35,7 +35,7 @@ FLOOR = 1e-3
 _MOST_POINTS = 5 + 2
 
 
-@kernel
+@allocating
 def _missing(buffers: Buffers, i: int, nodes: int, degree: int, known: int) -> float:
     """Force that a polynomial of a degree misses in output i; nodes from 0 to `nodes`.
 
@@ -62,7 +62,7 @@ def _missing(buffers: Buffers, i: int, nodes: int, degree: int, known: int) -> f
     return _KAPPA[degree] * factorial * difference
 
 
-@kernel
+@allocating
 def step_error(
     nodes: NodePlan,
     buffers: Buffers,
@@ -100,7 +100,7 @@ def step_error(
     return np.sqrt(worst), culprit
 
 
-@kernel
+@allocating
 def update_scale(
     nodes: NodePlan,
     buffers: Buffers,

@@ -14,6 +14,7 @@ from herringbone.core.paths import cache_folder
 
 P = ParamSpec("P")
 T = TypeVar("T")
+_OPTIONS = {"error_model": "numpy", "fastmath": False, "nogil": True}
 
 
 @contextmanager
@@ -32,9 +33,19 @@ def _kernel_cache() -> Iterator[None]:
 
 
 def kernel(function: Callable[P, T]) -> Callable[P, T]:
-    """Compile a function in the kernel language, and cache it."""
+    """Compile a function in the kernel language, and cache it.
+
+    It makes no arrays, so that references to arrays need not be counted: in the compiled loop,
+    which passes dozens of them on, that would take most of the time.
+    """
     with _kernel_cache():
-        return numba.njit(error_model="numpy", fastmath=False, nogil=True, cache=True)(function)
+        return numba.njit(**_OPTIONS, cache=True, _nrt=False)(function)
+
+
+def allocating(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a function that makes arrays of its own."""
+    with _kernel_cache():
+        return numba.njit(**_OPTIONS, cache=True, _nrt=True)(function)  # whoever calls it
 
 
 def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
@@ -46,7 +57,7 @@ def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         function.__qualname__ = f"{owner}.{function.__qualname__}"
-        return numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+        return numba.njit(**_OPTIONS, _nrt=False)(function)
 
     return decorate
 

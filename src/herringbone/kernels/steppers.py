@@ -51,6 +51,8 @@ def body_stepper(
 
     @inner(declaration.name)
     def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
+        if degree == 0:
+            return  # held
         for i in range(inputs):
             b[n + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
 

@@ -118,6 +118,7 @@ def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:
 
 def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
     options = llvm.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+    options.slp_vectorization = True
     builder = llvm.create_pass_builder(target, options)
     for _ in range(_PASSES):
         builder.getModulePassManager().run(module, builder)
