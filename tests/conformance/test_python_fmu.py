@@ -18,7 +18,7 @@ import zipfile
 
 import pytest
 from fmpy.fmi1 import FMICallException
-from support_fmus import NAMES, H, run
+from support_fmus import NAMES, STEPS, H, run
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError
@@ -50,12 +50,12 @@ def test_state_from_before_an_error_makes_the_instance_usable_again(started):
     host = started("drive_motor")
     run(host, "drive_motor")
     saved = host.slave.getFMUstate()
-    wanted = run(host, "drive_motor", 3, 10)
+    wanted = run(host, "drive_motor", 3, STEPS)
     host.slave.setReal([host.variables["flange.tau"].reference], [float("nan")])
     with pytest.raises(FmuError, match=r"flange\.tau = nan"):
         host.step(1.0, H)
     host.slave.setFMUstate(saved)
-    assert run(host, "drive_motor", 3, 10) == wanted
+    assert run(host, "drive_motor", 3, STEPS) == wanted
     host.slave.freeFMUstate(saved)
 
 

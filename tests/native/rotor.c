@@ -15,22 +15,22 @@
 
 
 #define NODES(name, unit) \
-    {name, unit, 0, -1e300, 1e300, 1}, {name ".node1", unit, 0, -1e300, 1e300, 1}, \
-    {name ".node2", unit, 0, -1e300, 1e300, 1}, {name ".node3", unit, 0, -1e300, 1e300, 1}, \
-    {name ".node4", unit, 0, -1e300, 1e300, 1}
+    {name, unit, 0, -1e300, 1e300, 1, 0}, {name ".node1", unit, 0, -1e300, 1e300, 1, 0}, \
+    {name ".node2", unit, 0, -1e300, 1e300, 1, 0}, {name ".node3", unit, 0, -1e300, 1e300, 1, 0}, \
+    {name ".node4", unit, 0, -1e300, 1e300, 1, 0}
 static const HbReal reals[] = {
-    {"phi", "rad", 0, -1e300, 1e300, 1},
-    {"w", "rad/s", 0, -1e300, 1e300, 100},
-    {NULL, NULL, 0, -1e300, 1e300, 10},
+    {"phi", "rad", 0, -1e300, 1e300, 1, 0},
+    {"w", "rad/s", 0, -1e300, 1e300, 100, 0},
+    {NULL, NULL, 0, -1e300, 1e300, 10, 0},
     NODES("tau", "N.m"),
     NODES("flange.phi", "rad"),
     NODES("flange.w", "rad/s"),
     NODES("torque", "N.m"),
-    {"flange.a", "rad/s2", 0, -1e300, 1e300, 1},
-    {"steps", "1", 0, -1e300, 1e300, 1},
-    {"inertia", "kg.m2", 2, 1e-9, 1e9, 1},
-    {"ratio", "1", 1, -1e9, 1e9, 1},
-    {"interface_degree", "1", 0, 0, 4, 1},
+    {"flange.a", "rad/s2", 0, -1e300, 1e300, 1, 0},
+    {"steps", "1", 0, -1e300, 1e300, 1, 0},
+    {"inertia", "kg.m2", 2, 1e-9, 1e9, 1, 0},
+    {"ratio", "1", 1, -1e9, 1e9, 1, 0},
+    {"interface_degree", "1", 0, 0, 4, 1, 1},
 };
 static const uint8_t access_of[] = {
     HB_STATE, HB_STATE, HB_HIDDEN,

@@ -7,10 +7,12 @@ from herringbone.components import (
     gear_mesh,
     load_motor,
     shaft_coupling,
+    velocity_sensor,
 )
 
 MODULES = (
     bearing_supports, bench_controller, drive_motor, gear_mesh, load_motor, shaft_coupling,
+    velocity_sensor,
 )  # fmt: skip
 
 

@@ -61,12 +61,18 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         outside: instances that stay outside; what they feed becomes inputs.
 
     Raises:
-        StructureError: a part is a foreign FMU or does not exist, nothing is left, or two parts
-            have both visible and hidden states.
+        StructureError: a part is a foreign FMU or does not exist, nothing is left, a part takes
+            samples, or two parts have both visible and hidden states.
         ParameterError, ResourceError: bad values.
     """
     inside = system.without(*outside)
     instances = make_instances(inside)
+    for instance in instances:
+        if instance.component.samples:
+            raise StructureError(
+                f"{instance.name}: {instance.component.name} takes samples, which a system as one "
+                f"component cannot; keep it outside (--outside {instance.name})"
+            )
     instances.sort(key=lambda i: (_hidden(i) > 0, _visible(i) == 0))
     if sum(_hidden(i) > 0 and _visible(i) > 0 for i in instances) > 1:
         raise StructureError(f"{system.name}: two parts have both visible and hidden states")

@@ -15,12 +15,19 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 
 from herringbone.analysis.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.components.velocity_sensor import (
+    ANTI_ALIAS_CORNER,
+    ANTI_ALIAS_ORDER,
+    VELOCITY_SENSOR,
+    converted,
+)
 from herringbone.core import ParameterError
 from herringbone.result import TIME, Result
 
 _FINEST = 5.0
 """Least input rate over sampling rate, and over twice the low pass."""
 _WHOLE = 1e-6
+_START = {v.name: v.start for v in VELOCITY_SENSOR.declaration.parameters}
 
 
 class SensorRecord(NamedTuple):
@@ -39,7 +46,7 @@ class SensorRecord(NamedTuple):
 
 @dataclass(frozen=True)
 class VelocitySensor:
-    """Sensor and recorder.
+    """Sensor and recorder; the component `velocity_sensor` has the same parameters.
 
     Attributes:
         high_pass_hz: of the sensor, second order [Hz]; 0 for none.
@@ -50,12 +57,12 @@ class VelocitySensor:
         bits: of the converter over both signs; 0 for no quantisation.
     """
 
-    high_pass_hz: float = 10.0
-    low_pass_hz: float = 0.0
-    anti_alias: bool = False
-    sampling_hz: float = 2000.0
-    range: float = 0.05
-    bits: int = 16
+    high_pass_hz: float = _START["high_pass_hz"]
+    low_pass_hz: float = _START["low_pass_hz"]
+    anti_alias: bool = bool(_START["anti_alias"])
+    sampling_hz: float = _START["sampling_hz"]
+    range: float = _START["range"]
+    bits: int = int(_START["bits"])
 
     def __post_init__(self) -> None:
         """Check; raises ParameterError."""
@@ -89,13 +96,9 @@ class VelocitySensor:
         for sections in self._filters(step):
             seen = sosfilt(sections, seen, axis=0)
         sampled = seen[::every]
-        clipped = np.clip(sampled, -self.range, self.range)
         saturated = (np.abs(sampled) > self.range).sum(axis=0)
-        if self.bits:
-            digit = 2.0 * self.range / 2**self.bits
-            highest = 2 ** (self.bits - 1) - 1
-            clipped = digit * np.clip(np.round(clipped / digit), -highest - 1, highest)
-        return SensorRecord(np.arange(len(sampled)) * every * step, clipped, saturated)
+        digits = np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
+        return SensorRecord(np.arange(len(sampled)) * every * step, digits, saturated)
 
     def _every(self, step: float) -> int:
         """Input rows per sample."""
@@ -121,7 +124,11 @@ class VelocitySensor:
         wanted = (
             (2, self.high_pass_hz, "highpass"),
             (2, self.low_pass_hz, "lowpass"),
-            (8, 0.4 * self.sampling_hz if self.anti_alias else 0.0, "lowpass"),
+            (
+                ANTI_ALIAS_ORDER,
+                ANTI_ALIAS_CORNER * self.sampling_hz if self.anti_alias else 0.0,
+                "lowpass",
+            ),
         )
         return [butter(n, f, kind, fs=rate, output="sos") for n, f, kind in wanted if f > 0.0]
 

@@ -7,6 +7,7 @@ from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.load_motor import LOAD_MOTOR
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.shaft_coupling import SHAFT_COUPLING
+from herringbone.components.velocity_sensor import VELOCITY_SENSOR
 from herringbone.core import Component, StructureError
 
 COMPONENTS: dict[str, Component] = {
@@ -19,6 +20,7 @@ COMPONENTS: dict[str, Component] = {
         LOAD_MOTOR,
         SHAFT_COUPLING,
         BENCH_CONTROLLER,
+        VELOCITY_SENSOR,
     )
 }
 

@@ -55,6 +55,7 @@ class Component:
         indicators: kernel (b, t, z) that writes the event indicators of model exchange: the
             right-hand side is not smooth where one of them changes its sign.
         indicator_count: how many there are.
+        samples: its step also takes samples, which `rhs` and `out` do not show.
     """
 
     declaration: Declaration
@@ -66,6 +67,7 @@ class Component:
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
     indicators: Callable[[np.ndarray, float, np.ndarray], None] | None = None
     indicator_count: int = 0
+    samples: bool = False
 
     @property
     def name(self) -> str:

@@ -64,6 +64,7 @@ class Declaration:
                 minimum=0,
                 maximum=NODES,
                 tunable=True,
+                whole=True,
             ),
         )
         self._check()

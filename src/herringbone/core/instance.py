@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core.component import Component
-from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.errors import ParameterError, ResourceError
 from herringbone.core.paths import resources_folder
 from herringbone.core.variable import NODES, Causality, Variable
@@ -142,5 +141,5 @@ def check_value(instance: str, variable: Variable, value: float) -> None:
         raise ParameterError(
             f"{where}: it must lie between {variable.minimum:g} and {variable.maximum:g}"
         )
-    if variable.name == INTERFACE_DEGREE and value != int(value):
+    if variable.whole and value != int(value):
         raise ParameterError(f"{where}: it must be a whole number")

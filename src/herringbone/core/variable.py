@@ -43,6 +43,7 @@ class Variable:
             "zero" (an output that vanishes), or "" (no statement).
         minimum, maximum: range of a parameter, in `unit`.
         nominal: usual size of a state, in `unit`, by which integrators scale their tolerance.
+        whole: a parameter that takes whole numbers only.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Variable:
     minimum: float = -math.inf
     maximum: float = math.inf
     nominal: float = 1.0
+    whole: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +161,7 @@ def parameter(
     minimum: float = -math.inf,
     maximum: float = math.inf,
     tunable: bool = False,
+    whole: bool = False,
 ) -> Variable:
     """A parameter with the range in which the equations hold."""
     return Variable(
@@ -170,4 +173,5 @@ def parameter(
         start,
         minimum=minimum,
         maximum=maximum,
+        whole=whole,
     )

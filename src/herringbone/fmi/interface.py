@@ -39,9 +39,12 @@ def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
 
 
 def has_model_exchange(component: Component) -> bool:
-    """True if the component's native FMUs offer model exchange: all its states are variables."""
+    """True if the component's native FMUs offer model exchange.
+
+    All its states are variables, and its step does nothing but integrate.
+    """
     declaration = component.declaration
-    return bool(declaration.states) and not declaration.hidden_states
+    return bool(declaration.states) and not declaration.hidden_states and not component.samples
 
 
 def derivatives(component: Component) -> dict[str, tuple[int, Variable]]:

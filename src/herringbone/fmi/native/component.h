@@ -32,6 +32,7 @@ typedef struct {
     const char *name, *unit; /* name is NULL for a hidden state */
     double start, minimum, maximum;
     double nominal; /* of a state, hidden or not; 1 otherwise */
+    uint8_t whole;  /* a parameter that takes whole numbers only */
 } HbReal;
 
 /* A column of a resource file. */

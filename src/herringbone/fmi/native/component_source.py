@@ -106,7 +106,7 @@ def _number(value: float) -> str:
 def _real(variable: Variable) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
     words = [_string(variable.name), _string(variable.unit), *map(_number, numbers)]
-    return f"{{{', '.join(words)}}}"
+    return f"{{{', '.join(words)}, {int(variable.whole)}}}"
 
 
 def _block(declaration: Declaration) -> list[Variable | None]:
@@ -117,7 +117,7 @@ def _block(declaration: Declaration) -> list[Variable | None]:
 
 def _reals(declaration: Declaration) -> Iterable[str]:
     for variable in _block(declaration):
-        yield _real(variable) if variable else "{NULL, NULL, 0.0, 0.0, 0.0, 1.0}"
+        yield _real(variable) if variable else "{NULL, NULL, 0.0, 0.0, 0.0, 1.0, 0}"
 
 
 def _access(declaration: Declaration) -> Iterable[str]:

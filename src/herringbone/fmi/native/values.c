@@ -111,7 +111,7 @@ static Status check_value(Instance *instance, uint32_t reference, double value) 
         message_write(&range, "it must lie between %g and %g", real->minimum, real->maximum);
         if (value < real->minimum || value > real->maximum)
             return refuse_value(instance, reference, value, range.text);
-        if (reference == hb_component.degree && value != (int)value)
+        if (real->whole && value != (int)value)
             return refuse_value(instance, reference, value, "it must be a whole number");
     }
     return STATUS_OK;

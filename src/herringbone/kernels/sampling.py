@@ -1,0 +1,82 @@
+"""How a body with a sampler advances over a macro step: in pieces that end at the samples."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.core.declaration import Declaration
+from herringbone.kernels.jit import inner
+from herringbone.kernels.signals import STRIDE, evaluate, monomial
+from herringbone.kernels.steppers import body_work
+
+_EARLY = 1e-6
+"""A sample this share of a period behind the end of a macro step still belongs to it."""
+
+
+def sampler_work(state_count: int, input_count: int) -> int:
+    """Length of the work space that a sampler's stepper needs."""
+    return body_work(state_count, input_count) + 2 * STRIDE * input_count
+
+
+def sampler_stepper(
+    body: Callable[[np.ndarray, np.ndarray, float, float, float, int], int],
+    sample: Callable[[np.ndarray], None],
+    declaration: Declaration,
+    clock: tuple[int, int, int],
+) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
+    """Compile the step of a body that samples.
+
+    Sample k lies at first + k / rate and is taken once: k is counted in the block, so that rounding
+    of time neither doubles nor drops one. A sample at the end of a macro step belongs to this step.
+    Samples before the start of the first step are left out.
+
+    Args:
+        body: made by `body_stepper`, of a component whose outputs have no nodes.
+        sample: takes a sample from the block, in which `out` has just been evaluated.
+        declaration: of the component.
+        clock: indices in the block of the number of the next sample, of the sampling rate [Hz] and
+            of the first sample's time [s].
+
+    Returns:
+        step(b, w, t, h, micro_step, degree) -> int, as `body_stepper`; `w` is `sampler_work` long.
+    """
+    first_input, inputs = declaration.first_input, len(declaration.inputs)
+    reals = STRIDE * inputs
+    kept = body_work(declaration.state_count, inputs)
+    polynomial = kept + reals
+    number, rate, first = clock
+
+    @inner(declaration.name)
+    def restrict_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float, end: float) -> None:
+        """Nodes of the inputs between two places of the macro step."""
+        for at in range(0, reals, STRIDE):
+            for node in range(degree + 1):
+                place = c + (end - c) * node / max(degree, 1)
+                b[first_input + at + node] = evaluate(w, polynomial + at, degree, place)
+
+    @inner(declaration.name)
+    def step(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
+    ) -> int:
+        for i in range(reals):
+            w[kept + i] = b[first_input + i]
+        for at in range(0, reals, STRIDE):
+            monomial(b, first_input + at, degree, w, polynomial + at)
+        b[number] = max(b[number], math.ceil((t - b[first]) * b[rate] - _EARLY))
+        c, status, sampling = 0.0, 0, True
+        while sampling and status == 0:
+            due = b[first] + b[number] / b[rate] - t
+            sampling = due <= h + _EARLY / b[rate]
+            end = max(c, min(due / h, 1.0)) if sampling and h > 0.0 else 1.0
+            restrict_inputs(b, w, degree, c, end)
+            status = body(b, w, t + c * h, (end - c) * h, micro_step, degree)
+            if sampling:
+                sample(b)
+                b[number] += 1.0
+            c = end
+        for i in range(reals):
+            b[first_input + i] = w[kept + i]
+        return status
+
+    return step
