@@ -1,19 +1,15 @@
 """Running a system: from names and options to a result."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
-
 from herringbone.analysis.diagnosis import diagnose
-from herringbone.analysis.error import relative_error
-from herringbone.analysis.monolithic import Twin, refuse_foreign_parts
+from herringbone.analysis.monolithic import refuse_foreign_parts
 from herringbone.analysis.stability import fastest_bond, warn_if_unstable
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
-from herringbone.components.registry import COMPONENTS, component
+from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, OutcomeKind, ParameterError
 from herringbone.core.energy_report import Verdict
 from herringbone.core.part import Part
@@ -34,7 +30,8 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.housing_check import replacement_notes
-from herringbone.result import TIME, Result, RunInfo
+from herringbone.result import Result
+from herringbone.run_result import decimated, make_result, with_error
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 from herringbone.ssp_import import load_ssp, ssp_scene
@@ -146,6 +143,9 @@ def run(
         if warning := _stability_warning(structure, coupling, step, slow):
             notes = (*notes, warning)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
+        if record_step is not None and record_step < grid.step and not coupling.adaptive:
+            notes = (*notes, f"record_step = {record_step:g} s: records are taken at communication "
+                     f"points, every {grid.step:g} s; use a shorter step for more")  # fmt: skip
         recording = simulate(
             structure,
             parts,
@@ -158,14 +158,14 @@ def run(
     finally:
         for part in parts:
             part.close()
-    result = _result(structure, chosen, coupling, fmu, recording, notes)
+    result = make_result(structure, chosen, coupling, fmu, recording, notes)
     if _unstable(recording):
         result = replace(
             result, info=replace(result.info, why=diagnose(structure, coupling, recording.step))
         )
     if reference:
-        result = _with_error(result, structure)
-        result = _decimated(result, chosen.record_step)
+        result = with_error(result, structure)
+        result = decimated(result, chosen.record_step)
     return result
 
 
@@ -249,93 +249,3 @@ def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
     if str(spec.component) in files:
         return FmuPart(spec.name, files[str(spec.component)])
     return InProcessPart(Instance(component(str(spec.component)), spec.name))
-
-
-def _result(
-    system: System,
-    scene: Scene,
-    algorithm: Algorithm,
-    fmu: str,
-    recording: Recording,
-    notes: Sequence[str],
-) -> Result:
-    data = pd.DataFrame(
-        np.column_stack([recording.time, recording.values]), columns=[TIME, *recording.names]
-    )
-    parameters = _parameters(system)
-    info = RunInfo(
-        system=system.name,
-        scene=scene.name,
-        model={p.name: p.component or str(p.fmu) for p in system.parts},
-        t_end=scene.t_end,
-        communication_step=recording.step,
-        record_step=recording.record_step,
-        micro_steps={
-            name.removesuffix(".micro_step"): value
-            for name, value in parameters.items()
-            if name.endswith(".micro_step")
-        },
-        algorithm=str(algorithm),
-        fmu=fmu,
-        macro_steps=recording.macro_steps,
-        passes=recording.passes,
-        rollbacks=recording.rollbacks,
-        wall_s=recording.wall_seconds,
-        notes=(*notes, *recording.notes),
-        steps=recording.steps and recording.steps._asdict(),
-        energy=recording.energy,
-        slow=recording.slow,
-        parameters=parameters,
-        resources=_resources(system),
-    )
-    units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
-    return Result(data, units, recording.outcome, info, system.channels)
-
-
-def _parameters(system: System) -> dict[str, float]:
-    """All real parameters of the known parts, as used, by `instance.variable`."""
-    return {
-        f"{part.name}.{v.name}": float(part.values.get(v.name, v.start))
-        for part in system.parts
-        if part.component
-        for v in COMPONENTS[part.component].declaration.parameters
-        if v.name != "interface_degree"
-    }
-
-
-def _resources(system: System) -> dict[str, str]:
-    """Files that the known parts read, as given, by `instance.variable`."""
-    return {
-        f"{part.name}.{text.name}": str(part.values.get(text.name, text.start))
-        for part in system.parts
-        if part.component
-        for text in COMPONENTS[part.component].declaration.texts
-    }
-
-
-def _with_error(result: Result, system: System) -> Result:
-    """Errors against the monolithic twin at the communication points that were reached."""
-    groups = {name: result.channel(name) for name in system.channels}
-    columns = [column for names in groups.values() for column in names]
-    time = result.data[TIME].to_numpy()
-    if time.size < 2 or not columns:
-        return result
-    twin = pd.DataFrame(Twin(system).solve(time, columns), columns=columns)
-    uneven = time if result.info.steps else None
-    return replace(
-        result,
-        error={
-            name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
-            for name, names in groups.items()
-        },
-    )
-
-
-def _decimated(result: Result, record_step: float) -> Result:
-    """Keep the records that the scene asks for; all of an adaptive run."""
-    if result.info.steps:
-        return result
-    every = make_grid(result.info.t_end, result.info.communication_step, record_step).every
-    data = result.data.iloc[::every].reset_index(drop=True)
-    info = replace(result.info, record_step=every * result.info.communication_step)
-    return replace(result, data=data, info=info)

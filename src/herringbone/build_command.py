@@ -4,6 +4,8 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+from herringbone.output import check_writable
+
 _ALL = "all"
 
 
@@ -56,6 +58,8 @@ def build(options: argparse.Namespace) -> Iterator[str]:
             "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
             "and run wherever Python and this package do"
         )
+    if options.output:
+        check_writable(options.output)
     platforms = chosen_platforms(options)
     files = build_fmus(
         options.component,

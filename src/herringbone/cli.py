@@ -3,7 +3,6 @@
 import argparse
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import NoReturn
 
@@ -275,40 +274,9 @@ def _chart(options: argparse.Namespace) -> int:
 
 
 def _stability(options: argparse.Namespace) -> int:
-    from herringbone import api, start  # noqa: PLC0415 (numba: only when something runs)
-    from herringbone.analysis import stability_report as report  # noqa: PLC0415
-    from herringbone.analysis.atlas import atlas  # noqa: PLC0415
-    from herringbone.analysis.stability import stability  # noqa: PLC0415
-    from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.scenes import Start  # noqa: PLC0415
+    from herringbone.stability_command import stability  # noqa: PLC0415 (numba)
 
-    output = options.output or (Path("results") if options.atlas else None)
-    if output:
-        check_writable(output)
-    algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
-    refuse_adaptive(algorithms, "stability is predicted for fixed steps")
-    structure, folder = api.load_system(options.system)
-    scene = api.load_scene(folder, options.scene)
-    values = {**scene.values, **_values(options.set)}
-    scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
-    structure, _ = start.started(structure, scene)
-    with tqdm(unit=" matrices", disable=None) as bar:
-
-        def show(algorithm: str) -> None:
-            bar.set_description(algorithm, refresh=False)
-            bar.update()
-
-        found = stability(
-            structure, scene.name, algorithms, tolerance=options.tolerance, progress=show
-        )
-        panels = atlas(structure, progress=show) if options.atlas else ()
-    if output:
-        report.write_stability(found, output)
-    if panels:
-        from herringbone.plotting.stability_atlas import atlas_picture  # noqa: PLC0415
-
-        atlas_picture(panels).savefig(output / "stability_atlas.png")
-    show(report.stability_json(found) if options.json else report.stability_text(found))
+    show(stability(options, _values(options.set)))
     return 0
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from herringbone.build_command import add_platform_options, chosen_platforms, untested
+from herringbone.output import check_writable
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -38,6 +39,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     from herringbone.system_fmu import export_fmu  # noqa: PLC0415
 
     name = Path(options.system).stem
+    if options.output:
+        check_writable(options.output.parent)
     platforms = chosen_platforms(options)
     if options.as_fmu:
         if options.step is not None:

@@ -61,7 +61,8 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
 
     Args:
         result: of a run.
-        folder: where the files go; files of the same names are replaced.
+        folder: where the files go. Those of an earlier run are replaced; what that run had and
+            this one has not, such as a picture of its torques, is removed.
         parquet: write results.parquet as well.
 
     Returns:
@@ -70,12 +71,14 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
     Raises:
         HerringboneError: a file cannot be written.
     """
-    from herringbone.plotting import write_pictures  # noqa: PLC0415 (matplotlib: lazy)
+    from herringbone.plotting import PICTURES, write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
     text, summary = folder / "summary.txt", folder / "summary.json"
     tables = [folder / "results.csv"]
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        for name in ("results.parquet", *(f"{picture}.png" for picture in PICTURES)):
+            (folder / name).unlink(missing_ok=True)
         result.to_csv(tables[0])
         if parquet:
             tables.append(folder / "results.parquet")

@@ -165,6 +165,15 @@ def test_report_writes_files_that_exist(tmp_path):
     assert Path(result.files[1]).read_text(encoding="utf-8") == summary_text(result)
 
 
+def test_report_leaves_nothing_of_an_earlier_run(tmp_path):
+    for stale in ("results.parquet", "radiated_power.png"):
+        (tmp_path / stale).write_text("of an earlier run", encoding="utf-8")
+    (tmp_path / "notes.txt").write_text("the user's own", encoding="utf-8")
+    result = write_report(make_foreign_result(), tmp_path)
+    written = {Path(file).name for file in result.files}
+    assert {file.name for file in tmp_path.iterdir()} == written | {"notes.txt"}
+
+
 def test_report_into_a_file_is_refused(tmp_path):
     file = tmp_path / "file"
     file.write_text("")

@@ -85,7 +85,7 @@ def test_work_of_the_load_is_the_energy_stored():
     law = mesh.law(np.array([0.3]))
     force = [law(np.array([d]))[0][0] for d in deflections]
     work = np.trapezoid(force, deflections)
-    cut = mesh._slices(np.array([0.3]))
+    cut = mesh.cut(np.array([0.3]))
     load, _ = mesh._line_loads(cut, np.zeros_like(cut.gap), np.array([20e-6]))
     stored = 0.0
     for share in (np.arange(400) + 0.5) / 400:

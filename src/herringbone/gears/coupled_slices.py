@@ -27,10 +27,10 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from herringbone.core import ParameterError
+from herringbone.gears.contact_slices import ContactSlices
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.modification import Modification
 from herringbone.gears.point_mesh import Line, PointMesh
-from herringbone.gears.slices import SliceMesh
 
 COUPLING = 2.5
 """Default coupling length along the face, in normal modules."""
@@ -72,9 +72,9 @@ class CoupledSliceMesh(PointMesh):
         return self.coupling * self.pair.normal_module
 
     @cached_property
-    def lines(self) -> SliceMesh:
+    def lines(self) -> ContactSlices:
         """Contact lines and their slices."""
-        return SliceMesh(
+        return ContactSlices(
             self.pair,
             self.modification,
             calibration=self.calibration,

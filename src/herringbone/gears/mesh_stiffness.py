@@ -1,10 +1,12 @@
 """Mesh stiffness of one half over phase and load, as every method of computing it gives it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from herringbone.core import ParameterError
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.modification import Modification
 
@@ -78,3 +80,19 @@ class MeshStiffness:
         amplitudes = np.abs(np.fft.rfft(self.secant, axis=1))[:, 1:] * 2.0 / self.phases.size
         mean = self.secant.mean(axis=1, keepdims=True)
         return np.divide(amplitudes, mean, out=np.zeros_like(amplitudes), where=mean > 0.0)
+
+
+def checked_loads(loads: Sequence[float]) -> np.ndarray:
+    """Loads [N] as an array.
+
+    Raises:
+        ParameterError: not finite, not ascending, or none above zero.
+    """
+    forces = np.asarray(loads, dtype=float)
+    if forces.ndim != 1 or forces.size == 0 or not np.all(np.isfinite(forces)):
+        raise ParameterError(f"loads {loads} N must be finite numbers, at least one")
+    if forces[0] < 0.0 or np.any(np.diff(forces) <= 0.0) or forces[-1] == 0.0:
+        raise ParameterError(
+            f"loads {', '.join(f'{f:g}' for f in forces)} N must ascend from zero or above"
+        )
+    return forces

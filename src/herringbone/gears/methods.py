@@ -4,12 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
+from herringbone.gears.contact_slices import SLICES
 from herringbone.gears.coupled_slices import CoupledSliceMesh
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
 from herringbone.gears.point_mesh import Progress, silent
-from herringbone.gears.slices import PHASES, SLICES, SliceMesh
+from herringbone.gears.slices import PHASES, SliceMesh
 
 _OVERSAMPLING = 4
 """Phases that the slices are solved at, over those of the table."""

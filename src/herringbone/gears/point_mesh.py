@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from herringbone.gears.contact_slices import ContactSlices, Slices
 from herringbone.gears.equilibrium import ContactPoints, balance
-from herringbone.gears.mesh_stiffness import MeshStiffness
-from herringbone.gears.slices import PHASES, SliceMesh, Slices, checked_loads
+from herringbone.gears.mesh_stiffness import MeshStiffness, checked_loads
+from herringbone.gears.slices import PHASES
 
 _TOUCHING = 1e-3
 """Load [N] at which the stiffness at zero load is taken; the contact is linear far above it."""
@@ -27,7 +28,7 @@ def silent(what: str, done: float) -> None:
 class PointMesh(ABC):
     """Contact lines, gaps and contact of the slices, with a structure of its own behind them."""
 
-    lines: SliceMesh
+    lines: ContactSlices
     progress: Progress = staticmethod(silent)
 
     @abstractmethod

@@ -20,7 +20,7 @@ HIGHEST = 3000.0
 """End of the spectra [Hz]."""
 DECADES = 3.5
 """Range of amplitudes in a spectrum."""
-_CLOSE_UP_SHARE = 0.05
+_CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100
 _MOST_MARKS = 9
 _PADDING = 2
 _LARGE = 1e6
@@ -39,14 +39,17 @@ def half_name(half: str) -> str:
 
 
 def close_up(result: Result) -> slice:
-    """Rows of the last few mesh periods, or of the last 5 % of the run if there is no mesh."""
+    """Rows of the last few mesh periods; if no mesh is seen, of the last 5 %, at least 100 rows."""
     time = result.data[TIME].to_numpy()
     if time.size < 2:
         return slice(0, time.size)
     frequency = run_mesh_frequency(result)
     span = float(time[-1] - time[0])
     length = SHOWN_PERIODS / frequency if frequency else _CLOSE_UP_SHARE * span
-    return slice(int(np.searchsorted(time, time[0] + span - min(length, span))), time.size)
+    first = int(np.searchsorted(time, time[0] + span - min(length, span)))
+    if not frequency:
+        first = min(first, max(0, time.size - _CLOSE_UP_ROWS))
+    return slice(first, time.size)
 
 
 def time_panel(

@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from herringbone.gears.contact_slices import ContactSlices
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import (
     ToothCompliance,
@@ -29,7 +30,6 @@ from herringbone.gears.finite_elements.layer import scikit_fem
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.modification import Modification
 from herringbone.gears.point_mesh import Line, PointMesh, Progress, silent
-from herringbone.gears.slices import SliceMesh
 
 SLICES = 120
 
@@ -76,9 +76,9 @@ class FiniteElementMesh(PointMesh):
         )
 
     @cached_property
-    def lines(self) -> SliceMesh:
+    def lines(self) -> ContactSlices:
         """Contact lines and their points."""
-        return SliceMesh(
+        return ContactSlices(
             self.pair, self.modification, slices=self.slices, corner_contact=self.corner_contact
         )
 
