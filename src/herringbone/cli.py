@@ -9,7 +9,14 @@ from typing import NoReturn
 from tqdm import tqdm
 
 import herringbone
-from herringbone import bench_command, build_command, export_command, gear_command, housing_command
+from herringbone import (
+    bench_command,
+    build_command,
+    export_command,
+    gear_command,
+    housing_command,
+    stability_command,
+)
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
 
@@ -71,7 +78,10 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
     _run_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
-    _stability_options(add("stability", _stability, "predict the stable steps of algorithms"))
+    sub = add("stability", _stability, "predict the stable steps of algorithms")
+    _comparison_options(sub)
+    stability_command.add_options(sub)
+    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
     bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
     export_command.add_options(sub)
@@ -129,15 +139,6 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
     )
-    sub.add_argument("--json", action="store_true", help="print one JSON object")
-
-
-def _stability_options(sub: argparse.ArgumentParser) -> None:
-    _comparison_options(sub)
-    sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
-    sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
-    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
-    sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -274,9 +275,7 @@ def _chart(options: argparse.Namespace) -> int:
 
 
 def _stability(options: argparse.Namespace) -> int:
-    from herringbone.stability_command import stability  # noqa: PLC0415 (numba)
-
-    show(stability(options, _values(options.set)))
+    show(stability_command.stability(options, _values(options.set)))
     return 0
 
 

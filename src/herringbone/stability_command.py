@@ -1,49 +1,76 @@
-"""The command `stability`: predict the stable steps of algorithms on a scene."""
+"""The command `stability`: what is known of the coupling before a run."""
 
 import argparse
+import json
+import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from tqdm import tqdm
 
+from herringbone.core import ParameterError
 from herringbone.output import check_writable
 
 
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's own options."""
+    sub.add_argument("--step", type=float, help="only say what happens at this step in s, and why")
+    sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
+    sub.add_argument(
+        "--simulate", action="store_true", help="also find the limits of the non-linear system"
+    )
+    sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
+    sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
 def stability(options: argparse.Namespace, values: Mapping[str, float | str]) -> str:
-    """Predict; returns the table, or one JSON object.
+    """Predict, write files if a folder is given, and return what to show.
 
     Raises:
-        HerringboneError: something about the options is wrong, or a file cannot be written.
+        HerringboneError: something about the input is wrong.
     """
     from herringbone import api, start  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.analysis import stability as analysis  # noqa: PLC0415
     from herringbone.analysis import stability_report as report  # noqa: PLC0415
     from herringbone.analysis.atlas import atlas  # noqa: PLC0415
-    from herringbone.analysis.stability import stability as predict  # noqa: PLC0415
+    from herringbone.analysis.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
     output = options.output or (Path("results") if options.atlas else None)
+    _check(options)
     if output:
         check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
     structure, folder = api.load_system(options.system)
     scene = api.load_scene(folder, options.scene)
-    scene = replace(
-        scene, start=Start.EQUILIBRIUM, start_offset={}, values={**scene.values, **values}
-    )
+    values = {**scene.values, **values}
+    scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
     structure, _ = start.started(structure, scene)
     with tqdm(unit=" matrices", disable=None) as bar:
 
-        def progress(algorithm: str) -> None:
+        def show(algorithm: str) -> None:
             bar.set_description(algorithm, refresh=False)
             bar.update()
 
-        found = predict(
-            structure, scene.name, algorithms, tolerance=options.tolerance, progress=progress
+        if options.step is not None:
+            chosen = algorithms or analysis.default_algorithms()
+            verdicts = step_verdicts(structure, chosen, options.step, show)
+            if options.json:
+                return json.dumps([{**asdict(v), "stable": v.stable} for v in verdicts])
+            return "\n".join(line for verdict in verdicts for line in verdict.lines())
+        found = analysis.stability(
+            structure,
+            scene.name,
+            algorithms,
+            tolerance=options.tolerance,
+            simulate=options.simulate,
+            progress=show,
         )
-        panels = atlas(structure, progress=progress) if options.atlas else ()
+        panels = atlas(structure, progress=show) if options.atlas else ()
     if output:
         report.write_stability(found, output)
     if panels:
@@ -51,3 +78,14 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
 
         atlas_picture(panels).savefig(output / "stability_atlas.png")
     return report.stability_json(found) if options.json else report.stability_text(found)
+
+
+def _check(options: argparse.Namespace) -> None:
+    step = options.step
+    if step is None:
+        return
+    if not (math.isfinite(step) and step > 0.0):
+        raise ParameterError(f"step = {step:g} s: it must be positive and finite")
+    for name in ("simulate", "atlas", "output"):
+        if getattr(options, name):
+            raise ParameterError(f"--step asks about one step; leave --{name} out")

@@ -5,7 +5,7 @@ maximum mesh stiffness. Not covered: teeth that separate, and parametric excitat
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
@@ -14,6 +14,7 @@ from herringbone.analysis.amplification import GROWTH, Amplification, Growth
 from herringbone.analysis.bonds import Bond, bond_table, highest_frequency
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.recommendation import Recommendation, recommend
+from herringbone.analysis.simulated_limit import nonlinear_limit
 from herringbone.analysis.step_scan import GrowthOf, first_unstable_near, unstable_bands
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import HerringboneError, ParameterError
@@ -35,12 +36,15 @@ class StepLimits:
             above which everything that was examined is unstable.
         mesh_stiffness: first unstable step [s] at minimum, mean and maximum; infinite if none.
         frequency: of the motion that grows at the mean's limit [Hz].
+        simulated_limit: step [s] at which runs of the non-linear system become unstable; None if
+            none was looked for, or if none is up to twice the predicted limit.
     """
 
     algorithm: str
     unstable_bands: tuple[tuple[float, float], ...]
     mesh_stiffness: Mapping[str, float]
     frequency: float = np.nan
+    simulated_limit: float | None = None
 
     @property
     def limit(self) -> float:
@@ -84,6 +88,7 @@ def stability(
     algorithms: Sequence[Algorithm] | None = None,
     *,
     tolerance: float = 1e-3,
+    simulate: bool = False,
     progress: Progress | None = None,
 ) -> Stability:
     """Stable steps, bonds and a recommended algorithm and step.
@@ -93,6 +98,7 @@ def stability(
         scene: name, for the report.
         algorithms: all if not given.
         tolerance: relative error of bearing forces that is asked for.
+        simulate: also find the limits of the non-linear system, by runs.
         progress: called after every matrix.
 
     Raises:
@@ -107,7 +113,11 @@ def stability(
     limits, chosen, notes = [], [], []
     for algorithm in algorithms or default_algorithms():
         try:
-            limits.append(step_limits(system, algorithm, progress))
+            limit = step_limits(system, algorithm, progress)
+            if simulate:
+                seen = nonlinear_limit(system, algorithm, limit.limit)
+                limit = replace(limit, simulated_limit=seen)
+            limits.append(limit)
             chosen.append(algorithm)
         except ParameterError as error:
             notes.append(f"{algorithm}: {error}")

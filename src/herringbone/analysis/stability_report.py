@@ -6,6 +6,7 @@ from pathlib import Path
 
 from herringbone.analysis.bonds import Bond
 from herringbone.analysis.linear_parts import MeshStiffness
+from herringbone.analysis.simulated_limit import HIGHEST
 from herringbone.analysis.stability import Stability, StepLimits
 from herringbone.analysis.step_scan import LARGEST_STEP
 
@@ -14,6 +15,10 @@ _MICRO = 1e6
 
 def _us(step: float) -> str:
     return f"{_MICRO * step:.1f}" if math.isfinite(step) else f"> {_MICRO * LARGEST_STEP:.0f}"
+
+
+def _simulated(step: float | None) -> str:
+    return "-" if step is None else _us(step)
 
 
 def _bands(found: StepLimits) -> str:
@@ -57,18 +62,24 @@ def stability_text(found: Stability) -> str:
         f"{found.system}{scene}: stable steps, predicted from the linear parts",
         "",
     ]
-    head = ("algorithm", *(f"{s} mesh us" for s in MeshStiffness), "grows at Hz", "unstable us")
+    seen = any(limits.simulated_limit for limits in found.limits)
+    runs = ("runs us",) if seen else ()
+    meshes = (f"{s} mesh us" for s in MeshStiffness)
+    head = ("algorithm", *meshes, *runs, "grows at Hz", "unstable us")
     rows = [head]
     for limits in found.limits:
         rows.append(
             (
                 limits.algorithm,
                 *(_us(limits.mesh_stiffness[s]) for s in MeshStiffness),
+                *((_simulated(limits.simulated_limit),) if seen else ()),
                 f"{limits.frequency:.0f}" if math.isfinite(limits.frequency) else "-",
                 _bands(limits),
             )
         )
     lines += _table(rows)
+    if seen:
+        lines.append(f"runs: limit of the non-linear system; - is none up to {HIGHEST:g} times")
     if found.bonds:
         rule = "two-mass rule us: J0", "J1", "J2", "LI-3"
         head = ("bond", "bodies", "masses kg or kg.m2", "Hz", "damping ratio", *rule)
@@ -104,6 +115,7 @@ def stability_json(found: Stability) -> str:
                 "unstable_bands": [[_number(x) for x in band] for band in limits.unstable_bands],
                 "mesh_stiffness": {k: _number(v) for k, v in limits.mesh_stiffness.items()},
                 "frequency": _number(limits.frequency),
+                "simulated_limit": limits.simulated_limit,
             }
             for limits in found.limits
         ],
