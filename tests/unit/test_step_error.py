@@ -18,14 +18,14 @@ ONE = np.array([0], dtype=np.int64)
 def found_force(force, degree, scale=1.0):
     """Node plan and buffers after a step from 0 to 1 that found force(t), without residual."""
     nothing = np.zeros(0, dtype=np.int64)
-    nodes = NodePlan(degree, ONE, *[nothing] * 5, np.zeros(0), *[nothing] * 3)
+    nodes = NodePlan(degree, ONE, *[nothing] * 8)
     past = [0.0, -SPACING[0], -sum(SPACING)]
     history = np.array([[0.0], *([force(t)] for t in past)])
     values = np.array([[force(j / degree)] for j in range(degree + 1)])
     empty = np.zeros((degree, 1))
     buffers = Buffers(
         history, values, empty, empty.copy(), np.array([scale]), np.zeros(1), nothing, nothing,
-        np.zeros(3, dtype=np.int64), np.zeros(2), np.array(SPACING),
+        np.zeros(3, dtype=np.int64), np.zeros(2), np.array(SPACING), np.zeros((2, 1)),
     )  # fmt: skip
     return nodes, buffers
 

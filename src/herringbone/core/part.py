@@ -33,7 +33,8 @@ class PartVariable:
 class Addresses(NamedTuple):
     """Addresses of the FMI functions that the compiled loop calls, and of the component.
 
-    The state functions are 0 if the part cannot save and restore its state.
+    The state functions are 0 if the part cannot save and restore its state; those of derivatives
+    (fmi2SetRealInputDerivatives, fmi2GetRealOutputDerivatives) if it declares none.
     """
 
     component: int
@@ -43,6 +44,8 @@ class Addresses(NamedTuple):
     get_state: int = 0
     set_state: int = 0
     free_state: int = 0
+    set_derivatives: int = 0
+    get_derivatives: int = 0
 
     @property
     def can_restore(self) -> bool:

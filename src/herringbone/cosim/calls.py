@@ -32,6 +32,28 @@ def _exchange(typing_context, address, component, references, count, values):  #
 
 
 @intrinsic
+def _derivatives(typing_context, address, component, references, count, orders, values):  # noqa: ANN001, ANN202
+    signature = types.int32(*[types.int64] * 6)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        pointer = cgutils.voidptr_t
+        kind = ir.FunctionType(_INT32, [pointer, pointer, _INT64, pointer, pointer])
+        target, component, references, count, orders, values = arguments
+        return builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [
+                builder.inttoptr(component, pointer),
+                builder.inttoptr(references, pointer),
+                count,
+                builder.inttoptr(orders, pointer),
+                builder.inttoptr(values, pointer),
+            ],
+        )
+
+    return signature, generate
+
+
+@intrinsic
 def _step(typing_context, address, component, time, step):  # noqa: ANN001, ANN202
     signature = types.int32(types.int64, types.int64, types.float64, types.float64)
 
@@ -67,6 +89,14 @@ def _state(typing_context, address, component, state):  # noqa: ANN001, ANN202
 def exchange_reals(address: int, component: int, references: int, count: int, values: int) -> int:
     """fmi2SetReal or fmi2GetReal at `address`; the others are addresses too. FMI status."""
     return _exchange(address, component, references, count, values)
+
+
+@kernel
+def exchange_derivatives(
+    address: int, component: int, references: int, count: int, orders: int, values: int
+) -> int:
+    """fmi2SetRealInputDerivatives or fmi2GetRealOutputDerivatives at `address`. FMI status."""
+    return _derivatives(address, component, references, count, orders, values)
 
 
 @kernel

@@ -135,7 +135,12 @@ class FmuPart:
         names = ["SetReal", "GetReal", "DoStep"]
         if self.model.coSimulation.canGetAndSetFMUstate:
             names += ["GetFMUstate", "SetFMUstate", "FreeFMUstate"]
-        return Addresses(int(self.slave.component), *(address(f"fmi2{name}") for name in names))
+        found = Addresses(int(self.slave.component), *(address(f"fmi2{name}") for name in names))
+        if self.model.coSimulation.canInterpolateInputs:
+            found = found._replace(set_derivatives=address("fmi2SetRealInputDerivatives"))
+        if self.model.coSimulation.maxOutputDerivativeOrder > 0:
+            found = found._replace(get_derivatives=address("fmi2GetRealOutputDerivatives"))
+        return found
 
     def new_state(self) -> int:
         """0: the FMU allocates its states."""

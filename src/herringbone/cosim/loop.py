@@ -9,6 +9,7 @@ interpolated.
 import numpy as np
 
 from herringbone.cosim.calls import do_step, exchange_reals
+from herringbone.cosim.derivative_pass import set_derivatives, write_input
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.kernels.jit import kernel
 
@@ -77,11 +78,30 @@ def record_row(chunk: Chunk, n: int) -> int:
 
 
 @kernel
-def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int) -> int:
-    """Set all connected inputs of a part, with nodes; FMI status."""
+def _set_polynomials(
+    plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float
+) -> int:
+    """Set all connected inputs of a part by value and derivatives; FMI status."""
+    first, samples = plan.input_first[p], plan.derivatives.samples
+    count, at = plan.input_first[p + 1] - first, plan.set_first[p]
+    for i in range(count):
+        source, fresh = plan.input_source[first + i], plan.input_fresh[first + i]
+        for node in range(samples.size):
+            c = node / (samples.size - 1)
+            samples[node] = signal(history, source, fresh, order, known, c)
+        write_input(plan, p, i, h)
+    status = exchange(plan, p, plan.set_real, plan.set_reference, at, count, plan.set_value, at)
+    return max(status, set_derivatives(plan, p, plan.derivatives.order[p]))
+
+
+@kernel
+def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float) -> int:
+    """Set all connected inputs of a part, at nodes or by derivatives if it has them; FMI status."""
     first, end = plan.input_first[p], plan.input_first[p + 1]
     if first == end:
         return 0
+    if plan.derivatives.order[p] > 0:
+        return _set_polynomials(plan, history, p, order, known, h)
     at, degree = plan.set_first[p], plan.degree[p]
     for node in range(degree + 1):
         c = node / degree if degree > 0 else 0.0
@@ -149,7 +169,7 @@ def step_stage(
     """Step the parts of one stage over the macro step; -1, or the part that failed."""
     first, end = plan.stage_first[stage], plan.stage_first[stage + 1]
     for k in range(first, end):
-        if set_inputs(plan, history, plan.stage_part[k], order, known) > LAST_GOOD:
+        if set_inputs(plan, history, plan.stage_part[k], order, known, h) > LAST_GOOD:
             return plan.stage_part[k]
     for k in range(first, end):
         p = plan.stage_part[k]

@@ -55,7 +55,8 @@ def correct(buffers: Buffers, correction: np.ndarray) -> None:
 
 @kernel
 def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
-    """The values at the end of the step become the newest of the history."""
+    """The values at the end of the step become the newest of the history, rates those before."""
+    buffers.rates[0] = buffers.rates[1]
     for p in range(plan.component.size):
         for i in range(plan.output_first[p], plan.output_first[p + 1]):
             buffers.history[0, i] = buffers.nodes[nodes.degree, i]
@@ -116,6 +117,7 @@ def run_iterated(
         if failed >= 0:
             return PART_FAILED, n, failed
         finish(plan, nodes, buffers)
+        buffers.spacing[0] = 1.0
         for node in range(1, nodes.degree + 1):
             trace_slow(plan, buffers.nodes[node], n, node, nodes.degree)
         failed = finish_slow(plan, buffers.history, chunk, n)

@@ -8,6 +8,7 @@ gives G(U). Before it, the states are saved and U is predicted.
 import numpy as np
 
 from herringbone.cosim.calls import do_step, state_call
+from herringbone.cosim.derivative_pass import cubic, get_rates, set_derivatives, write_input
 from herringbone.cosim.loop import LAST_GOOD, exchange, start_step
 from herringbone.cosim.node_plan import Buffers, NodePlan
 from herringbone.cosim.plan import Plan
@@ -46,34 +47,33 @@ def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int
 
 
 @kernel
-def _set_from_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
-    """Set a part's inputs from the nodes: all of them, or one value if the part holds inputs."""
+def _set_from_nodes(plan: Plan, buffers: Buffers, p: int, h: float) -> int:
+    """Set a part's inputs from the nodes: all of them, or the polynomial that the part takes."""
     first, end = plan.input_first[p], plan.input_first[p + 1]
     if first == end:
         return 0
-    at, degree = plan.set_first[p], plan.degree[p]
-    for node in range(degree + 1):
-        for i in range(first, end):
-            source = plan.input_source[i]
-            if degree > 0:
-                value = buffers.nodes[node, source]
-            elif plan.at_end[p]:
-                value = buffers.nodes[nodes.degree, source]
-            else:
-                value = 0.0
-                for k in range(nodes.degree + 1):
-                    value += nodes.weights[k] * buffers.nodes[k, source]
-            plan.set_value[at] = value
-            at += 1
-    start = plan.set_first[p]
-    return exchange(
-        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
+    start, degree = plan.set_first[p], plan.degree[p]
+    for i in range(end - first):
+        source = plan.input_source[first + i]
+        if degree == 0:
+            plan.derivatives.samples[:] = buffers.nodes[:, source]
+            write_input(plan, p, i, h)
+        for node in range(degree + 1 if degree > 0 else 0):
+            plan.set_value[start + node * (end - first) + i] = buffers.nodes[node, source]
+    count = (degree + 1) * (end - first)
+    status = exchange(
+        plan, p, plan.set_real, plan.set_reference, start, count, plan.set_value, start
     )
+    order = plan.derivatives.order[p]
+    return max(status, set_derivatives(plan, p, order)) if order > 0 else status
 
 
 @kernel
-def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
-    """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value."""
+def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: float) -> int:
+    """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value.
+
+    With the rates at both ends, if the part gives them; else with the value before.
+    """
     first, end = plan.output_first[p], plan.output_first[p + 1]
     if first == end:
         return 0
@@ -92,13 +92,20 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int) -> int:
     status = exchange(
         plan, p, plan.get_real, plan.output_reference, first, end - first, buffers.values, 0
     )
+    rated = plan.derivatives.rated[p] > 0
+    if rated:
+        status = max(status, get_rates(plan, p, buffers.rates[1]))
     for i in range(first, end):
-        now, past = buffers.nodes[0, i], buffers.spacing[0]
-        rise = buffers.values[i - first] - now
+        now, past, value = buffers.nodes[0, i], buffers.spacing[0], buffers.values[i - first]
+        rise = value - now
         bend = (rise - (now - buffers.history[2, i]) / past) / (1.0 + past)
         for node in range(1, degree + 1):
             c = node / degree
-            buffers.nodes[node, i] = now + c * (rise + (c - 1.0) * bend)
+            if rated:
+                at_start, at_end = h * buffers.rates[0, i], h * buffers.rates[1, i]
+                buffers.nodes[node, i] = cubic(now, value, at_start, at_end, c)
+            else:
+                buffers.nodes[node, i] = now + c * (rise + (c - 1.0) * bend)
     return status
 
 
@@ -108,7 +115,7 @@ def _step_group(
 ) -> int:
     """Set, step and get a group of parts that do not see each other; -1, or who failed."""
     for p in group:
-        if _set_from_nodes(plan, nodes, buffers, p) > LAST_GOOD:
+        if _set_from_nodes(plan, buffers, p, h) > LAST_GOOD:
             return p
     for p in group:
         buffers.passes[p] += 1
@@ -117,7 +124,7 @@ def _step_group(
             buffers.counts[2] = status
             return p
     for p in group:
-        if _get_to_nodes(plan, nodes, buffers, p) > LAST_GOOD:
+        if _get_to_nodes(plan, nodes, buffers, p, h) > LAST_GOOD:
             return p
     return -1
 

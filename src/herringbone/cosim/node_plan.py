@@ -14,7 +14,6 @@ class NodePlan(NamedTuple):
         bodies, elements, sources: parts; elements in the order of their dependence.
         node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
             part without them.
-        weights: of the nodes, for the mean of a signal over the step.
         get_state, set_state, free_state: addresses.
     """
 
@@ -25,7 +24,6 @@ class NodePlan(NamedTuple):
     sources: np.ndarray
     node_first: np.ndarray
     node_reference: np.ndarray
-    weights: np.ndarray
     get_state: np.ndarray
     set_state: np.ndarray
     free_state: np.ndarray
@@ -64,6 +62,7 @@ class Buffers(NamedTuple):
         counts: rollbacks; iterations; FMI status of the last step that failed.
         worst: largest residual after the last correction; largest contraction.
         spacing: lengths of the last two macro steps in units of the present one.
+        rates: (2, outputs): at the start and the end of the present macro step; NaN if not known.
     """
 
     history: np.ndarray
@@ -77,3 +76,4 @@ class Buffers(NamedTuple):
     counts: np.ndarray
     worst: np.ndarray
     spacing: np.ndarray
+    rates: np.ndarray

@@ -7,6 +7,7 @@ import numpy as np
 
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
+from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
 from herringbone.cosim.energy_loop import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.network import Network
 from herringbone.cosim.rates import rates
@@ -47,6 +48,7 @@ class Plan(NamedTuple):
     stage_first: np.ndarray
     stage_part: np.ndarray
     slow: Slow
+    derivatives: Derivatives
 
 
 class Chunk(NamedTuple):
@@ -143,6 +145,7 @@ def build_plan(
     parallel: bool,
     extra: Sequence[Sequence[str]] | None = None,
     per: int = 1,
+    derivatives: Derivatives | None = None,
 ) -> Plan:
     """Lay a network out for stages that are stepped one after another.
 
@@ -154,6 +157,7 @@ def build_plan(
             step all parts in parallel.
         extra: further outputs of each part that the loop needs, such as accelerations.
         per: values of the signals that the loop knows in a macro step, for slow parts.
+        derivatives: parts that take and give FMI derivatives, if there are any.
     """
     parts = network.parts
     inputs = [network.inputs(p) for p in range(len(parts))]
@@ -209,4 +213,5 @@ def build_plan(
         stage_first=_offsets([len(s) for s in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
         slow=lay_out_slow(network, outputs, degree, per),
+        derivatives=derivatives or lay_out_derivatives(network, 0),
     )

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.cosim.calls import do_step
+from herringbone.cosim.derivative_pass import set_derivatives, write_input
 from herringbone.cosim.loop import (
     DONE,
     LAST_GOOD,
@@ -97,29 +98,45 @@ def _step_element(
 
 
 @kernel
-def _set_body(plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int) -> int:
-    """Set a body's inputs: the quadratic through an element's three nodes; FMI status."""
-    first, end = plan.input_first[p], plan.input_first[p + 1]
-    start, degree = plan.set_first[p], plan.degree[p]
-    at = start
-    for node in range(degree + 1):
-        c = node / degree if degree > 0 else 0.5
-        # Lagrange weights of the nodes 1/3, 2/3, 1
-        w1 = 4.5 * (c - 2.0 / 3.0) * (c - 1.0)
-        w2 = -9.0 * (c - 1.0 / 3.0) * (c - 1.0)
-        w3 = 4.5 * (c - 1.0 / 3.0) * (c - 2.0 / 3.0)
-        for i in range(first, end):
-            source = plan.input_source[i]
-            if prediction.rate[source] == -2:
-                f = prediction.forces
-                value = w1 * f[1, source] + w2 * f[2, source] + w3 * f[3, source]
-            else:
-                value = signal(history, source, plan.input_fresh[i], 2, known, c)
-            plan.set_value[at] = value
-            at += 1
-    return exchange(
-        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
-    )
+def _body_input(
+    plan: Plan, prediction: Prediction, history: np.ndarray, i: int, known: int, c: float
+) -> float:
+    """Input i at c of the macro step: the quadratic through an element's three nodes."""
+    source = plan.input_source[i]
+    if prediction.rate[source] != -2:
+        return signal(history, source, plan.input_fresh[i], 2, known, c)
+    # Lagrange weights of the nodes 1/3, 2/3, 1
+    w1 = 4.5 * (c - 2.0 / 3.0) * (c - 1.0)
+    w2 = -9.0 * (c - 1.0 / 3.0) * (c - 1.0)
+    w3 = 4.5 * (c - 1.0 / 3.0) * (c - 2.0 / 3.0)
+    f = prediction.forces
+    return w1 * f[1, source] + w2 * f[2, source] + w3 * f[3, source]
+
+
+@kernel
+def _set_body(
+    plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, h: float
+) -> int:
+    """Set a body's inputs, at nodes or by derivatives if it has them; FMI status."""
+    first, count = plan.input_first[p], plan.input_first[p + 1] - plan.input_first[p]
+    start, degree, order = plan.set_first[p], plan.degree[p], plan.derivatives.order[p]
+    samples = plan.derivatives.samples
+    for i in range(count):
+        for node in range(degree + 1):
+            c = node / degree if degree > 0 else 0.5
+            plan.set_value[start + node * count + i] = _body_input(
+                plan, prediction, history, first + i, known, c
+            )
+        for node in range(samples.size if order > 0 else 0):
+            c = node / (samples.size - 1)
+            samples[node] = _body_input(plan, prediction, history, first + i, known, c)
+        if order > 0:
+            write_input(plan, p, i, h)
+    status = exchange(
+        plan, p, plan.set_real, plan.set_reference, start, (degree + 1) * count, plan.set_value,
+        start,
+    )  # fmt: skip
+    return max(status, set_derivatives(plan, p, order)) if order > 0 else status
 
 
 @kernel
@@ -131,7 +148,7 @@ def _step_parts(
         if _step_element(plan, prediction, history, p, known, t, h) > LAST_GOOD:
             return p
     for p in prediction.bodies:
-        if _set_body(plan, prediction, history, p, known) > LAST_GOOD:
+        if _set_body(plan, prediction, history, p, known, h) > LAST_GOOD:
             return p
     for p in prediction.bodies:
         if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:

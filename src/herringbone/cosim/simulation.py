@@ -26,6 +26,7 @@ from herringbone.cosim.network import Network, build_network
 from herringbone.cosim.plan import HISTORY, Chunk, record_names
 from herringbone.cosim.record import Grid
 from herringbone.cosim.system import System
+from herringbone.cosim.transport import settle_derivatives
 
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
@@ -137,7 +138,7 @@ def simulate(
     plan = prepared.plan if prepared.extrapolates else None
     watch = EnergyWatch(network, plan, grid.step, bond_frequency)
     loop = _initialise(network, prepared.degree, grid.step * grid.count, watch)
-    run = _Run(network, prepared, grid, watch)
+    run = _Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
     if loop is None:
         run.loop_notes = tuple(
             f"{parts[p].name} declares that its motion depends directly on forces, but shows none "
@@ -197,9 +198,14 @@ class _Run:
     """State of one run, outside the compiled loop."""
 
     def __init__(
-        self, network: Network, prepared: PreparedRun, grid: Grid, watch: EnergyWatch
+        self,
+        network: Network,
+        prepared: PreparedRun,
+        grid: Grid,
+        watch: EnergyWatch,
+        notes: Sequence[str],
     ) -> None:
-        self.network, self.prepared, self.watch = network, prepared, watch
+        self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
         self.grid = grid = prepared.grid(grid)
         names = record_names(network)
         self.names = tuple(
@@ -318,7 +324,7 @@ class _Run:
             ),
             self.prepared.rollbacks,
             wall,
-            (*self.network.notes, *self.loop_notes, *self.prepared.notes),
+            (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes),
             self.prepared.steps,
             self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},

@@ -136,7 +136,9 @@ class PreparedAdaptive(PreparedNodes):
         held_by = {
             (c.source, c.output)
             for c in self.network.connections
-            if self.degree[c.target] == 0 and not self.plan.at_end[c.target]
+            if self.degree[c.target] == 0
+            and self.plan.derivatives.order[c.target] < nodes.degree
+            and not self.plan.at_end[c.target]
         }
         rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size
         adaptive = Adaptive(

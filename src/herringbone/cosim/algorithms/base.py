@@ -15,6 +15,7 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
+from herringbone.cosim.derivative_plan import lay_out_derivatives
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Chunk, Plan, build_plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
@@ -102,6 +103,24 @@ class PreparedRun(ABC):
     culprit: str = ""
 
     @property
+    def inner_outputs(self) -> bool:
+        """True if outputs are wanted inside the macro step, not only at its end."""
+        return False
+
+    def input_degree(self, part: int) -> int:
+        """Degree of the polynomials that a part takes: its nodes, or its FMI derivatives."""
+        return max(self.degree[part], int(self.plan.derivatives.order[part]))
+
+    @property
+    @abstractmethod
+    def full_order(self) -> int:
+        """Convergence order with signal nodes at all parts."""
+
+    @abstractmethod
+    def kept_order(self, part: int) -> int:
+        """Convergence order that is left with the derivatives that a part without nodes takes."""
+
+    @property
     def extrapolates(self) -> bool:
         """True if bodies take forces that are extrapolated from true ones: their error is seen."""
         return False
@@ -165,6 +184,15 @@ class Prepared(PreparedRun):
     problem: str = ""
 
     @property
+    def full_order(self) -> int:
+        """That of the polynomial, plus 1."""
+        return self.order + 1
+
+    def kept_order(self, part: int) -> int:
+        """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
+        return self.full_order if self.plan.derivatives.order[part] else 1
+
+    @property
     def extrapolates(self) -> bool:
         """True if all elements are stepped after all bodies: their forces are those of their time.
 
@@ -176,7 +204,7 @@ class Prepared(PreparedRun):
 
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth by the extrapolation over a step; parallel elements answer a step late."""
-        degrees = [min(self.order, self.degree[c.target]) for c in loop.forces]
+        degrees = [min(self.order, self.input_degree(c.target)) for c in loop.forces]
         return extrapolated_growth(loop.matrix, degrees, 0 if self.plan.at_end.any() else 1)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
@@ -209,8 +237,12 @@ def refuse_mixed(network: Network, algorithm: str) -> None:
 def prepare_stages(
     network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
 ) -> Prepared:
-    """Lay out a network for stages, with as many nodes as the order asks and the parts have."""
+    """Lay out a network for stages, with as many nodes as the order asks and the parts have.
+
+    Parts without nodes take FMI derivatives if they declare them; else they hold their inputs.
+    """
     degree: list[int] = []
+    derivatives = [0] * len(network.parts)
     slow, notes = slow_degrees(network, 1)
     for p, part in enumerate(network.parts):
         if p in slow:
@@ -219,13 +251,17 @@ def prepare_stages(
         inputs = [c.input for c in network.inputs(p)]
         wanted = order if p in network.bodies or p in network.mixed else 0
         if wanted and not has_nodes(part, inputs, wanted):
-            notes.append(
-                f"{part.name} takes no signal nodes: its inputs are held over a step, "
-                "which makes the coupling first order in the step"
-            )
+            if part.addresses.set_derivatives:
+                derivatives[p] = wanted
+            else:
+                notes.append(
+                    f"{part.name} takes no signal nodes: its inputs are held over a step, "
+                    "which makes the coupling first order in the step"
+                )
             wanted = 0
         degree.append(wanted)
-    plan = build_plan(network, stages, degree, parallel)
+    laid_out = lay_out_derivatives(network, order, derivatives)
+    plan = build_plan(network, stages, degree, parallel, derivatives=laid_out)
     return Prepared(plan, tuple(degree), order, tuple(notes))
 
 

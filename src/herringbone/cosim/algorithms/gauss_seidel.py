@@ -79,4 +79,5 @@ class GaussSeidel(Algorithm):
             done.add(body)
         stages += [[element] for element in waiting]
         prepared = prepare_stages(network, stages, self.order)
-        return replace(prepared, starter=Jacobi(self.order).prepare(network).plan)
+        starter = Jacobi(self.order).prepare(network).plan
+        return replace(prepared, starter=starter._replace(derivatives=prepared.plan.derivatives))

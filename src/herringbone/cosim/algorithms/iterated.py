@@ -16,6 +16,7 @@ from herringbone.cosim.algorithms.jacobian import (
     InterfaceJacobian,
     correction_matrix,
 )
+from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
 from herringbone.cosim.node_loop import REFRESH, run_iterated
@@ -33,19 +34,30 @@ PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
 
 
-def _mean_weights(degree: int) -> np.ndarray:
-    """Weights of equidistant nodes for the mean of their polynomial (Newton-Cotes)."""
-    c = np.linspace(0.0, 1.0, degree + 1)
-    powers = np.arange(degree + 1)
-    return np.linalg.solve(np.vander(c, increasing=True).T, 1.0 / (powers + 1.0))
-
-
 def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
     return all(node_name(name, degree) in part.variables for name in outputs)
 
 
+def _derivatives(network: Network, degree: int, degrees: Sequence[int]) -> Derivatives:
+    """FMI derivatives for the parts without nodes that declare them.
+
+    A part that holds its inputs has no rates to give.
+    """
+    order, rated = [0] * len(network.parts), []
+    for p, part in enumerate(network.parts):
+        if degrees[p] or p in network.slow:
+            continue
+        fed = bool(network.inputs(p))
+        if fed and part.addresses.set_derivatives:
+            order[p] = degree
+        feeds = any(c.source == p for c in network.connections)
+        if degree > 1 and feeds and part.addresses.get_derivatives and (order[p] or not fed):
+            rated.append(p)
+    return lay_out_derivatives(network, degree, order, rated)
+
+
 def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
-    """Degree at which each part takes and gives signals, and what that costs."""
+    """Degree at which each part takes and gives signals at nodes, and what holding costs."""
     found: list[int] = []
     slow, notes = slow_degrees(network, degree)
     for p, part in enumerate(network.parts):
@@ -58,7 +70,7 @@ def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
             found.append(degree)
             continue
         found.append(0)
-        if inputs:
+        if inputs and not part.addresses.set_derivatives:
             notes.append(
                 f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
                 "and its outputs interpolated, which makes the coupling second order in the step"
@@ -104,7 +116,10 @@ class PreparedNodes(PreparedRun):
         self.degree, self._downgrades = tuple(degrees), tuple(notes)
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
-        self.plan = build_plan(network, stages, degrees, parallel=False, per=degree)
+        derivatives = _derivatives(network, degree, degrees)
+        self.plan = build_plan(
+            network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
+        )
         self._outputs = connected_outputs(network)
         self.nodes = self._node_plan(degree)
         self._same_unit = self._units_agree()
@@ -127,7 +142,6 @@ class PreparedNodes(PreparedRun):
             np.array(network.elements, dtype=np.int64),
             np.array(network.sources, dtype=np.int64),
             *node_references(parts, self._outputs, node_degrees),
-            _mean_weights(degree),
             *(state[:, k].copy() for k in range(3)),
         )
 
@@ -142,6 +156,32 @@ class PreparedNodes(PreparedRun):
             f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "
             "largest: use a smaller step, or look for a part that does not repeat a step alike",
         )
+
+    @property
+    def inner_outputs(self) -> bool:
+        """At the nodes."""
+        return self.nodes.degree > 1
+
+    @property
+    def full_order(self) -> int:
+        """That of the Newton-Cotes rules on the same nodes."""
+        degree = self.nodes.degree
+        return degree + 2 - degree % 2
+
+    def kept_order(self, part: int) -> int:
+        """What input derivatives up to an order q, and cubic or quadratic outputs leave.
+
+        A body's inputs have the moments 0 ... q of the signal, which leaves 2 q + 2: the rest is
+        orthogonal to polynomials of degree q, also to those of the body's response. An element's
+        inputs are right at the end. Outputs leave 4 with rates, else 3.
+        """
+        signals = self.plan.derivatives
+        found = [self.full_order]
+        if self.network.inputs(part) and not self.plan.at_end[part]:
+            found.append(2 * int(signals.order[part]) + 2)
+        if self.inner_outputs:
+            found.append(4 if signals.rated[part] else 3)
+        return min(found)
 
     def passes(self, macro_steps: int) -> list[int]:
         """doStep calls of each part, those for Jacobians included."""
@@ -169,7 +209,8 @@ class PreparedNodes(PreparedRun):
             np.zeros(len(parts), dtype=np.int64),
             np.zeros(3, dtype=np.int64),
             np.zeros(2),
-            np.ones(2),
+            np.array([np.inf, 1.0]),  # nothing is known before the start
+            np.full((2, outputs), np.nan),
         )
 
     def close_loop(self, loop: AlgebraicLoop) -> float:
@@ -183,7 +224,7 @@ class PreparedNodes(PreparedRun):
                 return gain
             self.most = max(self.most, min(math.ceil(math.log(REST) / math.log(gain)), MOST_SWEEPS))
             self._downgrades += (f"up to {self.most} sweeps a macro step solve the loop",)
-        return solved_growth(loop.matrix, [self.degree[c.target] == 0 for c in loop.forces])
+        return solved_growth(loop.matrix, [self.input_degree(c.target) == 0 for c in loop.forces])
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `stage_loop.run_stages`."""

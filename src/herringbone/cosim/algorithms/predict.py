@@ -82,7 +82,10 @@ class PreparedPrediction(PreparedRun):
             rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
         ]
         self.degree, self.notes, self.problem = tuple(degree), tuple(staged.notes), ""
-        self.plan: Plan = build_plan(network, stages, degree, parallel=False, extra=extra)
+        self.plan: Plan = build_plan(
+            network, stages, degree, parallel=False, extra=extra,
+            derivatives=staged.plan.derivatives,
+        )  # fmt: skip
         self._prediction = self._lay_out(network, connected_outputs(network, extra))
 
     def _lay_out(self, network: Network, outputs: list[list[str]]) -> Prediction:
@@ -116,9 +119,19 @@ class PreparedPrediction(PreparedRun):
             np.zeros(max(1, int(np.diff(node_first).max()))),
         )
 
+    @property
+    def full_order(self) -> int:
+        """As of the algorithm."""
+        return Predict().convergence_order
+
+    def kept_order(self, part: int) -> int:
+        """All of it, even by a held mean: the predicted velocity errs as much."""
+        del part
+        return self.full_order
+
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth by the extrapolation over a step, of a body that does not declare feedthrough."""
-        degrees = [min(2, self.degree[c.target]) for c in loop.forces]
+        degrees = [min(2, self.input_degree(c.target)) for c in loop.forces]
         return extrapolated_growth(loop.matrix, degrees, 0)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:

@@ -1,0 +1,94 @@
+"""How signals reach parts without nodes: FMI derivatives as far as a part takes them, else hold."""
+
+import numpy as np
+
+from herringbone.core import FmuError
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.derivative_pass import get_rates, set_derivatives
+from herringbone.cosim.derivative_plan import input_fit
+from herringbone.cosim.loop import LAST_GOOD
+from herringbone.cosim.network import Network
+
+_FATAL = 4
+
+
+def settle_derivatives(network: Network, prepared: PreparedRun) -> list[str]:
+    """Try the derivatives that parts in step mode declare, and use what they do not refuse.
+
+    FMI 2.0 has no flag for the order of input derivatives: orders are tried from that of the
+    signals downward.
+
+    Returns:
+        One line per part: how its signals travel, and what that costs.
+
+    Raises:
+        FmuError: a part fails for good when it is asked.
+    """
+    plan, notes = prepared.plan, []
+    signals = plan.derivatives
+    for p, part in enumerate(network.parts):
+        asked, rated = int(signals.order[p]), bool(signals.rated[p])
+        if not asked and not rated:
+            continue
+        refused = _settle_inputs(prepared, part, p)
+        taken = int(signals.order[p])
+        signals.fit[p] = input_fit(signals.samples.size - 1, taken, at_end=bool(plan.at_end[p]))
+        if asked and not taken:
+            signals.rated[p] = 0
+        elif rated:
+            refused += _settle_outputs(prepared, part, p)
+        notes.append(_note(prepared, part, p, asked, refused))
+    return notes
+
+
+def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
+    """Lower the order of a part's input derivatives until it takes them; what it refused."""
+    signals, refused = prepared.plan.derivatives, []
+    for order in range(int(signals.order[p]), 0, -1):
+        status = set_derivatives(prepared.plan, p, order)
+        if status <= LAST_GOOD:
+            break
+        said = _refusal(part, status, f"input derivatives of order {order}")
+        refused = refused or [said]
+        signals.order[p] = order - 1
+    return refused
+
+
+def _settle_outputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
+    """Use a part's rates unless it refuses them; what it refused."""
+    status = get_rates(prepared.plan, p, np.zeros(prepared.plan.output_reference.size))
+    if status <= LAST_GOOD:
+        return []
+    prepared.plan.derivatives.rated[p] = 0
+    return [_refusal(part, status, "output derivatives")]
+
+
+def _refusal(part: Part, status: int, what: str) -> str:
+    said = "; ".join(part.messages())
+    if status == _FATAL:
+        raise FmuError(f"{part.name} fails for good at {what}, which it declares: {said}")
+    return f"it declares {what} but refuses them ({said or f'FMI status {status}'})"
+
+
+def _note(prepared: PreparedRun, part: Part, p: int, asked: int, refused: list[str]) -> str:
+    signals = prepared.plan.derivatives
+    taken, rated = int(signals.order[p]), bool(signals.rated[p])
+    ways = []
+    if asked:
+        ways.append(
+            f"its inputs go as FMI derivatives up to order {taken}"
+            if taken
+            else "its inputs are held over a step"
+        )
+    if rated:
+        ways.append("its outputs are cubics through values and FMI derivatives")
+    elif prepared.inner_outputs:
+        ways.append("its outputs are interpolated through past values")
+    kept = prepared.kept_order(p)
+    cost = (
+        f"the coupling keeps order {kept} in the step"
+        if kept == prepared.full_order
+        else f"the coupling falls from order {prepared.full_order} to {kept} in the step"
+    )
+    return "; ".join([f"{part.name} has no signal nodes", *refused, *ways, cost])
