@@ -6,6 +6,7 @@ import pytest
 from support_parts import TWO_MASS_SYSTEM, FakePart, Mass, SpringDamper, TwoMass
 
 from herringbone.core import ParameterError
+from herringbone.core.part import Addresses
 from herringbone.cosim.algorithms import ALGORITHMS, GaussSeidel, Jacobi, parse_algorithm
 from herringbone.cosim.network import build_network
 from herringbone.cosim.system import PartSpec, System
@@ -128,7 +129,7 @@ def test_gauss_seidel_steps_every_part_once():
 
 def test_sources_come_first():
     source = FakePart("source").real("y", "output", "N")
-    source.addresses = (0, 0, 0, 0)
+    source.addresses = Addresses(0, 0, 0, 0)
     parts = [Mass("m", 1.0), source]
     system = System("driven", "", tuple(PartSpec(p.name) for p in parts), (
         ("source.y", "m.flange.f"),

@@ -215,6 +215,7 @@ def loaded(housings):
     return Rig(housings)
 
 
+@pytest.mark.slow
 def test_li_on_the_rig(loaded):
     """Bearing forces and seat velocities: 1e-5, 2e-5 with nodes; 9e-5, 1.2e-4 with derivatives;
     3.5e-3, 3.7e-2 held. The step is a fifth of the shortest period of the housing's residual modes.
