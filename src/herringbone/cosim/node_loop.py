@@ -56,7 +56,8 @@ def correct(buffers: Buffers, correction: np.ndarray) -> None:
 @kernel
 def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
     """The values at the end of the step become the newest of the history, rates those before."""
-    buffers.rates[0] = buffers.rates[1]
+    for i in range(buffers.rates.shape[1]):
+        buffers.rates[0, i] = buffers.rates[1, i]
     for p in range(plan.component.size):
         for i in range(plan.output_first[p], plan.output_first[p + 1]):
             buffers.history[0, i] = buffers.nodes[nodes.degree, i]

@@ -56,7 +56,8 @@ def _set_from_nodes(plan: Plan, buffers: Buffers, p: int, h: float) -> int:
     for i in range(end - first):
         source = plan.input_source[first + i]
         if degree == 0:
-            plan.derivatives.samples[:] = buffers.nodes[:, source]
+            for node in range(plan.derivatives.samples.size):
+                plan.derivatives.samples[node] = buffers.nodes[node, source]
             write_input(plan, p, i, h)
         for node in range(degree + 1 if degree > 0 else 0):
             plan.set_value[start + node * (end - first) + i] = buffers.nodes[node, source]
