@@ -171,6 +171,9 @@ def test_a_late_start_leaves_out_earlier_samples():
     held = follow(instance, lambda t: t, 5.0 + grid(1e-3, 3e-3), degree=1)
     np.testing.assert_allclose(held, [5.001, 5.002, 5.003], rtol=1e-12)
     assert instance["next_sample"] == 10007
+    clipped = sensor(range=1.0, **BARE)
+    follow(clipped, lambda t: t, 5.0 + grid(1e-3, 3e-3), degree=1)
+    assert clipped["saturation_count"] == 7
 
 
 def test_converter_clips_and_rounds_exactly():
