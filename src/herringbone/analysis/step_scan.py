@@ -2,7 +2,9 @@
 
 Stability is not monotone in the step, so that a bisection alone would jump over bands. A coarse
 scan finds an unstable step; a fine one goes from a quarter of it to twice of it, or until nothing
-has been stable for long. Crossings are refined by bisection.
+has been stable for long. Close to the first unstable step, where a run is most likely to be asked
+for, bands and the gaps between them are searched at the resolution of the crossings. These are
+refined by bisection.
 
 Narrow bands open where two motions meet on the unit circle, above all where a motion at half the
 rate of communication points meets its own mirror image. With the decay d per step of the motion
@@ -10,8 +12,8 @@ alone and the growth g per step in the band, the band has a relative width of
 (2 / pi) sqrt(g (2 d + g)): with d = 1 %, growth by 0.1 % makes a band 0.3 % wide. But the two
 eigenvalues are real over a width of at least 2 d / pi around it, where their radius rises: maxima
 of it, and of the radius of all fast motions, are searched between the steps of the scan. What can
-still be missed are bands of motions with a damping ratio below 1.3 %, and bands below a quarter of
-the first coarse hit.
+still be missed are bands of motions with a damping ratio below 1.3 %, bands below a quarter of the
+first coarse hit, and gaps between bands far beyond the first one.
 """
 
 from collections.abc import Callable
@@ -29,6 +31,7 @@ _COARSE, _FINE = 1.25, 1.025
 _BELOW, _ABOVE = 0.25, 2.0
 _CLEARLY, _FOR_LONG = 1.2, 1.3
 _RESOLUTION = 1.005
+_CLOSELY = 1.05
 _NEAR = 0.93
 _CLOSE_TO_ONE = {"fast_radius": 0.97, "mirror_radius": 0.9}
 _TRIES, _CLOSE = 7, 1e-3
@@ -51,6 +54,8 @@ def unstable_bands(
     samples = _samples(growth, max(smallest, _BELOW * coarse), min(_ABOVE * coarse, largest))
     samples.append((coarse, _safe(growth, coarse)))
     samples = _with_maxima(growth, sorted(samples, key=_step))
+    samples += _closely(growth, next(step for step, value in samples if _grows(value)))
+    samples.sort(key=_step)
     bands: list[tuple[float, float]] = []
     since = samples[0][0] if _grows(samples[0][1]) else None
     for (before, _), (step, value) in pairwise(samples):
@@ -113,6 +118,13 @@ def _samples(growth: GrowthOf, first: float, end: float) -> list[tuple[float, Gr
             break
         step *= _FINE
     return found
+
+
+def _closely(growth: GrowthOf, first: float) -> list[tuple[float, Growth]]:
+    """Growth around the first unstable step, at the resolution of the crossings."""
+    half = int(np.log(_CLOSELY) / np.log(_RESOLUTION))
+    steps = first * _RESOLUTION ** np.arange(-half, half + 1.0)
+    return _with_maxima(growth, [(float(step), _safe(growth, float(step))) for step in steps])
 
 
 def _step(sample: tuple[float, Growth]) -> float:
