@@ -29,14 +29,14 @@ MARGIN = 0.02
 TRIED = np.linspace(0.25 * MARGIN, MARGIN, 4)
 FAST = 1e-3
 """Growth per step that needs no step farther beyond a limit."""
-RATE = 0.02
+RATE = 0.01
 """Relative deviation of a measured rate: what other motions leave after half a run."""
 FOLDS = 8.0
 """Powers of e by which a run is to grow or decay: a motion decays to 3e-4, far from rounding."""
 LARGEST = 2e-4
 """Largest velocity [m/s] of a run: at the mesh frequencies less than a tenth of a deflection."""
 KICKED = {"y_1": 1.0, "y_2": -0.5, "y_3": 0.5, "z_3": 1.0, "z_4": 0.5, "approach": 0.5}
-FEWEST, MOST = 200, 60000
+FEWEST, MOST = 200, 40000
 VARIANTS = 3
 SEED = 2016
 STIFFNESS = "radial_stiffness", "axial_stiffness"
