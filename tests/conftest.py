@@ -19,3 +19,9 @@ def native_fmus():
     if platform is None or find_compiler(platform) is None:
         pytest.skip("no C compiler for native FMUs was found")
     return build_native_fmus()
+
+
+@pytest.fixture(scope="session")
+def fmi3_fmus(native_fmus):
+    """Path of the native FMU 3.0 of this platform by component."""
+    return build_native_fmus(native_fmus, fmi=3)

@@ -20,7 +20,7 @@ from herringbone.cosim.algorithms import (
     parse_algorithm,
     with_tolerance,
 )
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import Progress, Recording, make_grid, simulate
 from herringbone.cosim.ssp_format import is_ssp
 from herringbone.cosim.system import PartSpec, System
@@ -245,7 +245,7 @@ def open_parts(system: System, fmu: str) -> list[Part]:
 
 def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
     if spec.fmu is not None:
-        return FmuPart(spec.name, spec.fmu)
+        return open_fmu(spec.name, spec.fmu)
     if str(spec.component) in files:
-        return FmuPart(spec.name, files[str(spec.component)])
+        return open_fmu(spec.name, files[str(spec.component)])
     return InProcessPart(Instance(component(str(spec.component)), spec.name))

@@ -12,7 +12,7 @@ from herringbone.analysis.housing_behaviour import Finding
 from herringbone.analysis.housing_contract import STEP, check_housing
 from herringbone.core import HerringboneError
 from herringbone.core.paths import cache_folder
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.housing import read_housing
 from herringbone.output import show
 
@@ -32,7 +32,7 @@ def check_command(fmu: Path, against: Path | None) -> int:
     static = None if against is None else _static(against)
     with tqdm(disable=None, bar_format="[{elapsed}] {desc}") as bar:
         findings = check_housing(
-            lambda: FmuPart("housing", fmu), static=static, progress=bar.set_description_str
+            lambda: open_fmu("housing", fmu), static=static, progress=bar.set_description_str
         )
     failed = sum(not finding.holds for finding in findings)
     show(f"{fmu} as housing, steps of {1e6 * STEP:g} us:\n{_table(findings)}")
@@ -68,7 +68,7 @@ def replacement_notes(fmu: Path) -> list[str]:
     if known.is_file():
         return json.loads(known.read_text(encoding="utf-8"))
     try:
-        findings = check_housing(lambda: FmuPart("housing", fmu))
+        findings = check_housing(lambda: open_fmu("housing", fmu))
     except HerringboneError as error:
         return [f"{fmu} could not be tested as housing: {error}"]
     notes = [

@@ -14,7 +14,6 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
 from herringbone.core.variable import NODES
 from herringbone.fmi import golden
-from herringbone.fmi.native import build_native_fmus
 
 WITH_INPUTS = [name for name in NAMES if COMPONENTS[name].declaration.inputs]
 
@@ -22,12 +21,6 @@ WITH_INPUTS = [name for name in NAMES if COMPONENTS[name].declaration.inputs]
 @pytest.fixture
 def fmus(native_fmus):
     return native_fmus
-
-
-@pytest.fixture(scope="module")
-def fmi3_fmus(native_fmus):
-    """Path of the native FMU 3.0 by component."""
-    return build_native_fmus(fmi=3)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -46,7 +39,7 @@ def test_value_that_is_not_finite_is_refused_at_once(name, value, started):
     with pytest.raises(FMICallException):
         host.slave.setReal([host.variables[signal.name].reference], [value])
     said = f"part.{signal.name} = {value} {signal.unit}: it must be finite (t = 2e-05 s)"
-    assert host._log == [said]
+    assert host.messages() == [said]
     assert host.values(signal.name) == before
 
 

@@ -43,7 +43,7 @@ def test_value_that_is_not_finite_gives_one_message_and_no_crash(name, value, st
         with pytest.raises(FMICallException):
             host.slave.doStep(H, H)
     said = f"part.{signal.name} = {value} {signal.unit}: it must be finite (t = 2e-05 s)"
-    assert host._log == [said]
+    assert host.messages() == [said]
 
 
 def test_state_from_before_an_error_makes_the_instance_usable_again(started):

@@ -81,10 +81,10 @@ def test_no_description(tmp_path):
     refused("is not an FMU: it contains no modelDescription.xml", write(tmp_path))
 
 
-@pytest.mark.parametrize("version", ["1.0", "3.0", "3.0-beta.1"])
+@pytest.mark.parametrize("version", ["1.0", "3.0-beta.1", "3.1", "30"])
 def test_other_versions(tmp_path, version):
     said = refused(f"is an FMI {version} unit", write(tmp_path, description(version=version)))
-    assert "FMI 2.0 for co-simulation is needed" in said
+    assert "FMI 2.0 or 3.0 for co-simulation is needed" in said
 
 
 def test_unknown_version(tmp_path):

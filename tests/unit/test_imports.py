@@ -58,7 +58,7 @@ TOP = {
 
 ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
-    "llvmlite": {"cosim/calls.py", "fmi/native/objects.py"},
+    "llvmlite": {"cosim/calls.py", "cosim/fmi3_calls.py", "fmi/native/objects.py"},
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},

@@ -123,9 +123,9 @@ def test_undeclared_unit_is_noted():
 
 def test_only_reals():
     parts = [
-        FakePart("p").real("y", "output", is_real=False), FakePart("q").real("u", "input")
+        FakePart("p").real("y", "output", type="Integer"), FakePart("q").real("u", "input")
     ]  # fmt: skip
-    refused("'p.y' -> 'q.u': only Real variables can be connected", parts, ("p.y", "q.u"))
+    refused("'p.y' -> 'q.u': 'p.y' is of type Integer; only scalars", parts, ("p.y", "q.u"))
 
 
 def test_two_sources_on_one_input():

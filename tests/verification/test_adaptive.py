@@ -33,8 +33,8 @@ from herringbone.api import run
 from herringbone.cli import main
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, Jacobi, with_tolerance
-from herringbone.cosim.fmu_part import FmuPart
 from herringbone.cosim.ladder import RUNGS, TICKS
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
@@ -308,7 +308,7 @@ def test_only_li_adapts_its_step():
 def test_python_fmus_give_the_same_bits(python_fmus):
     scene = read_scene(find_scene(find_system("test_rig"), "separation"))
     system = started(read_system("test_rig"), scene)[0]
-    fmus = [FmuPart(spec.name, python_fmus[spec.component]) for spec in system.parts]
+    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in system.parts]
     try:
         for part, spec in zip(fmus, system.parts, strict=True):
             for name, value in spec.values.items():

@@ -15,7 +15,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.ports import HALVES
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
@@ -108,7 +108,7 @@ def test_within_a_thousandth_at_all_speeds(speed):
 def test_python_fmus_give_the_same_bits(python_fmus):
     """50 macro steps, all recorded outputs."""
     system, h = rig("separation"), 40e-6
-    fmus = [FmuPart(spec.name, python_fmus[spec.component]) for spec in system.parts]
+    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in system.parts]
     try:
         for part, spec in zip(fmus, system.parts, strict=True):
             for name, value in spec.values.items():

@@ -25,7 +25,7 @@ from herringbone.cli import main
 from herringbone.components.ports import HALVES
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
@@ -82,7 +82,7 @@ def test_slow_motors_cost_jacobi_no_accuracy(rig, order):
 
 
 def test_python_fmus_give_the_same_bits(rig, python_fmus):
-    fmus = [FmuPart(spec.name, python_fmus[spec.component]) for spec in rig.system.parts]
+    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in rig.system.parts]
     try:
         for part, spec in zip(fmus, rig.system.parts, strict=True):
             for name, value in spec.values.items():

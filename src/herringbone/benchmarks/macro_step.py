@@ -15,7 +15,7 @@ from herringbone.api import load_scene, load_system, open_parts
 from herringbone.benchmarks.other_masters import PACKAGES, macro_step
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.fmu2_part import Fmu2Part
 from herringbone.cosim.network import build_network
 from herringbone.cosim.plan import connected_outputs
 from herringbone.cosim.simulation import make_grid, simulate
@@ -100,7 +100,7 @@ def _fmpy(system: System, steps: int) -> float:
 def plain_loop(system: System, parts: list[Part], steps: int) -> float:
     """Go on from the first macro step of initialised FMUs; time of a macro step [s]."""
     network = build_network(system, parts)
-    slaves = [part.slave for part in parts if isinstance(part, FmuPart)]
+    slaves = [part.slave for part in parts if isinstance(part, Fmu2Part)]
     wires = [network.inputs(p) for p in range(len(parts))]
     feeds = [[(c.source, c.output) for c in wire] for wire in wires]
     ins = [[parts[c.target].variables[c.input].reference for c in wire] for wire in wires]

@@ -63,7 +63,7 @@ def part_variables(component: str) -> Mapping[str, PartVariable]:
             )
     for k, text in enumerate(declaration.texts):
         reference = declaration.size + k
-        found[text.name] = PartVariable(text.name, reference, "parameter", is_real=False)
+        found[text.name] = PartVariable(text.name, reference, "parameter", type="String")
     return dict(sorted(found.items(), key=lambda item: item[1].reference))
 
 

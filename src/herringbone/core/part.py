@@ -13,12 +13,13 @@ class PartVariable:
 
     Attributes:
         name: structured name.
-        reference: FMI value reference.
+        reference: number by which the part's functions know it: the FMI value reference, or the
+            number of the element if the part is an FMU 3.0.
         causality: "input", "output", "parameter", "local" or other.
         unit: unit name, None if none is declared.
         dimension: factor, offset and base-unit exponents, for comparing units; None if unknown.
         dependencies: inputs on which an output depends directly; None if not declared.
-        is_real: False for Integer, Boolean and String variables.
+        type: FMI type; arrays with their shape, such as "Float64[3]".
     """
 
     name: str
@@ -27,7 +28,12 @@ class PartVariable:
     unit: str | None = None
     dimension: tuple | None = None
     dependencies: frozenset[str] | None = None
-    is_real: bool = True
+    type: str = "Real"
+
+    @property
+    def is_real(self) -> bool:
+        """True for scalars of double precision, the only variables that can be connected."""
+        return self.type in {"Real", "Float64"}
 
 
 class Addresses(NamedTuple):

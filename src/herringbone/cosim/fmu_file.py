@@ -13,11 +13,12 @@ from herringbone.cosim.archive import escaping_entry
 
 _DESCRIPTION = "modelDescription.xml"
 _FOREIGN_XML = re.compile(rb"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
+_USABLE = re.compile(r"2\.0|3\.0(\.\d+)?")
 _VERSION = re.compile(rb'fmiVersion\s*=\s*["\']([^"\']*)["\']')
 
 
 def read_fmu(file: Path) -> ModelDescription:
-    """Model description of an FMU 2.0 for co-simulation that runs on this platform.
+    """Model description of an FMU 2.0 or 3.0 for co-simulation that runs on this platform.
 
     Raises:
         FmuError: no file, no zip, unsafe names or XML, another FMI version or kind, no binary for
@@ -45,7 +46,8 @@ def read_fmu(file: Path) -> ModelDescription:
     if model.coSimulation is None:
         raise FmuError(f"{file} is for model exchange only; co-simulation is needed")
     library = f"{model.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
-    binary = f"binaries/{fmpy.platform}/{library}"
+    platform = fmpy.platform_tuple if is_fmi3(model) else fmpy.platform
+    binary = f"binaries/{platform}/{library}"
     if binary not in names:
         have = sorted({n.split("/")[1] for n in names if n.startswith("binaries/") and n[9:]})
         raise FmuError(
@@ -60,8 +62,15 @@ def _check_description(description: bytes, file: Path) -> None:
         raise FmuError(f"{file}: {_DESCRIPTION} declares a DOCTYPE or an entity; refused")
     found = _VERSION.search(description)
     version = found.group(1).decode("ascii", "replace") if found else "unknown"
-    if version != "2.0":
-        raise FmuError(f"{file} is an FMI {version} unit; FMI 2.0 for co-simulation is needed")
+    if not _USABLE.fullmatch(version):
+        raise FmuError(
+            f"{file} is an FMI {version} unit; FMI 2.0 or 3.0 for co-simulation is needed"
+        )
+
+
+def is_fmi3(model: ModelDescription) -> bool:
+    """True for an FMU 3.0, False for an FMU 2.0."""
+    return model.fmiVersion.startswith("3.")
 
 
 def extract_fmu(file: Path) -> Path:

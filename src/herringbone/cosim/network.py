@@ -208,8 +208,12 @@ def _connection(
 ) -> Connection:
     source, target = (part.variables[name] for part, name in (output, input_))
     where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
-    if not source.is_real or not target.is_real:
-        raise StructureError(f"connection {where}: only Real variables can be connected")
+    for part, variable in ((output[0], source), (input_[0], target)):
+        if not variable.is_real:
+            raise StructureError(
+                f"connection {where}: '{part.name}.{variable.name}' is of type {variable.type}; "
+                "only scalars of type Real (FMI 2) or Float64 (FMI 3) can be connected"
+            )
     if source.unit is None or target.unit is None:
         between = tuple(sorted((output[0].name, input_[0].name)))
         unchecked.setdefault(between, []).append(where)

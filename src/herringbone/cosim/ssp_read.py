@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 from herringbone.core import FmuError, StructureError
 from herringbone.core.part import PartVariable
 from herringbone.cosim.fmu_file import read_fmu
-from herringbone.cosim.fmu_part import read_variables
+from herringbone.cosim.fmu_variables import read_variables
 from herringbone.cosim.ssp_format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,

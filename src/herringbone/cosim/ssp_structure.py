@@ -12,7 +12,7 @@ from fmpy.model_description import ModelDescription
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import PartVariable
 from herringbone.cosim.fmu_file import read_fmu
-from herringbone.cosim.fmu_part import read_variables
+from herringbone.cosim.fmu_variables import read_variables
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import record_names
 from herringbone.cosim.ssp_format import (

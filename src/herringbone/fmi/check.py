@@ -1,4 +1,4 @@
-"""Check any FMI 2.0 co-simulation FMU: file, XML, a default run, state and reset."""
+"""Check any FMI 2.0 or 3.0 co-simulation FMU: file, XML, a default run, state and reset."""
 
 import math
 from pathlib import Path
@@ -9,7 +9,8 @@ from fmpy.validation import validate_fmu
 
 from herringbone.core import FmuError
 from herringbone.cosim.fmu_file import read_fmu
-from herringbone.fmi.host import Host
+from herringbone.cosim.fmu_variables import read_variables
+from herringbone.fmi.host import Host, Host3, open_host
 
 _STEPS = 10
 _STEP_SIZE = 1e-3
@@ -38,11 +39,14 @@ def check_fmu(path: Path) -> list[str]:
 
 
 def _without_unit(description: ModelDescription) -> list[str]:
-    reals = [v for v in description.modelVariables if v.type == "Real"]
+    """Reals without unit; an event indicator, which is a variable in FMI 3.0, needs none."""
+    indicators = {unknown.variable.name for unknown in description.eventIndicators}
     return [
-        f"{v.name}: a Real without unit"
-        for v in reals
-        if not (v.unit or (v.declaredType and v.declaredType.unit))
+        f"{v.name}: a {v.type} without unit"
+        for v in description.modelVariables
+        if v.type in {"Real", "Float32", "Float64"}
+        and v.name not in indicators
+        and not (v.unit or (v.declaredType and v.declaredType.unit))
     ]
 
 
@@ -52,11 +56,11 @@ def _step_size(description: ModelDescription) -> float:
 
 
 def _outputs(description: ModelDescription) -> list[str]:
-    variables = description.modelVariables
-    return [v.name for v in variables if v.causality == "output" and v.type == "Real"]
+    variables = read_variables(description).values()
+    return [v.name for v in variables if v.causality == "output" and v.is_real]
 
 
-def _advance(host: Host, first: int) -> list[float]:
+def _advance(host: Host | Host3, first: int) -> list[float]:
     h = _step_size(host.model)
     for n in range(first, first + _STEPS):
         host.step(n * h, h)
@@ -64,7 +68,7 @@ def _advance(host: Host, first: int) -> list[float]:
 
 
 def _default_run(path: Path, description: ModelDescription) -> list[str]:
-    with Host(path.stem, path) as host:
+    with open_host(path.stem, path) as host:
         host.initialise()
         values = _advance(host, 0)
     names = _outputs(description)
@@ -75,29 +79,26 @@ def _default_run(path: Path, description: ModelDescription) -> list[str]:
 def _state_round_trip(path: Path, description: ModelDescription) -> list[str]:
     if not description.coSimulation.canGetAndSetFMUstate:
         return []
-    with Host(path.stem, path) as host:
+    with open_host(path.stem, path) as host:
         host.initialise()
         _advance(host, 0)
-        saved = host.slave.getFMUstate()
+        saved = host.save()
         before = _advance(host, _STEPS)
         if description.coSimulation.canSerializeFMUstate:
-            serialised = host.slave.serializeFMUstate(saved)
-            host.slave.freeFMUstate(saved)
-            saved = host.slave.deSerializeFMUstate(serialised)
-        host.slave.setFMUstate(saved)
+            saved = host.through_bytes(saved)
+        host.restore(saved)
         after = _advance(host, _STEPS)
-        host.slave.freeFMUstate(saved)
-    return _differences(description, before, after, "a repeated step after setFMUstate")
+    return _differences(description, before, after, "a step repeated from the saved state")
 
 
 def _reset(path: Path, description: ModelDescription) -> list[str]:
-    with Host(path.stem, path) as host:
+    with open_host(path.stem, path) as host:
         host.initialise()
         before = _advance(host, 0)
         host.slave.reset()
         host.initialise()
         after = _advance(host, 0)
-    return _differences(description, before, after, "a run after fmi2Reset")
+    return _differences(description, before, after, "a run after reset")
 
 
 def _differences(

@@ -1,6 +1,8 @@
-"""A host for one FMU, for checks and golden results; co-simulation has its own loop."""
+"""Hosts for one FMU, for checks and golden results; co-simulation has its own loop."""
 
 from collections.abc import Mapping
+from ctypes import c_void_p
+from pathlib import Path
 from time import perf_counter
 from types import TracebackType
 from typing import Self
@@ -8,10 +10,13 @@ from typing import Self
 from fmpy.fmi1 import FMICallException
 
 from herringbone.core import FmuError
+from herringbone.cosim.fmu2_part import Fmu2Part
+from herringbone.cosim.fmu3_part import Fmu3Part
+from herringbone.cosim.fmu_file import is_fmi3, read_fmu
 from herringbone.cosim.fmu_part import FmuPart
 
 
-class Host(FmuPart):
+class _SteppedPart(FmuPart):
     """One instance of an FMU that is stepped by calls from Python."""
 
     def __enter__(self) -> Self:
@@ -44,6 +49,10 @@ class Host(FmuPart):
         self.enter_initialization(0.0, 1.0)
         self.exit_initialization()
 
+
+class Host(_SteppedPart, Fmu2Part):
+    """One instance of an FMU 2.0 that is stepped by calls from Python."""
+
     def start_seconds(self) -> float:
         """Wall time [s] to instantiate and initialise one more instance.
 
@@ -52,7 +61,7 @@ class Host(FmuPart):
         """
         first = self.slave.component
         begin = perf_counter()
-        self.slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        self._instantiate()
         try:
             self.initialise()
             return perf_counter() - begin
@@ -70,3 +79,59 @@ class Host(FmuPart):
             self.slave.doStep(time, step_size)
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not step", error)) from error
+
+    def save(self) -> c_void_p:
+        """A saved state; raises FMICallException."""
+        return self.slave.getFMUstate()
+
+    def through_bytes(self, state: c_void_p) -> c_void_p:
+        """The same state, serialised and back; raises FMICallException."""
+        data = self.slave.serializeFMUstate(state)
+        self.slave.freeFMUstate(state)
+        return self.slave.deSerializeFMUstate(data)
+
+    def restore(self, state: c_void_p) -> None:
+        """Go back to a saved state and free it; raises FMICallException."""
+        self.slave.setFMUstate(state)
+        self.slave.freeFMUstate(state)
+
+
+class Host3(_SteppedPart, Fmu3Part):
+    """One instance of an FMU 3.0 that is stepped by calls from Python."""
+
+    def step(self, time: float, step_size: float) -> None:
+        """Advance from `time` by `step_size` [s].
+
+        Raises:
+            FmuError: the step was discarded, failed or ended early; the message holds what the FMU
+                logged.
+        """
+        try:
+            _, terminate, early, reached = self.slave.doStep(time, step_size)
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name} does not step", error)) from error
+        if terminate or early:
+            what = "asks to end the simulation" if terminate else "ended its step early"
+            said = "; ".join([f"{self.name} {what}, at {reached:g} s", *self.messages()])
+            raise FmuError(said)
+
+    def save(self) -> c_void_p:
+        """A saved state; raises FMICallException."""
+        return self.slave.getFMUState()
+
+    def through_bytes(self, state: c_void_p) -> c_void_p:
+        """The same state, serialised and back; raises FMICallException."""
+        data = self.slave.serializeFMUState(state)
+        self.slave.freeFMUState(state)
+        return self.slave.deserializeFMUState(data)
+
+    def restore(self, state: c_void_p) -> None:
+        """Go back to a saved state and free it; raises FMICallException."""
+        self.slave.setFMUState(state)
+        self.slave.freeFMUState(state)
+
+
+def open_host(name: str, file: Path) -> Host | Host3:
+    """A host for an FMU 2.0 or 3.0; raises FmuError."""
+    model = read_fmu(file)
+    return (Host3 if is_fmi3(model) else Host)(name, file, model)

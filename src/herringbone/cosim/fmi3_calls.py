@@ -1,0 +1,228 @@
+"""FMI 2.0 functions in front of the FMI 3.0 functions of a part, at C addresses.
+
+So the compiled loop treats an FMU 3.0 as it treats an FMU 2.0. The component pointer is the address
+of the part's memory, a record of type `MEMORY`. The loop knows scalars only: it sees the elements
+of an array, which FMI 3.0 sets and gets as a whole. Therefore the part remembers the last value of
+every element, and a call exchanges all elements of the variables that it touches.
+"""
+
+import numpy as np
+from llvmlite import ir
+from numba import carray, from_dtype, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from herringbone.cosim.calls import state_call
+from herringbone.kernels.fmi_calls import DISCARD
+from herringbone.kernels.jit import c_function, kernel
+
+MEMORY = np.dtype(
+    [
+        ("instance", np.int64),
+        ("set_float64", np.int64),
+        ("get_float64", np.int64),
+        ("do_step", np.int64),
+        ("get_state", np.int64),
+        ("set_state", np.int64),
+        ("free_state", np.int64),
+        ("count", np.int64),
+        ("elements", np.int64),
+        ("values", np.int64),
+        ("references", np.int64),
+        ("packed", np.int64),
+        ("calls", np.int64),
+        ("ended", np.int64),
+    ]
+)
+"""What an FMU 3.0 is for its adapters.
+
+instance, and the addresses of its functions; count of elements; addresses of the elements, of their
+last values (float64), and of the value references (uint32) and values (float64) of the current
+call; number of calls; ended: 1 if a step ended early or the part asked to end the simulation.
+"""
+ELEMENT = np.dtype(
+    [("reference", np.int64), ("first", np.int64), ("size", np.int64), ("call", np.int64)]
+)
+"""An element: value reference, first element and size of its variable; at the first element, the
+number of the last call that exchanged the variable."""
+
+_MEMORY = types.CPointer(from_dtype(MEMORY))
+_EXCHANGE = types.int32(
+    _MEMORY, types.CPointer(types.uint32), types.size_t, types.CPointer(types.float64)
+)
+_STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
+_STATE = types.int32(_MEMORY, types.int64)
+_UNKNOWN_SIZE = 1  # bounds are not checked
+_ENDED = 256  # added to the status of a step
+_INT32, _INT64, _DOUBLE, _BOOLEAN = (
+    ir.IntType(32), ir.IntType(64), ir.DoubleType(), ir.IntType(8)
+)  # fmt: skip
+
+
+@intrinsic
+def _at(typing_context, address):  # noqa: ANN001, ANN202
+    """Pointer to what stands at an address."""
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.int64), generate
+
+
+@intrinsic
+def _exchange(typing_context, address, instance, references, count, values, value_count):  # noqa: ANN001, ANN202
+    """fmi3SetFloat64 or fmi3GetFloat64 at `address`."""
+    signature = types.int32(*[types.int64] * 6)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        pointer = cgutils.voidptr_t
+        kind = ir.FunctionType(_INT32, [pointer, pointer, _INT64, pointer, _INT64])
+        target, instance, references, count, values, value_count = arguments
+        return builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [
+                builder.inttoptr(instance, pointer),
+                builder.inttoptr(references, pointer),
+                count,
+                builder.inttoptr(values, pointer),
+                value_count,
+            ],
+        )
+
+    return signature, generate
+
+
+@intrinsic
+def _step(typing_context, address, instance, time, step, no_set_before):  # noqa: ANN001, ANN202
+    """fmi3DoStep at `address`: its status, and _ENDED if it ended early or for good."""
+    signature = types.int32(types.int64, types.int64, types.float64, types.float64, types.int32)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        pointer = cgutils.voidptr_t
+        kind = ir.FunctionType(_INT32, [pointer, _DOUBLE, _DOUBLE, _INT32, *[pointer] * 4])
+        target, instance, time, step, no_set_before = arguments
+        event, terminate, early = (
+            cgutils.alloca_once_value(builder, ir.Constant(_BOOLEAN, 0)) for _ in range(3)
+        )
+        reached = builder.bitcast(cgutils.alloca_once(builder, _DOUBLE), pointer)
+        for flag in (event, terminate, early):
+            builder.store(ir.Constant(_BOOLEAN, 0), flag)
+        status = builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [
+                builder.inttoptr(instance, pointer),
+                time,
+                step,
+                no_set_before,
+                *(event, terminate, early),
+                reached,
+            ],
+        )
+        ended = builder.or_(builder.load(terminate), builder.load(early))
+        flag = builder.icmp_unsigned("!=", ended, ir.Constant(_BOOLEAN, 0))
+        return builder.add(status, builder.select(flag, _INT32(_ENDED), _INT32(0)))
+
+    return signature, generate
+
+
+@kernel
+def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, int]:
+    """Variables of these elements and their last values, to the current call; how many of each."""
+    part = memory[0]
+    part.calls += 1
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    value = carray(_at(part.values), part.count, np.float64)
+    reference = carray(_at(part.references), part.count, np.uint32)
+    packed = carray(_at(part.packed), part.count, np.float64)
+    variables, total = 0, 0
+    for i in range(count):
+        first = element[references[i]].first
+        if element[first].call != part.calls:
+            element[first].call = part.calls
+            reference[variables] = element[first].reference
+            variables += 1
+            for k in range(first, first + element[first].size):
+                packed[total] = value[k]
+                total += 1
+    return variables, total
+
+
+@kernel
+def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
+    """Values of the current call, to the elements of the variables in the order of `_pack`."""
+    part = memory[0]
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    value = carray(_at(part.values), part.count, np.float64)
+    packed = carray(_at(part.packed), part.count, np.float64)
+    total = 0
+    for i in range(count):
+        first = element[references[i]].first
+        if element[first].call == part.calls:
+            element[first].call = 0
+            for k in range(first, first + element[first].size):
+                value[k] = packed[total]
+                total += 1
+
+
+@c_function(_EXCHANGE)
+def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2SetReal."""
+    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    given = carray(values, _UNKNOWN_SIZE)
+    part = whole[0]
+    last = carray(_at(part.values), part.count, np.float64)
+    for i in range(count):
+        last[reference[i]] = given[i]
+    variables, total = _pack(whole, reference, count)
+    return _exchange(
+        part.set_float64, part.instance, part.references, variables, part.packed, total
+    )
+
+
+@c_function(_EXCHANGE)
+def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2GetReal."""
+    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    wanted = carray(values, _UNKNOWN_SIZE)
+    part = whole[0]
+    variables, total = _pack(whole, reference, count)
+    status = _exchange(
+        part.get_float64, part.instance, part.references, variables, part.packed, total
+    )
+    _unpack(whole, reference, count)
+    last = carray(_at(part.values), part.count, np.float64)
+    for i in range(count):
+        wanted[i] = last[reference[i]]
+    return status
+
+
+@c_function(_STEP)
+def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _STEP)
+    """fmi2DoStep; a step that ended early, or with the wish to end the simulation, is discarded."""
+    part = carray(memory, 1)[0]
+    status = _step(part.do_step, part.instance, time, step, no_set_before)
+    if status < _ENDED:
+        return types.int32(status)
+    part.ended = 1
+    return types.int32(max(status - _ENDED, DISCARD))
+
+
+@c_function(_STATE)
+def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2GetFMUstate."""
+    part = carray(memory, 1)[0]
+    return state_call(part.get_state, part.instance, handle)
+
+
+@c_function(_STATE)
+def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2SetFMUstate; whoever restores a state sets all inputs anew."""
+    part = carray(memory, 1)[0]
+    return state_call(part.set_state, part.instance, state)
+
+
+@c_function(_STATE)
+def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2FreeFMUstate."""
+    part = carray(memory, 1)[0]
+    return state_call(part.free_state, part.instance, handle)

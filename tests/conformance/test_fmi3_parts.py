@@ -1,0 +1,83 @@
+"""FMUs 3.0 as parts: the bits of FMI 2.0, mixed systems, and the checks of a single FMU."""
+
+import zipfile
+
+import numpy as np
+import pytest
+from support_fmus import NAMES
+
+import herringbone
+from herringbone import cli
+from herringbone.api import load_scene, load_system
+from herringbone.core import ParameterError
+from herringbone.cosim.open_fmu import open_fmu
+from herringbone.fmi import check_fmu
+
+GEAR = "gear_mesh.mesh_left.force"
+
+
+def run(fmus, algorithm, fmu="native"):
+    """The test rig with FMUs by instance, other parts of the given kind."""
+    system, folder = load_system("test_rig")
+    for part in system.parts:
+        if part.component in fmus:
+            system = system.with_fmu(part.name, fmus[part.component])
+    scene = load_scene(folder, None)
+    return herringbone.run(
+        system, scene=scene, algorithm=algorithm, fmu=fmu, start="ramp", step=4e-5, t_end=8e-3,
+        record_step=4e-5,
+    )  # fmt: skip
+
+
+def assert_equal(result, expected):
+    assert np.ptp(expected.data[GEAR]) > 1.0  # [N]
+    assert list(result.data) == list(expected.data)
+    assert result.units == expected.units
+    np.testing.assert_array_equal(result.data.to_numpy(), expected.data.to_numpy())
+
+
+@pytest.mark.parametrize("algorithm", ["jacobi:order=0", "gauss_seidel:order=1", "li:degree=3"])
+def test_fmi3_gives_the_bits_of_fmi2(algorithm, native_fmus, fmi3_fmus):
+    """Held inputs, nodes inside the step, and steps repeated from saved states."""
+    assert_equal(run(fmi3_fmus, algorithm), run(native_fmus, algorithm))
+
+
+def test_mixed_system_gives_the_same_bits(native_fmus, fmi3_fmus):
+    mixed = {"gear_mesh": fmi3_fmus["gear_mesh"], "modal_housing": native_fmus["modal_housing"]}
+    assert_equal(run(mixed, "li:degree=3", "in-process"), run(native_fmus, "li:degree=3"))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_is_found_wrong(name, fmi3_fmus):
+    assert check_fmu(fmi3_fmus[name]) == []
+
+
+def test_variable_without_unit_is_found(fmi3_fmus, tmp_path):
+    file = tmp_path / "bare.fmu"
+    with zipfile.ZipFile(fmi3_fmus["load_motor"]) as good, zipfile.ZipFile(file, "w") as bare:
+        for name in good.namelist():
+            data = good.read(name)
+            if name == "modelDescription.xml":
+                data = data.replace(b'unit="N.m"', b"", 1)
+            bare.writestr(name, data)
+    (problem,) = check_fmu(file)
+    assert problem.endswith("a Float64 without unit")
+
+
+def test_housing_holds_the_contract(fmi3_fmus, capsys):
+    assert cli.main(["check", str(fmi3_fmus["modal_housing"]), "--as", "housing"]) == 0
+    assert "all tests hold" in capsys.readouterr().out
+
+
+def test_refused_values(fmi3_fmus):
+    part = open_fmu("motor", fmi3_fmus["drive_motor"])
+    try:
+        with pytest.raises(ParameterError, match=r"motor.inertia = -1.0: .*inertia = -1 kg\.m2"):
+            part.set("inertia", -1.0)
+            part.enter_initialization(0.0, 1.0)
+        with pytest.raises(ParameterError, match=r"motor.inertia = 'x': it takes a Float64"):
+            part.set("inertia", "x")
+        with pytest.raises(ParameterError, match=r"has no variable 'mass'"):
+            part.set("mass", 1.0)
+    finally:
+        part.close()
