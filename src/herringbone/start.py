@@ -22,7 +22,10 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
     system = system.with_values(scene.values)
     notes: tuple[str, ...] = ()
     start = scene.start
-    if start is Start.EQUILIBRIUM and system.foreign_parts:
+    if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
+        notes = ("all parts are foreign; the run starts with the values that they declare",)
+        start = Start.REST
+    elif start is Start.EQUILIBRIUM and system.foreign_parts:
         names = ", ".join(system.foreign_parts)
         notes = (
             f"{names}: foreign, so the equilibrium is not known; the load rises from zero over "

@@ -24,7 +24,7 @@ def run(fmus, algorithm, fmu="native"):
             system = system.with_fmu(part.name, fmus[part.component])
     scene = load_scene(folder, None)
     return herringbone.run(
-        system, scene=scene, algorithm=algorithm, fmu=fmu, start="ramp", step=4e-5, t_end=8e-3,
+        system, scene=scene, algorithm=algorithm, fmu=fmu, start="rest", step=4e-5, t_end=8e-3,
         record_step=4e-5,
     )  # fmt: skip
 

@@ -19,6 +19,7 @@ _REFERENCES, _REALS, _FLAG = POINTER(c_uint32), POINTER(c_double), POINTER(c_boo
 FLOAT64 = CFUNCTYPE(c_int, c_void_p, _REFERENCES, c_size_t, _REALS, c_size_t)
 STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int, _FLAG, _FLAG, _FLAG, _REALS)
 EXCHANGE_2 = CFUNCTYPE(c_int, c_void_p, _REFERENCES, c_size_t, _REALS)
+RESTORE = CFUNCTYPE(c_int, c_void_p, c_void_p)
 STEP_2 = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)
 
 
@@ -29,20 +30,22 @@ class Fmi3:
         self.values = {7: [1.0], 9: [2.0, 3.0, 4.0], 4: [5.0]}
         self.calls, self.steps = [], []
         self.step_result = (OK, False, False)
-        self.functions = FLOAT64(self.set), FLOAT64(self.get), STEP(self.step)
+        self.functions = (
+            FLOAT64(self.set), FLOAT64(self.get), STEP(self.step), RESTORE(self.restore),
+        )  # fmt: skip
         rows = [(7, 0, 1, 0), *[(9, 1, 3, 0)] * 3, (4, 4, 1, 0)]
         self.arrays = (
             np.array(rows, fmi3_calls.ELEMENT), np.array([1.0, 2.0, 3.0, 4.0, 5.0]),
-            np.zeros(5, np.uint32), np.zeros(5),
+            np.zeros(5, np.uint32), np.zeros(5), np.array([B1], np.uint32),
         )  # fmt: skip
         self.memory = np.zeros(1, fmi3_calls.MEMORY)
-        self.memory["count"], self.memory["instance"] = 5, 42
+        self.memory["count"], self.memory["instance"], self.memory["array_count"] = 5, 42, 1
         for place, function in zip(
-            ("set_float64", "get_float64", "do_step"), self.functions, strict=True
+            ("set_float64", "get_float64", "do_step", "set_state"), self.functions, strict=True
         ):
             self.memory[place] = cast(function, c_void_p).value
         for place, array in zip(
-            ("elements", "values", "references", "packed"), self.arrays, strict=True
+            ("elements", "values", "references", "packed", "arrays"), self.arrays, strict=True
         ):
             self.memory[place] = array.ctypes.data
 
@@ -73,6 +76,11 @@ class Fmi3:
         reached[0] = time
         return status
 
+    def restore(self, instance, state):
+        assert (instance, state) == (42, 77)
+        self.values[9] = [6.0, 7.0, 8.0]
+        return OK
+
     def exchange(self, function, elements, values):
         count = len(elements)
         given = (c_double * count)(*values)
@@ -95,6 +103,14 @@ def test_elements_are_got_in_the_order_asked_for():
     assert part.calls == [[9, 4]]
     part.exchange(fmi3_calls.set_real, [B1], [0.0])
     assert part.values[9] == [0.0, -3.0, -4.0]
+
+
+def test_array_of_a_restored_state_is_kept_but_for_what_is_set():
+    part = Fmi3()
+    part.exchange(fmi3_calls.set_real, [B1], [20.0])
+    assert RESTORE(fmi3_calls.set_state.address)(part.memory.ctypes.data, 77) == OK
+    part.exchange(fmi3_calls.set_real, [B3], [40.0])
+    assert part.values[9] == [6.0, 7.0, 40.0]
 
 
 @pytest.mark.parametrize(

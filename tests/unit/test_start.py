@@ -139,6 +139,15 @@ def test_any_part_may_be_foreign(rig, loaded, tmp_path, foreign):
     assert {f"{foreign}.{name}" for name in values(found, foreign)} <= set(loaded.values)
 
 
+def test_all_parts_foreign_start_as_they_declare(rig, loaded, tmp_path):
+    strange = rig
+    for part in rig.parts:
+        strange = strange.with_fmu(part.name, tmp_path / "strange.fmu")
+    found, notes = started(strange, loaded)
+    assert notes == ("all parts are foreign; the run starts with the values that they declare",)
+    assert found == strange.with_values(loaded.values)
+
+
 def test_foreign_part_at_rest_needs_no_note(rig, loaded, tmp_path):
     system = rig.with_fmu("load_motor", tmp_path / "strange.fmu")
     _, notes = started(system, replace(loaded, start=Start.REST))

@@ -3,7 +3,8 @@
 So the compiled loop treats an FMU 3.0 as it treats an FMU 2.0. The component pointer is the address
 of the part's memory, a record of type `MEMORY`. The loop knows scalars only: it sees the elements
 of an array, which FMI 3.0 sets and gets as a whole. Therefore the part remembers the last value of
-every element, and a call exchanges all elements of the variables that it touches.
+every element, and a call exchanges all elements of the variables that it touches. What is
+remembered of inputs is what the FMU holds: a restored state brings its own back.
 """
 
 import numpy as np
@@ -13,7 +14,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from herringbone.cosim.calls import state_call
-from herringbone.kernels.fmi_calls import DISCARD
+from herringbone.kernels.fmi_calls import DISCARD, OK
 from herringbone.kernels.jit import c_function, kernel
 
 MEMORY = np.dtype(
@@ -30,6 +31,8 @@ MEMORY = np.dtype(
         ("values", np.int64),
         ("references", np.int64),
         ("packed", np.int64),
+        ("arrays", np.int64),
+        ("array_count", np.int64),
         ("calls", np.int64),
         ("ended", np.int64),
     ]
@@ -38,7 +41,8 @@ MEMORY = np.dtype(
 
 instance, and the addresses of its functions; count of elements; addresses of the elements, of their
 last values (float64), and of the value references (uint32) and values (float64) of the current
-call; number of calls; ended: 1 if a step ended early or the part asked to end the simulation.
+call, and of the first elements of the inputs that are arrays (uint32), with their number; number of
+calls; ended: 1 if a step ended early or the part asked to end the simulation.
 """
 ELEMENT = np.dtype(
     [("reference", np.int64), ("first", np.int64), ("size", np.int64), ("call", np.int64)]
@@ -164,6 +168,18 @@ def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
                 total += 1
 
 
+@kernel
+def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
+    """Get the variables of these elements from the FMU; FMI status."""
+    part = memory[0]
+    variables, total = _pack(memory, references, count)
+    status = _exchange(
+        part.get_float64, part.instance, part.references, variables, part.packed, total
+    )
+    _unpack(memory, references, count)
+    return status
+
+
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal."""
@@ -185,11 +201,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
     wanted = carray(values, _UNKNOWN_SIZE)
     part = whole[0]
-    variables, total = _pack(whole, reference, count)
-    status = _exchange(
-        part.get_float64, part.instance, part.references, variables, part.packed, total
-    )
-    _unpack(whole, reference, count)
+    status = _update(whole, reference, count)
     last = carray(_at(part.values), part.count, np.float64)
     for i in range(count):
         wanted[i] = last[reference[i]]
@@ -216,9 +228,14 @@ def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
 
 @c_function(_STATE)
 def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
-    """fmi2SetFMUstate; whoever restores a state sets all inputs anew."""
-    part = carray(memory, 1)[0]
-    return state_call(part.set_state, part.instance, state)
+    """fmi2SetFMUstate; inputs that are arrays are remembered as the state has them."""
+    whole = carray(memory, 1)
+    part = whole[0]
+    status = state_call(part.set_state, part.instance, state)
+    if status == OK and part.array_count > 0:
+        arrays = carray(_at(part.arrays), part.array_count, np.uint32)
+        return _update(whole, arrays, part.array_count)
+    return status
 
 
 @c_function(_STATE)

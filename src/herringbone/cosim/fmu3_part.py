@@ -48,12 +48,16 @@ class Fmu3Part(FmuPart):
         self._values = np.array([_start(e, k) for k, e in enumerate(elements)], np.float64)
         self._references = np.zeros(count, np.uint32)
         self._packed = np.zeros(count)
+        arrays = {e.first for e in elements if e.size > 1 and e.variable.causality == "input"}
+        self._arrays = np.array(sorted(arrays), np.uint32)
         self._memory = np.zeros(1, fmi3_calls.MEMORY)
         self._memory["count"] = count
         self._memory["elements"] = self._elements.ctypes.data
         self._memory["values"] = self._values.ctypes.data
         self._memory["references"] = self._references.ctypes.data
         self._memory["packed"] = self._packed.ctypes.data
+        self._memory["arrays"] = self._arrays.ctypes.data
+        self._memory["array_count"] = self._arrays.size
 
     def _instantiate(self) -> None:
         self.slave.instantiate(
