@@ -5,6 +5,8 @@ of the part's memory, a record of type `MEMORY`. The loop knows scalars only: it
 of an array, which FMI 3.0 sets and gets as a whole. Therefore the part remembers the last value of
 every element, and a call exchanges all elements of the variables that it touches. What is
 remembered of inputs is what the FMU holds: a restored state brings its own back.
+
+The kernels view memory as arrays of given types, which numba compiles with counted references only.
 """
 
 import numpy as np
@@ -15,7 +17,7 @@ from numba.extending import intrinsic
 
 from herringbone.cosim.calls import state_call
 from herringbone.kernels.fmi_calls import DISCARD, OK
-from herringbone.kernels.jit import c_function, kernel
+from herringbone.kernels.jit import allocating, c_function
 
 MEMORY = np.dtype(
     [
@@ -129,7 +131,7 @@ def _step(typing_context, address, instance, time, step, no_set_before):  # noqa
     return signature, generate
 
 
-@kernel
+@allocating
 def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, int]:
     """Variables of these elements and their last values, to the current call; how many of each."""
     part = memory[0]
@@ -151,7 +153,7 @@ def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, 
     return variables, total
 
 
-@kernel
+@allocating
 def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
     """Values of the current call, to the elements of the variables in the order of `_pack`."""
     part = memory[0]
@@ -168,7 +170,7 @@ def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
                 total += 1
 
 
-@kernel
+@allocating
 def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
     """Get the variables of these elements from the FMU; FMI status."""
     part = memory[0]
