@@ -15,7 +15,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.core import FmuError, OutcomeKind
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 
 T_END = 4.0
@@ -194,7 +194,7 @@ class Rig:
         """Errors of bearing forces and seat velocities, and the housing's notes."""
         parts = open_in_process(self.system)
         at = [p.name for p in parts].index("modal_housing")
-        parts[at] = housing = FmuPart("modal_housing", self.housings[transport])
+        parts[at] = housing = open_fmu("modal_housing", self.housings[transport])
         try:
             for name, value in self.system.parts[at].values.items():
                 housing.set(name, value)
