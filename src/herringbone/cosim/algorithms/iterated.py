@@ -230,6 +230,8 @@ class PreparedNodes(PreparedRun):
         """Run macro steps; see `stage_loop.run_stages`."""
         if self._buffers is None:
             self._buffers = self._make_buffers(history)
+            if chunk.start > 0:  # the history holds equidistant points before the first step
+                self._buffers.spacing[0] = 1.0
         self._update_scale()
         done, end = chunk.start, chunk.start + chunk.count
         if self._correction.size == 0 and (status := self._refresh(chunk)) != DONE:
