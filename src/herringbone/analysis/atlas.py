@@ -72,9 +72,7 @@ def atlas(
         ("Two rotors: damping", "damping ratio", DAMPING_RATIOS, damping, True),
         ("Two rotors: mass ratio", "inertia ratio", MASS_RATIOS, ratio, True),
     )
-    # Iterated algorithms take minutes a point on a whole gearbox: they stand in the other panels.
-    cheap = [a for a in algorithms if "rollback" not in a.needs]
-    return tuple(_panel(*panel, algorithms if panel[-1] else cheap, progress) for panel in panels)
+    return tuple(_panel(*panel, algorithms, progress) for panel in panels)
 
 
 def scaled_bearings(system: System, factor: float) -> System:
