@@ -205,7 +205,7 @@ BINARY = f"binaries/{fmpy.platform}/m{fmpy.sharedLibraryExtension}"
     ("names", "before", "version", "said"),
     [
         ((), "", "2.0", f"has no binary for this platform ({BINARY})"),
-        ((BINARY,), "", "1.0", "is an FMI 1.0 unit; FMI 2.0 for co-simulation is needed"),
+        ((BINARY,), "", "1.0", "is an FMI 1.0 unit; FMI 2.0 or 3.0 for co-simulation is needed"),
         ((BINARY, "../out"), "", "2.0", "entry '../out' would be written outside its folder"),
         ((BINARY,), '<!DOCTYPE m [<!ENTITY e "x">]>', "2.0", "declares a DOCTYPE or an entity"),
         ((BINARY,), "", "2.0", "does not instantiate"),

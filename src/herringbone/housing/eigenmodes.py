@@ -64,8 +64,8 @@ class Factorisation:
             )  # fmt: skip
         except RuntimeError as error:
             raise HerringboneError(
-                f"the matrix of {matrix.shape[0]} unknowns is singular: is the structure held? "
-                "A free one takes a negative shift"
+                f"the matrix of {matrix.shape[0]} unknowns is singular: the structure must be "
+                "held, as a housing at its base bolts; modes of a free one need a negative shift"
             ) from error
 
     def solve(self, right_sides: np.ndarray) -> np.ndarray:
