@@ -2,7 +2,8 @@
 
 import logging
 import shutil
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,6 +66,35 @@ def build_fmus(
         ) from error
 
 
+def prepared(
+    system: str | Path, scene: str | Scene | None, values: Mapping[str, float | str] | None
+) -> tuple[System, Scene]:
+    """A system with all values that are to be exported, and the scene that gives them.
+
+    Raises:
+        HerringboneError: system, scene or values are wrong.
+    """
+    structure, folder = load_system(system)
+    chosen = load_scene(folder, scene)
+    chosen = replace(chosen, values={**chosen.values, **(values or {})})
+    structure, notes = started(structure, chosen)
+    for note in notes:
+        _log.warning(note)
+    return structure, chosen
+
+
+@contextmanager
+def written(file: Path) -> Iterator[None]:
+    """A file is written inside; raises ResourceError if that fails."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise ResourceError(
+            f"cannot write {file}: {error.strerror}; choose another file"
+        ) from error
+
+
 def export_ssp(
     system: str | Path,
     file: str | Path,
@@ -99,23 +129,13 @@ def export_ssp(
     file = Path(file)
     if file.suffix != ".ssp":
         raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
-    structure, folder = load_system(system)
-    chosen = load_scene(folder, scene)
-    chosen = replace(chosen, values={**chosen.values, **(values or {})})
-    structure, notes = started(structure, chosen)
-    for note in notes:
-        _log.warning(note)
+    structure, chosen = prepared(system, scene, values)
     _check_texts(structure)
     step = make_grid(chosen.t_end, step, step).step
     names = sorted({str(p.component) for p in structure.parts if not p.foreign})
     fmus = build_native_fmus(names, platforms=platforms) if native else build_python_fmus(names)
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
+    with written(file):
         write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)
-    except OSError as error:
-        raise ResourceError(
-            f"cannot write {file}: {error.strerror}; choose another file"
-        ) from error
     return file
 
 

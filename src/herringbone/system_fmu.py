@@ -3,17 +3,15 @@
 import pickle
 import shutil
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.composite import make_composite
-from herringbone.api import load_scene, load_system
-from herringbone.core import Component, ParameterError, ResourceError
+from herringbone.core import Component, ParameterError
 from herringbone.cosim.system import System
+from herringbone.export import prepared, written
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.scenes import Scene
-from herringbone.start import started
 
 _FACTORY = f"{__name__}:unpacked_component"
 
@@ -48,10 +46,7 @@ def export_fmu(
     file = Path(file)
     if file.suffix != ".fmu":
         raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
-    structure, folder = load_system(system)
-    chosen = load_scene(folder, scene)
-    chosen = replace(chosen, values={**chosen.values, **(values or {})})
-    structure, _ = started(structure, chosen)
+    structure, _ = prepared(system, scene, values)
     composite = make_composite(structure, tuple(outside))
     model = Model(
         composite.component,
@@ -60,13 +55,9 @@ def export_fmu(
         composite.resources,
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        return Path(shutil.copyfile(built, file))
-    except OSError as error:
-        raise ResourceError(
-            f"cannot write {file}: {error.strerror}; choose another file"
-        ) from error
+    with written(file):
+        shutil.copyfile(built, file)
+    return file
 
 
 def unpacked_component(argument: str) -> Component:

@@ -7,7 +7,6 @@ that scheme at the stiffest bearing, about 3e-6 s.
 
 import importlib.util
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -20,6 +19,7 @@ import pytest
 from fmpy.ssp.ssd import read_ssd
 
 from herringbone.api import load_scene, load_system, run
+from herringbone.benchmarks.other_masters import environment
 from herringbone.core import ParameterError
 from herringbone.core.paths import resources_folder
 from herringbone.cosim.algorithms import Jacobi
@@ -74,12 +74,10 @@ def run_in(master, package, file, names, folder):
     request, answer = folder / "request.json", folder / "answer.json"
     wanted = {"step": STEP, "count": COUNT, "every": EVERY, "names": names}
     request.write_text(json.dumps({**wanted, "parameter_set": PARAMETER_SET}), encoding="utf-8")
-    # The wheel of tbb, on which ecos depends, lies where the loader does not look.
-    libraries = f"{Path(sys.prefix) / 'lib'}{os.pathsep}{os.environ.get('LD_LIBRARY_PATH', '')}"
     script = Path(__file__).with_name("run_master.py")
     done = subprocess.run(
         [sys.executable, script, master, file, request, answer],
-        env={**os.environ, "LD_LIBRARY_PATH": libraries},
+        env=environment(),
         capture_output=True,
         text=True,
         check=False,

@@ -20,6 +20,12 @@ PACKAGES = {"ecos": "ecospy", "libcosim": "libcosimpy"}
 """Python package of each master."""
 
 
+def environment() -> dict[str, str]:
+    """Environment for these masters: the wheel of tbb, on which ecos depends, is found."""
+    libraries = f"{Path(sys.prefix) / 'lib'}{os.pathsep}{os.environ.get('LD_LIBRARY_PATH', '')}"
+    return {**os.environ, "LD_LIBRARY_PATH": libraries}
+
+
 def macro_step(master: str, file: Path, step: float, count: int) -> float | None:
     """Time of a macro step [s] in another master; None if its package is not installed.
 
@@ -28,11 +34,9 @@ def macro_step(master: str, file: Path, step: float, count: int) -> float | None
     """
     if importlib.util.find_spec(PACKAGES[master]) is None:
         return None
-    # The wheel of tbb, on which ecos depends, lies where the loader does not look.
-    libraries = f"{Path(sys.prefix) / 'lib'}{os.pathsep}{os.environ.get('LD_LIBRARY_PATH', '')}"
     done = subprocess.run(
         [sys.executable, "-m", __name__, master, str(file), repr(step), str(count)],
-        env={**os.environ, "LD_LIBRARY_PATH": libraries},
+        env=environment(),
         capture_output=True,
         text=True,
         check=False,

@@ -1,5 +1,8 @@
 """Calling C functions by their address from compiled code."""
 
+from collections.abc import Callable
+
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -7,88 +10,48 @@ from numba.extending import intrinsic
 
 from herringbone.kernels.jit import kernel
 
-_INT32, _INT64, _DOUBLE = ir.IntType(32), ir.IntType(64), ir.DoubleType()
+_INT32 = ir.IntType(32)
+_GIVEN = {
+    "address": types.int64, "count": types.int64, "real": types.float64, "flag": types.int32
+}  # fmt: skip
 
 
-@intrinsic
-def _exchange(typing_context, address, component, references, count, values):  # noqa: ANN001, ANN202
-    signature = types.int32(*[types.int64] * 5)
+def c_call(*kinds: str) -> Callable:
+    """An intrinsic (address, *arguments) -> int32 that calls the C function at an address.
 
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        pointer = cgutils.voidptr_t
-        kind = ir.FunctionType(_INT32, [pointer, pointer, _INT64, pointer])
-        target, component, references, count, values = arguments
-        return builder.call(
-            builder.inttoptr(target, kind.as_pointer()),
-            [
-                builder.inttoptr(component, pointer),
-                builder.inttoptr(references, pointer),
-                count,
-                builder.inttoptr(values, pointer),
-            ],
-        )
+    Args:
+        kinds: of the function's arguments: "address" (a pointer, given as int64), "count" (int64),
+            "real" (float64) or "flag" (int32).
+    """
 
-    return signature, generate
+    @intrinsic
+    def call(typing_context, target, arguments):  # noqa: ANN001, ANN202
+        signature = types.int32(types.int64, types.Tuple([_GIVEN[kind] for kind in kinds]))
 
+        def generate(context, builder, signature, given):  # noqa: ANN001, ANN202
+            values = cgutils.unpack_tuple(builder, given[1], len(kinds))
+            passed = [
+                builder.inttoptr(v, cgutils.voidptr_t) if kind == "address" else v
+                for kind, v in zip(kinds, values, strict=True)
+            ]
+            function = ir.FunctionType(_INT32, [v.type for v in passed])
+            return builder.call(builder.inttoptr(given[0], function.as_pointer()), passed)
 
-@intrinsic
-def _derivatives(typing_context, address, component, references, count, orders, values):  # noqa: ANN001, ANN202
-    signature = types.int32(*[types.int64] * 6)
+        return signature, generate
 
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        pointer = cgutils.voidptr_t
-        kind = ir.FunctionType(_INT32, [pointer, pointer, _INT64, pointer, pointer])
-        target, component, references, count, orders, values = arguments
-        return builder.call(
-            builder.inttoptr(target, kind.as_pointer()),
-            [
-                builder.inttoptr(component, pointer),
-                builder.inttoptr(references, pointer),
-                count,
-                builder.inttoptr(orders, pointer),
-                builder.inttoptr(values, pointer),
-            ],
-        )
-
-    return signature, generate
+    return call
 
 
-@intrinsic
-def _step(typing_context, address, component, time, step):  # noqa: ANN001, ANN202
-    signature = types.int32(types.int64, types.int64, types.float64, types.float64)
-
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        pointer = cgutils.voidptr_t
-        kind = ir.FunctionType(_INT32, [pointer, _DOUBLE, _DOUBLE, _INT32])
-        target, component, time, step = arguments
-        return builder.call(
-            builder.inttoptr(target, kind.as_pointer()),
-            [builder.inttoptr(component, pointer), time, step, _INT32(1)],
-        )
-
-    return signature, generate
-
-
-@intrinsic
-def _state(typing_context, address, component, state):  # noqa: ANN001, ANN202
-    signature = types.int32(types.int64, types.int64, types.int64)
-
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        pointer = cgutils.voidptr_t
-        kind = ir.FunctionType(_INT32, [pointer, pointer])
-        target, component, state = arguments
-        return builder.call(
-            builder.inttoptr(target, kind.as_pointer()),
-            [builder.inttoptr(component, pointer), builder.inttoptr(state, pointer)],
-        )
-
-    return signature, generate
+_exchange = c_call("address", "address", "count", "address")
+_derivatives = c_call("address", "address", "count", "address", "address")
+_step = c_call("address", "real", "real", "flag")
+_state = c_call("address", "address")
 
 
 @kernel
 def exchange_reals(address: int, component: int, references: int, count: int, values: int) -> int:
     """fmi2SetReal or fmi2GetReal at `address`; the others are addresses too. FMI status."""
-    return _exchange(address, component, references, count, values)
+    return _exchange(address, (component, references, count, values))
 
 
 @kernel
@@ -96,16 +59,16 @@ def exchange_derivatives(
     address: int, component: int, references: int, count: int, orders: int, values: int
 ) -> int:
     """fmi2SetRealInputDerivatives or fmi2GetRealOutputDerivatives at `address`. FMI status."""
-    return _derivatives(address, component, references, count, orders, values)
+    return _derivatives(address, (component, references, count, orders, values))
 
 
 @kernel
 def do_step(address: int, component: int, time: float, step: float) -> int:
     """fmi2DoStep at `address`, with noSetFMUStatePriorToCurrentPoint true. FMI status."""
-    return _step(address, component, time, step)
+    return _step(address, (component, time, step, np.int32(1)))
 
 
 @kernel
 def state_call(address: int, component: int, state: int) -> int:
     """Get or free an FMU state (`state`: address of its handle), or set it (the handle). Status."""
-    return _state(address, component, state)
+    return _state(address, (component, state))

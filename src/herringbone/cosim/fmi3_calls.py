@@ -15,7 +15,7 @@ from numba import carray, from_dtype, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from herringbone.cosim.calls import state_call
+from herringbone.cosim.calls import c_call, state_call
 from herringbone.kernels.fmi_calls import DISCARD, OK
 from herringbone.kernels.jit import allocating, c_function
 
@@ -60,9 +60,7 @@ _STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
 _STATE = types.int32(_MEMORY, types.int64)
 _UNKNOWN_SIZE = 1  # bounds are not checked
 _ENDED = 256  # added to the status of a step
-_INT32, _INT64, _DOUBLE, _BOOLEAN = (
-    ir.IntType(32), ir.IntType(64), ir.DoubleType(), ir.IntType(8)
-)  # fmt: skip
+_INT32, _DOUBLE, _BOOLEAN = ir.IntType(32), ir.DoubleType(), ir.IntType(8)
 
 
 @intrinsic
@@ -75,27 +73,8 @@ def _at(typing_context, address):  # noqa: ANN001, ANN202
     return types.voidptr(types.int64), generate
 
 
-@intrinsic
-def _exchange(typing_context, address, instance, references, count, values, value_count):  # noqa: ANN001, ANN202
-    """fmi3SetFloat64 or fmi3GetFloat64 at `address`."""
-    signature = types.int32(*[types.int64] * 6)
-
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        pointer = cgutils.voidptr_t
-        kind = ir.FunctionType(_INT32, [pointer, pointer, _INT64, pointer, _INT64])
-        target, instance, references, count, values, value_count = arguments
-        return builder.call(
-            builder.inttoptr(target, kind.as_pointer()),
-            [
-                builder.inttoptr(instance, pointer),
-                builder.inttoptr(references, pointer),
-                count,
-                builder.inttoptr(values, pointer),
-                value_count,
-            ],
-        )
-
-    return signature, generate
+_exchange = c_call("address", "address", "count", "address", "count")
+"""fmi3SetFloat64 or fmi3GetFloat64."""
 
 
 @intrinsic
@@ -176,7 +155,7 @@ def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
     part = memory[0]
     variables, total = _pack(memory, references, count)
     status = _exchange(
-        part.get_float64, part.instance, part.references, variables, part.packed, total
+        part.get_float64, (part.instance, part.references, variables, part.packed, total)
     )
     _unpack(memory, references, count)
     return status
@@ -193,7 +172,7 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
         last[reference[i]] = given[i]
     variables, total = _pack(whole, reference, count)
     return _exchange(
-        part.set_float64, part.instance, part.references, variables, part.packed, total
+        part.set_float64, (part.instance, part.references, variables, part.packed, total)
     )
 
 
