@@ -36,7 +36,7 @@ from herringbone.cosim.node_pass import begin, restore
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.step_error import ORDER, step_error, update_scale
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined, kernel
 
 STEP_LIMIT = 5
 """Status: the smallest step still errs too much."""
@@ -51,7 +51,7 @@ MEMORY = 0.65
 _SAFETY, _LEAST, _MOST = 0.7, 0.3, 1.6
 
 
-@kernel
+@inlined
 def _next_rung(adaptive: Adaptive, rung: int, error: float, order: int) -> int:
     """The largest rung up to the step at which the error would be within the tolerance.
 
@@ -73,7 +73,7 @@ def _next_rung(adaptive: Adaptive, rung: int, error: float, order: int) -> int:
     return found
 
 
-@kernel
+@inlined
 def _take_back(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
     """Parts and history as before the step; -1, or the part that refused."""
     history = buffers.history
@@ -83,7 +83,7 @@ def _take_back(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
     return restore(plan, nodes, buffers, True)
 
 
-@kernel
+@inlined
 def _record(plan: Plan, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, done: int) -> int:
     """A row, if it is time for one; -1, or the part whose outputs cannot be read."""
     row, t = adaptive.state[ROWS], chunk.t0 + done * chunk.h
@@ -97,7 +97,7 @@ def _record(plan: Plan, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, d
     return -1
 
 
-@kernel
+@inlined
 def _accept(
     nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, corrections: int, h: float
 ) -> None:
@@ -112,7 +112,7 @@ def _accept(
         adaptive.ready[rung] = NEEDED
 
 
-@kernel
+@inlined
 def _try(
     plan: Plan,
     nodes: NodePlan,
@@ -140,7 +140,7 @@ def _try(
     return -1, error
 
 
-@kernel
+@inlined
 def _complete(
     plan: Plan, nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, chunk: Chunk, done: int,
     corrections: int, error: float,
@@ -165,7 +165,7 @@ def _complete(
     return STEP_LIMIT if state[MISSED_NOW] == PATIENCE else DONE, ticks, -1
 
 
-@kernel
+@inlined
 def _macro_step(
     plan: Plan, nodes: NodePlan, buffers: Buffers, control: Control, adaptive: Adaptive,
     chunk: Chunk, done: int,

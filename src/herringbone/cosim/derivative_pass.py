@@ -4,12 +4,12 @@ import numpy as np
 
 from herringbone.cosim.calls import exchange_derivatives
 from herringbone.cosim.plan import Plan
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined
 
 _REAL, _REFERENCE, _ORDER = 8, 4, 4
 
 
-@kernel
+@inlined
 def write_input(plan: Plan, p: int, i: int, h: float) -> None:
     """Value and derivatives at the start of the step, of a part's i-th input from its samples."""
     signal = plan.derivatives
@@ -26,7 +26,7 @@ def write_input(plan: Plan, p: int, i: int, h: float) -> None:
             signal.value[signal.first[p] + (k - 1) * count + i] = total * scale
 
 
-@kernel
+@inlined
 def set_derivatives(plan: Plan, p: int, order: int) -> int:
     """Set the derivatives of a part's inputs up to an order; FMI status."""
     signal, at = plan.derivatives, plan.derivatives.first[p]
@@ -40,7 +40,7 @@ def set_derivatives(plan: Plan, p: int, order: int) -> int:
     )
 
 
-@kernel
+@inlined
 def get_rates(plan: Plan, p: int, rates: np.ndarray) -> int:
     """Get the rates of a part's connected outputs into `rates` (outputs,); FMI status."""
     first = plan.output_first[p]
@@ -54,7 +54,7 @@ def get_rates(plan: Plan, p: int, rates: np.ndarray) -> int:
     )
 
 
-@kernel
+@inlined
 def cubic(start: float, end: float, start_rise: float, end_rise: float, c: float) -> float:
     """Hermite polynomial at c in [0, 1] by values and rates (per step) at its ends.
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined
 
 STEPS, INACCURATE_FOR, UNSTABLE_AT, INACCURATE_AT = range(4)
 """Places in `EnergyMonitor.counts`: macro steps seen; steps in a row beyond the bound of
@@ -97,7 +97,7 @@ NOTHING_WATCHED = energy_monitor(_NONE, _NONE, _NONE, np.zeros((0, 0)), 1)
 """A monitor of no pairs."""
 
 
-@kernel
+@inlined
 def _add(monitor: EnergyMonitor, history: np.ndarray, known: int, h: float, row: int) -> None:
     """Energy that the coupling adds at each pair in one macro step, into the sums."""
     for i in range(monitor.force.size):
@@ -114,7 +114,7 @@ def _add(monitor: EnergyMonitor, history: np.ndarray, known: int, h: float, row:
         monitor.added[row, i] = added
 
 
-@kernel
+@inlined
 def _taken(monitor: EnergyMonitor, history: np.ndarray, h: float) -> float:
     """Energy that the elements' dampers take in one macro step [J]."""
     taken = 0.0
@@ -125,7 +125,7 @@ def _taken(monitor: EnergyMonitor, history: np.ndarray, h: float) -> float:
     return taken
 
 
-@kernel
+@inlined
 def _judge(monitor: EnergyMonitor) -> None:
     """Set the flags."""
     counts, count = monitor.counts, monitor.force.size
@@ -150,7 +150,7 @@ def _judge(monitor: EnergyMonitor) -> None:
         counts[INACCURATE_AT] = counts[STEPS]
 
 
-@kernel
+@inlined
 def watch_energy(monitor: EnergyMonitor, history: np.ndarray, known: int, h: float) -> None:
     """Account for one macro step.
 

@@ -11,7 +11,7 @@ import numpy as np
 from herringbone.cosim.calls import do_step, exchange_reals
 from herringbone.cosim.derivative_pass import set_derivatives, write_input
 from herringbone.cosim.plan import Chunk, Plan
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined
 
 DONE, PART_FAILED, NOT_FINITE, COUPLING_FAILED = 0, 1, 2, 4
 """Status of a chunk of macro steps."""
@@ -22,7 +22,7 @@ LAST_GOOD = 1
 _REAL, _REFERENCE = 8, 4
 
 
-@kernel
+@inlined
 def signal(history: np.ndarray, index: int, fresh: int, order: int, known: int, c: float) -> float:
     """Value of a signal at c in [0, 1] of the macro step.
 
@@ -48,7 +48,7 @@ def signal(history: np.ndarray, index: int, fresh: int, order: int, known: int, 
     return value
 
 
-@kernel
+@inlined
 def exchange(
     plan: Plan, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
     values: np.ndarray, at: int,
@@ -63,7 +63,7 @@ def exchange(
     )
 
 
-@kernel
+@inlined
 def start_step(history: np.ndarray) -> None:
     """Row 0 of the history becomes row 1, and so on: a macro step begins."""
     for row in range(history.shape[0] - 1, 0, -1):
@@ -71,13 +71,13 @@ def start_step(history: np.ndarray) -> None:
             history[row, i] = history[row - 1, i]
 
 
-@kernel
+@inlined
 def record_row(chunk: Chunk, n: int) -> int:
     """Row of the records that macro step n fills, or -1."""
     return (n + 1) // chunk.every if (n + 1) % chunk.every == 0 else -1
 
 
-@kernel
+@inlined
 def _set_polynomials(
     plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float
 ) -> int:
@@ -94,7 +94,7 @@ def _set_polynomials(
     return max(status, set_derivatives(plan, p, plan.derivatives.order[p]))
 
 
-@kernel
+@inlined
 def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float) -> int:
     """Set all connected inputs of a part, at nodes or by derivatives if it has them; FMI status."""
     first, end = plan.input_first[p], plan.input_first[p + 1]
@@ -117,7 +117,7 @@ def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int, 
     )
 
 
-@kernel
+@inlined
 def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, row: int) -> int:
     """Get all connected outputs of a part into row 0 of the history; FMI status.
 
@@ -144,7 +144,7 @@ def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, ro
     return status
 
 
-@kernel
+@inlined
 def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> int:
     """Get the outputs of all parts, recorded in a row; FMI status."""
     for p in range(plan.component.size):
@@ -154,7 +154,7 @@ def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> i
     return 0
 
 
-@kernel
+@inlined
 def step_stage(
     plan: Plan,
     history: np.ndarray,
@@ -181,7 +181,7 @@ def step_stage(
     return -1
 
 
-@kernel
+@inlined
 def not_finite(plan: Plan, history: np.ndarray) -> int:
     """Part whose newest outputs are NaN, infinite or beyond BOUND, or -1."""
     for p in range(plan.component.size):

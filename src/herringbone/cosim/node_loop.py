@@ -22,13 +22,13 @@ from herringbone.cosim.node_pass import begin, one_pass, restore
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.slow_loop import finish_slow, trace_slow
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined, kernel
 
 REFRESH = 3
 """Status: the correction no longer contracts; a new Jacobian is wanted."""
 
 
-@kernel
+@inlined
 def residual(buffers: Buffers) -> float:
     """Largest residual, in units of the scale; infinite if it is not finite."""
     largest = 0.0
@@ -41,7 +41,7 @@ def residual(buffers: Buffers) -> float:
     return largest
 
 
-@kernel
+@inlined
 def correct(buffers: Buffers, correction: np.ndarray) -> None:
     """U += C (G - U)."""
     count = buffers.scale.size
@@ -53,7 +53,7 @@ def correct(buffers: Buffers, correction: np.ndarray) -> None:
         buffers.trial[row // count, row % count] += total
 
 
-@kernel
+@inlined
 def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
     """The values at the end of the step become the newest of the history, rates those before."""
     for i in range(buffers.rates.shape[1]):
@@ -63,7 +63,7 @@ def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
             buffers.history[0, i] = buffers.nodes[nodes.degree, i]
 
 
-@kernel
+@inlined
 def converge(
     plan: Plan,
     nodes: NodePlan,

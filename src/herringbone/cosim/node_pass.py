@@ -13,10 +13,10 @@ from herringbone.cosim.loop import LAST_GOOD, exchange, start_step
 from herringbone.cosim.node_plan import Buffers, NodePlan
 from herringbone.cosim.plan import Plan
 from herringbone.cosim.slow_loop import predict_slow_nodes
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined
 
 
-@kernel
+@inlined
 def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
     """Save the state of all parts that can; -1, or the part that refused."""
     at = buffers.states.ctypes.data
@@ -31,7 +31,7 @@ def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
     return -1
 
 
-@kernel
+@inlined
 def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int:
     """Restore the state of bodies and elements, and of sources; -1, or the part that refused."""
     buffers.counts[0] += 1
@@ -46,7 +46,7 @@ def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int
     return -1
 
 
-@kernel
+@inlined
 def _set_from_nodes(plan: Plan, buffers: Buffers, p: int, h: float) -> int:
     """Set a part's inputs from the nodes: all of them, or the polynomial that the part takes."""
     first, end = plan.input_first[p], plan.input_first[p + 1]
@@ -69,7 +69,7 @@ def _set_from_nodes(plan: Plan, buffers: Buffers, p: int, h: float) -> int:
     return max(status, set_derivatives(plan, p, order)) if order > 0 else status
 
 
-@kernel
+@inlined
 def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: float) -> int:
     """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value.
 
@@ -110,7 +110,7 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: floa
     return status
 
 
-@kernel
+@inlined
 def _step_group(
     plan: Plan, nodes: NodePlan, buffers: Buffers, group: np.ndarray, t: float, h: float
 ) -> int:
@@ -130,7 +130,7 @@ def _step_group(
     return -1
 
 
-@kernel
+@inlined
 def one_pass(plan: Plan, nodes: NodePlan, buffers: Buffers, t: float, h: float) -> int:
     """Step bodies and elements on the trial values; writes the residual. -1, or who failed."""
     for k in range(nodes.degree):
@@ -150,7 +150,7 @@ def one_pass(plan: Plan, nodes: NodePlan, buffers: Buffers, t: float, h: float) 
     return -1
 
 
-@kernel
+@inlined
 def _predicted(buffers: Buffers, i: int, order: int, c: float) -> float:
     """Output i at c of the macro step: extrapolation of its values at communication points."""
     history, past = buffers.history, buffers.spacing
@@ -164,7 +164,7 @@ def _predicted(buffers: Buffers, i: int, order: int, c: float) -> float:
     return value
 
 
-@kernel
+@inlined
 def begin(
     plan: Plan,
     nodes: NodePlan,

@@ -20,7 +20,7 @@ from herringbone.cosim.loop import (
     step_stage,
 )
 from herringbone.cosim.plan import Chunk, Plan
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined, kernel
 
 NODES = 3
 """Degree at which elements take motions and give forces."""
@@ -50,7 +50,7 @@ class Prediction(NamedTuple):
     values: np.ndarray
 
 
-@kernel
+@inlined
 def predicted(
     prediction: Prediction, history: np.ndarray, index: int, known: int, c: float, h: float
 ) -> float:
@@ -64,7 +64,7 @@ def predicted(
     return value
 
 
-@kernel
+@inlined
 def _step_element(
     plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, t: float, h: float
 ) -> int:
@@ -97,7 +97,7 @@ def _step_element(
     return status
 
 
-@kernel
+@inlined
 def _body_input(
     plan: Plan, prediction: Prediction, history: np.ndarray, i: int, known: int, c: float
 ) -> float:
@@ -113,7 +113,7 @@ def _body_input(
     return w1 * f[1, source] + w2 * f[2, source] + w3 * f[3, source]
 
 
-@kernel
+@inlined
 def _set_body(
     plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, h: float
 ) -> int:
@@ -139,7 +139,7 @@ def _set_body(
     return max(status, set_derivatives(plan, p, order)) if order > 0 else status
 
 
-@kernel
+@inlined
 def _step_parts(
     plan: Plan, prediction: Prediction, history: np.ndarray, known: int, t: float, h: float
 ) -> int:
@@ -156,7 +156,7 @@ def _step_parts(
     return -1
 
 
-@kernel
+@inlined
 def _read_parts(
     plan: Plan, prediction: Prediction, history: np.ndarray, records: np.ndarray, row: int
 ) -> int:

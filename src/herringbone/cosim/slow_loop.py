@@ -6,10 +6,10 @@ from herringbone.cosim.calls import do_step
 from herringbone.cosim.loop import LAST_GOOD, exchange, get_outputs, record_row
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.slow_plan import Slow
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import inlined
 
 
-@kernel
+@inlined
 def slow_motion(slow: Slow, i: int, n: int, c: float, h: float) -> float:
     """Slow output i (of `slow.output`) at c of macro step n: by Taylor, from its rates.
 
@@ -33,7 +33,7 @@ def slow_motion(slow: Slow, i: int, n: int, c: float, h: float) -> float:
     return value
 
 
-@kernel
+@inlined
 def _remember(slow: Slow, k: int, values: np.ndarray) -> None:
     """A slow part has reached a communication point with these outputs."""
     for i in range(slow.output.size):
@@ -42,7 +42,7 @@ def _remember(slow: Slow, k: int, values: np.ndarray) -> None:
             slow.past[0, i] = values[slow.output[i]]
 
 
-@kernel
+@inlined
 def _sample(plan: Plan, k: int, sample: int, values: np.ndarray) -> None:
     """The present inputs of slow part k become a sample of its trace."""
     p = plan.slow.parts[k]
@@ -52,7 +52,7 @@ def _sample(plan: Plan, k: int, sample: int, values: np.ndarray) -> None:
         plan.slow.trace[at + i] = values[plan.input_source[first + i]]
 
 
-@kernel
+@inlined
 def start_slow(plan: Plan, values: np.ndarray) -> None:
     """The run starts with these outputs."""
     for k in range(plan.slow.parts.size):
@@ -61,7 +61,7 @@ def start_slow(plan: Plan, values: np.ndarray) -> None:
         _sample(plan, k, 0, values)
 
 
-@kernel
+@inlined
 def predict_slow(plan: Plan, history: np.ndarray, n: int, h: float) -> None:
     """Outputs of slow parts at the end of macro step n."""
     if n == 0:
@@ -70,7 +70,7 @@ def predict_slow(plan: Plan, history: np.ndarray, n: int, h: float) -> None:
         history[0, plan.slow.output[i]] = slow_motion(plan.slow, i, n, 1.0, h)
 
 
-@kernel
+@inlined
 def predict_slow_nodes(plan: Plan, nodes: np.ndarray, start: np.ndarray, n: int, h: float) -> None:
     """Outputs of slow parts at the nodes of macro step n; the run starts with `start`."""
     if n == 0:
@@ -82,14 +82,14 @@ def predict_slow_nodes(plan: Plan, nodes: np.ndarray, start: np.ndarray, n: int,
             nodes[node, plan.slow.output[i]] = value
 
 
-@kernel
+@inlined
 def trace_slow(plan: Plan, values: np.ndarray, n: int, node: int, per: int) -> None:
     """Collect the inputs of slow parts at node / per of macro step n."""
     for k in range(plan.slow.parts.size):
         _sample(plan, k, (n % plan.slow.multiple[k]) * per + node, values)
 
 
-@kernel
+@inlined
 def _set_fitted(plan: Plan, k: int) -> int:
     """Set the inputs of slow part k to the polynomial nearest to its trace; FMI status."""
     slow = plan.slow
@@ -110,7 +110,7 @@ def _set_fitted(plan: Plan, k: int) -> int:
     return exchange(plan, p, plan.set_real, plan.set_reference, start, total, plan.set_value, start)
 
 
-@kernel
+@inlined
 def finish_slow(plan: Plan, history: np.ndarray, chunk: Chunk, n: int) -> int:
     """Step the slow parts that macro step n brings to their communication point; -1, or who failed.
 

@@ -42,6 +42,16 @@ def kernel(function: Callable[P, T]) -> Callable[P, T]:
         return numba.njit(**_OPTIONS, cache=True, _nrt=False)(function)
 
 
+def inlined(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a part of a compiled loop: its callers contain its code.
+
+    A tuple of arrays is passed by copying every field of every array; with dozens of arrays that
+    takes longer than most functions.
+    """
+    with _kernel_cache():
+        return numba.njit(**_OPTIONS, cache=True, _nrt=False, forceinline=True)(function)
+
+
 def allocating(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for a function that makes arrays of its own."""
     with _kernel_cache():
