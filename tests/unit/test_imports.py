@@ -52,6 +52,7 @@ TOP = {
     "housing_command",
     "housing_data_command",
     "housing_check",
+    "loading",
     "output",
 }
 """Nothing below may import these; they may import everything."""

@@ -14,7 +14,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.analysis.work_precision import REFUSED, Point
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.part import Part
+from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.plan import record_names
 from herringbone.cosim.simulation import Grid, Recording, make_grid, simulate
@@ -142,12 +142,8 @@ def run_points(
 def _simulated(
     system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid
 ) -> Recording:
-    parts = open_parts()
-    try:
+    with closing_all(open_parts()) as parts:
         return simulate(system, parts, algorithm, grid)
-    finally:
-        for part in parts:
-            part.close()
 
 
 def _warm(system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid) -> None:

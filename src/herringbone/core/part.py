@@ -1,6 +1,7 @@
 """What a co-simulation master needs to know of a participant, be it an FMU or in-process."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -89,6 +90,16 @@ class Part(Protocol):
 
     def close(self) -> None:
         """Terminate and free the part."""
+
+
+@contextmanager
+def closing_all(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
+    """Close all parts in the end, as `contextlib.closing` does with one."""
+    try:
+        yield parts
+    finally:
+        for part in parts:
+            part.close()
 
 
 def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:
