@@ -1,12 +1,13 @@
 """The network as flat arrays, for the compiled loop."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
+from herringbone.cosim.connection import Connection
 from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
 from herringbone.cosim.energy_loop import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.network import Network
@@ -138,6 +139,40 @@ def connected_outputs(
     return outputs
 
 
+def _at_end(network: Network, parallel: bool) -> np.ndarray:
+    """Which parts are pure elements that see the end of the macro step."""
+    return np.array(
+        [
+            p in network.elements and p not in network.mixed and not parallel
+            for p in range(len(network.parts))
+        ],
+        np.int64,
+    )
+
+
+def _fresh(
+    network: Network, inputs: Sequence[Sequence[Connection]], stages: Sequence[Sequence[int]]
+) -> np.ndarray:
+    """Which inputs see outputs of the same macro step."""
+    position = dict.fromkeys(network.slow, -1)
+    position |= {p: s for s, stage in enumerate(stages) for p in stage}
+    return np.array(
+        [
+            p in network.slow or position[c.source] < position[p]
+            for p, row in enumerate(inputs)
+            for c in row
+        ],
+        np.int64,
+    )
+
+
+def _places(
+    wanted: Iterable[tuple[int, str]], names: Sequence[Sequence[str]], first: np.ndarray
+) -> np.ndarray:
+    """Places of (part, name) among the names of all parts."""
+    return np.array([first[p] + names[p].index(name) for p, name in wanted], dtype=np.int64)
+
+
 def build_plan(
     network: Network,
     stages: Sequence[Sequence[int]],
@@ -162,16 +197,16 @@ def build_plan(
     parts = network.parts
     inputs = [network.inputs(p) for p in range(len(parts))]
     outputs = connected_outputs(network, extra)
-    output_first = _offsets([len(o) for o in outputs])
-    set_references = [
-        _set_references(part, [c.input for c in inputs[p]], degree[p])
-        for p, part in enumerate(parts)
-    ]
     records = record_names(network)
-    record_first = _offsets([len(r) for r in records])
-    set_first = _offsets([len(r) for r in set_references])
-    position = dict.fromkeys(network.slow, -1)
-    position |= {p: s for s, stage in enumerate(stages) for p in stage}
+    set_references = [
+        _set_references(part, [c.input for c in row], nodes)
+        for part, row, nodes in zip(parts, inputs, degree, strict=True)
+    ]
+    set_first, output_first, record_first = (
+        _offsets([len(row) for row in rows]) for rows in (set_references, outputs, records)
+    )
+    sources = [(c.source, c.output) for row in inputs for c in row]
+    read = [(p, name) for p, row in enumerate(outputs) for name in row]
     addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
     return Plan(
         component=addresses[:, 0].copy(),
@@ -179,38 +214,19 @@ def build_plan(
         get_real=addresses[:, 2].copy(),
         do_step=addresses[:, 3].copy(),
         degree=np.array(degree, dtype=np.int64),
-        at_end=np.array(
-            [
-                p in network.elements and p not in network.mixed and not parallel
-                for p in range(len(parts))
-            ],
-            np.int64,
-        ),
-        input_first=_offsets([len(i) for i in inputs]),
-        input_source=np.array(
-            [output_first[c.source] + outputs[c.source].index(c.output) for i in inputs for c in i],
-            dtype=np.int64,
-        ),
-        input_fresh=np.array(
-            [
-                p in network.slow or position[c.source] < position[p]
-                for p, i in enumerate(inputs)
-                for c in i
-            ],
-            np.int64,
-        ),
+        at_end=_at_end(network, parallel),
+        input_first=_offsets([len(row) for row in inputs]),
+        input_source=_places(sources, outputs, output_first),
+        input_fresh=_fresh(network, inputs, stages),
         set_first=set_first,
         set_reference=_references(set_references),
         set_value=np.zeros(set_first[-1]),
         output_first=output_first,
         output_reference=_named_references(parts, outputs),
-        output_record=np.array(
-            [record_first[p] + records[p].index(n) for p, row in enumerate(outputs) for n in row],
-            dtype=np.int64,
-        ),
+        output_record=_places(read, records, record_first),
         record_first=record_first,
         record_reference=_named_references(parts, records),
-        stage_first=_offsets([len(s) for s in stages]),
+        stage_first=_offsets([len(stage) for stage in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
         slow=lay_out_slow(network, outputs, degree, per),
         derivatives=derivatives or lay_out_derivatives(network, 0),
