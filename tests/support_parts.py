@@ -19,7 +19,8 @@ from herringbone.components.registry import component
 from herringbone.core import Instance, ParameterError
 from herringbone.core.part import Addresses, PartVariable
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.simulation import Recording, make_grid, simulate
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 
 OK, DISCARD, ERROR = 0, 2, 3

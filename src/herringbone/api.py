@@ -18,7 +18,9 @@ from herringbone.cosim.algorithms import (
     with_tolerance,
 )
 from herringbone.cosim.record import Grid
-from herringbone.cosim.simulation import Progress, Recording, make_grid, simulate
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.run import Progress
+from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind

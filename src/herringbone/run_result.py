@@ -10,7 +10,8 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.simulation import Recording, make_grid
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.system import System
 from herringbone.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene

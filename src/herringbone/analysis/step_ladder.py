@@ -17,7 +17,9 @@ from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.plan import record_names
-from herringbone.cosim.simulation import Grid, Recording, make_grid, simulate
+from herringbone.cosim.record import Grid
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import System
 
 STEPS = tuple(us * 1e-6 for us in (1, 2, 4, 5, 8, 10, 16, 20, 25, 40, 50, 80, 100, 125, 160, 200))

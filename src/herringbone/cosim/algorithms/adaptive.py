@@ -19,7 +19,6 @@ from herringbone.cosim.adaptive_plan import (
     WANTED,
     Adaptive,
 )
-from herringbone.cosim.algorithms.base import StepStatistics
 from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
@@ -34,6 +33,7 @@ from herringbone.cosim.node_loop import REFRESH
 from herringbone.cosim.node_plan import Buffers, Control
 from herringbone.cosim.plan import Chunk
 from herringbone.cosim.record import Grid, GrowingRecord
+from herringbone.cosim.recording import StepStatistics
 from herringbone.cosim.step_error import update_scale
 
 RESIDUAL_SHARE = 0.1

@@ -8,7 +8,7 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from herringbone.cosim.derivative_plan import lay_out_derivatives
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import Chunk, Plan, build_plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
+from herringbone.cosim.recording import StepStatistics
 from herringbone.cosim.slow_plan import slow_degrees
 from herringbone.cosim.stage_loop import run_stages
 
@@ -68,21 +69,6 @@ class Algorithm(ABC):
     def __str__(self) -> str:
         options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))  # type: ignore[arg-type]
         return f"{self.name}:{options}" if options else self.name
-
-
-class StepStatistics(NamedTuple):
-    """Macro steps of an adaptive run.
-
-    Attributes:
-        accepted, rejected: how many.
-        shortest, median, longest: of the accepted ones [s].
-    """
-
-    accepted: int
-    rejected: int
-    shortest: float
-    median: float
-    longest: float
 
 
 class PreparedRun(ABC):

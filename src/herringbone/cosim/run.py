@@ -1,0 +1,178 @@
+"""One run: the compiled loop in chunks, how it ends, and the record."""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.cosim.adaptive_loop import STEP_LIMIT
+from herringbone.cosim.algebraic_loop import AlgebraicLoop
+from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.energy import EnergyWatch
+from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
+from herringbone.cosim.network import Network
+from herringbone.cosim.plan import HISTORY, Chunk, record_names
+from herringbone.cosim.record import Grid
+from herringbone.cosim.recording import Recording
+
+CHUNK_SECONDS = 0.05
+"""Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
+
+_PROBLEMS = {
+    COUPLING_FAILED: OutcomeKind.COUPLING_FAILED,
+    STEP_LIMIT: OutcomeKind.STEP_LIMIT,
+}
+Progress = Callable[[float, float], None]
+"""Called with the simulated time reached and its end [s]."""
+
+
+class Run:
+    """State of one run, outside the compiled loop.
+
+    Args:
+        network: initialised parts, and connections.
+        prepared: the network laid out for the algorithm.
+        grid: communication and record points.
+        watch: of the energy.
+        notes: on how signals travel.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        prepared: PreparedRun,
+        grid: Grid,
+        watch: EnergyWatch,
+        notes: Sequence[str],
+    ) -> None:
+        self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
+        self.grid = grid = prepared.grid(grid)
+        names = record_names(network)
+        self.names = tuple(
+            f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
+        )
+        self.units = tuple(
+            part.variables[n].unit or ""
+            for part, ns in zip(network.parts, names, strict=True)
+            for n in ns
+        )
+        self.record = prepared.record(grid, len(self.names))
+        self.history = np.zeros((HISTORY, prepared.plan.output_reference.size))
+        self.loop_notes: tuple[str, ...] = ()
+
+    def go_around(
+        self, loop: AlgebraicLoop, algorithm: str, progress: Progress | None
+    ) -> Recording:
+        """Run with an algebraic loop; an outcome before the first step if it diverges anyway."""
+        growth, what = self.prepared.close_loop(loop), loop.describe()
+        if growth < 1.0:
+            self.loop_notes = (what,)
+            return self.go(progress)
+        get_all(self.prepared.plan, self.history, self.record.values, 0)
+        instead = "" if loop.gain >= 1.0 else "use li, fixed_point or jacobi:order=0; or "
+        message = (
+            f"{what}: with {algorithm} the forces grow {growth:.3g} times per macro step, and no "
+            f"step helps; {instead}{loop.remedy()}"
+        )
+        outcome = Outcome(OutcomeKind.COUPLING_FAILED, 0.0, loop.culprit, message)
+        return self._recording(0, outcome, 0.0)
+
+    def go(self, progress: Progress | None) -> Recording:
+        """Run chunk after chunk."""
+        get_all(self.prepared.plan, self.history, self.record.values, 0)
+        self.history[1:] = self.history[0]
+        done, status, culprit, chunk = 0, DONE, -1, 1
+        self._advance(0, 0)  # compiles the loop, or loads it from the cache
+        begin = time.perf_counter()
+        with InterruptFlag() as flag:
+            while done < self.grid.count and status == DONE and not flag.raised:
+                before, started = done, time.perf_counter()
+                count = min(chunk, self.grid.count - done)
+                status, done, culprit = self._advance(done, count)
+                rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
+                chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
+                if progress:
+                    progress(done * self.grid.step, self.grid.count * self.grid.step)
+        wall = time.perf_counter() - begin
+        outcome = self._outcome(done, status, culprit)
+        return self._recording(done, outcome, wall)
+
+    def _advance(self, start: int, count: int) -> tuple[int, int, int]:
+        grid = self.grid
+        chunk = Chunk(
+            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor
+        )
+        return self.prepared.run(self.history, chunk)
+
+    def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
+        reached = done * self.grid.step
+        if status == DONE:
+            finished = done == self.grid.count
+            kind = OutcomeKind.COMPLETED if finished else OutcomeKind.INTERRUPTED
+            message = "" if finished else f"interrupted at {reached:g} s; results so far are kept"
+            return Outcome(kind, reached, message=message)
+        if status in _PROBLEMS:
+            return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
+        part = self.network.parts[culprit]
+        said = "; ".join(part.messages())
+        where, value = self._diverged(culprit)
+        if status == NOT_FINITE or where:
+            where = where or part.name
+            how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
+            message = (
+                f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
+                f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
+            )
+            return Outcome(OutcomeKind.DIVERGED, reached, where, message)
+        message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
+        return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    def _diverged(self, culprit: int) -> tuple[str, float]:
+        """The first input or output of a part that has diverged, or the output that feeds it."""
+        parts = self.network.parts
+        part = parts[culprit]
+        names = [
+            n for n, v in part.variables.items() if v.causality in {"output", "input"} and v.is_real
+        ]
+        try:
+            found = zip(names, part.get(names), strict=True)
+            bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
+            for c in self.network.inputs(culprit):
+                if c.input == bad and not abs(parts[c.source].get([c.output])[0]) < BOUND:
+                    return f"{parts[c.source].name}.{c.output}", value
+        except HerringboneError:
+            return "", 0.0
+        return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
+
+    def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
+        times = self.record.times(done)
+        values = self.record.values[: times.size]
+        if outcome.kind not in {OutcomeKind.COMPLETED, OutcomeKind.INTERRUPTED}:
+            rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
+            times, values = times[:rows], values[:rows]
+        return Recording(
+            times,
+            values,
+            self.names,
+            self.units,
+            outcome,
+            self._step(done),
+            self.record.step(times),
+            self.prepared.macro_steps(done),
+            dict(
+                zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
+            ),
+            self.prepared.rollbacks,
+            wall,
+            (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes),
+            self.prepared.steps,
+            self.watch.report() if done else None,
+            {self.network.parts[p].name: m for p, m in self.network.slow.items()},
+        )
+
+    def _step(self, done: int) -> float:
+        """Macro step, or its mean [s]."""
+        return self.grid.step * (done / max(self.prepared.macro_steps(done), 1) if done else 1)
