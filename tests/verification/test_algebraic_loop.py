@@ -18,7 +18,7 @@ from herringbone.components.bearing_supports import BEARING_SUPPORTS
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algebraic_loop import extrapolated_growth, measure_loop, solved_growth
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
-from herringbone.cosim.algorithms.base import Prepared
+from herringbone.cosim.algorithms.staged import Prepared
 from herringbone.cosim.network import build_network
 from herringbone.cosim.simulation import make_grid, simulate
 

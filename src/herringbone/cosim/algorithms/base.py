@@ -6,22 +6,17 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import ClassVar, Self
 
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.part import has_nodes
-from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
-from herringbone.cosim.derivative_plan import lay_out_derivatives
+from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Chunk, Plan, build_plan
+from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
 from herringbone.cosim.recording import StepStatistics
-from herringbone.cosim.slow_plan import slow_degrees
-from herringbone.cosim.stage_loop import run_stages
 
 
 class Algorithm(ABC):
@@ -148,107 +143,6 @@ class PreparedRun(ABC):
     @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; arguments and result are those of `stage_loop.run_stages`."""
-
-
-@dataclass(frozen=True)
-class Prepared(PreparedRun):
-    """A network laid out for an algorithm that steps stages.
-
-    Attributes:
-        plan: parts, signals and stages.
-        degree: interface degree that each part is to be set to.
-        order: degree of extrapolation.
-        notes: downgrades, and what they cost.
-        starter: plan for the first `order` macro steps, if the scheme needs history.
-    """
-
-    plan: Plan
-    degree: tuple[int, ...]
-    order: int
-    notes: tuple[str, ...]
-    starter: Plan | None = None
-    problem: str = ""
-
-    @property
-    def full_order(self) -> int:
-        """That of the polynomial, plus 1."""
-        return self.order + 1
-
-    def kept_order(self, part: int) -> int:
-        """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
-        return self.full_order if self.plan.derivatives.order[part] else 1
-
-    @property
-    def extrapolates(self) -> bool:
-        """True if all elements are stepped after all bodies: their forces are those of their time.
-
-        Neither the parallel schedule nor Gauss-Seidel coupling has that; slow bodies take forces
-        that are fitted afterwards.
-        """
-        slow = self.plan.slow.parts.size > 0
-        return self.starter is None and not slow and bool(self.plan.at_end.any())
-
-    def close_loop(self, loop: AlgebraicLoop) -> float:
-        """Growth by the extrapolation over a step; parallel elements answer a step late."""
-        degrees = [min(self.order, self.input_degree(c.target)) for c in loop.forces]
-        return extrapolated_growth(loop.matrix, degrees, 0 if self.plan.at_end.any() else 1)
-
-    def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `stage_loop.run_stages`."""
-        plan = self.plan
-        if self.starter is not None and chunk.start < self.order:
-            plan = self.starter
-            chunk = chunk._replace(count=min(chunk.count, self.order - chunk.start))
-        return run_stages(plan, history, self.order, chunk)
-
-
-def refuse_mixed(network: Network, algorithm: str) -> None:
-    """Check that each part is either a body without direct feedthrough or an element.
-
-    Raises:
-        ParameterError: a part is not, and the algorithm treats bodies and elements differently.
-    """
-    for p in sorted(network.mixed):
-        raise ParameterError(
-            f"{algorithm}: {network.parts[p].name} is body and element at once (some outputs "
-            "depend directly on inputs, others do not); use li, fixed_point or jacobi"
-        )
-    for p in sorted(network.feedthrough):
-        raise ParameterError(
-            f"{algorithm}: the motion of {network.parts[p].name} depends directly on the forces "
-            "on it (an algebraic loop with its elements); use li, fixed_point or jacobi"
-        )
-
-
-def prepare_stages(
-    network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
-) -> Prepared:
-    """Lay out a network for stages, with as many nodes as the order asks and the parts have.
-
-    Parts without nodes take FMI derivatives if they declare them; else they hold their inputs.
-    """
-    degree: list[int] = []
-    derivatives = [0] * len(network.parts)
-    slow, notes = slow_degrees(network, 1)
-    for p, part in enumerate(network.parts):
-        if p in slow:
-            degree.append(slow[p])
-            continue
-        inputs = [c.input for c in network.inputs(p)]
-        wanted = order if p in network.bodies or p in network.mixed else 0
-        if wanted and not has_nodes(part, inputs, wanted):
-            if part.addresses.set_derivatives:
-                derivatives[p] = wanted
-            else:
-                notes.append(
-                    f"{part.name} takes no signal nodes: its inputs are held over a step, "
-                    "which makes the coupling first order in the step"
-                )
-            wanted = 0
-        degree.append(wanted)
-    laid_out = lay_out_derivatives(network, order, derivatives)
-    plan = build_plan(network, stages, degree, parallel, derivatives=laid_out)
-    return Prepared(plan, tuple(degree), order, tuple(notes))
 
 
 def check_multirate(algorithm: Algorithm) -> None:

@@ -20,8 +20,9 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages, refuse_mixed
+from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.jacobi import Jacobi
+from herringbone.cosim.algorithms.staged import Prepared, prepare_stages, refuse_mixed
 from herringbone.cosim.network import Network
 
 

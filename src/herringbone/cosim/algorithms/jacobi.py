@@ -19,7 +19,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal, Self
 
 from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm, Prepared, prepare_stages
+from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.staged import Prepared, prepare_stages
 from herringbone.cosim.network import Network
 
 

@@ -21,12 +21,8 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
-from herringbone.cosim.algorithms.base import (
-    Algorithm,
-    PreparedRun,
-    prepare_stages,
-    refuse_mixed,
-)
+from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
+from herringbone.cosim.algorithms.staged import prepare_stages, refuse_mixed
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import (
     Chunk,
