@@ -1,13 +1,10 @@
 """What `fixed_point` and `li` share: a network laid out for passes with rollback."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.declaration import node_name
-from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
@@ -16,13 +13,12 @@ from herringbone.cosim.algorithms.jacobian import (
     InterfaceJacobian,
     correction_matrix,
 )
-from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
+from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
 from herringbone.cosim.node_loop import REFRESH, run_iterated
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
-from herringbone.cosim.slow_plan import slow_degrees
 
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
@@ -32,50 +28,6 @@ MOST_SWEEPS = 1000
 """Sweeps of a fixed point over an algebraic loop at the most."""
 PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
-
-
-def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
-    return all(node_name(name, degree) in part.variables for name in outputs)
-
-
-def _derivatives(network: Network, degree: int, degrees: Sequence[int]) -> Derivatives:
-    """FMI derivatives for the parts without nodes that declare them.
-
-    A part that holds its inputs has no rates to give.
-    """
-    order, rated = [0] * len(network.parts), []
-    for p, part in enumerate(network.parts):
-        if degrees[p] or p in network.slow:
-            continue
-        fed = bool(network.inputs(p))
-        if fed and part.addresses.set_derivatives:
-            order[p] = degree
-        feeds = any(c.source == p for c in network.connections)
-        if degree > 1 and feeds and part.addresses.get_derivatives and (order[p] or not fed):
-            rated.append(p)
-    return lay_out_derivatives(network, degree, order, rated)
-
-
-def _degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
-    """Degree at which each part takes and gives signals at nodes, and what holding costs."""
-    found: list[int] = []
-    slow, notes = slow_degrees(network, degree)
-    for p, part in enumerate(network.parts):
-        if p in slow:
-            found.append(slow[p])
-            continue
-        inputs = [c.input for c in network.inputs(p)]
-        outputs = [c.output for c in network.connections if c.source == p]
-        if has_nodes(part, inputs, degree) and _has_output_nodes(part, outputs, degree):
-            found.append(degree)
-            continue
-        found.append(0)
-        if inputs and not part.addresses.set_derivatives:
-            notes.append(
-                f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
-                "and its outputs interpolated, which makes the coupling second order in the step"
-            )
-    return found, notes
 
 
 def check_rollback(name: str, network: Network) -> None:
@@ -112,11 +64,11 @@ class PreparedNodes(PreparedRun):
     ) -> None:
         self.network, self.newton = network, newton
         self.corrections, self.most = corrections, most
-        degrees, notes = _degrees(network, degree)
+        degrees, notes = node_degrees(network, degree)
         self.degree, self._downgrades = tuple(degrees), tuple(notes)
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
-        derivatives = _derivatives(network, degree, degrees)
+        derivatives = fmi_derivatives(network, degree, degrees)
         self.plan = build_plan(
             network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
         )
