@@ -2,11 +2,10 @@
 
 import argparse
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import NoReturn
-
-from tqdm import tqdm
 
 import herringbone
 from herringbone import (
@@ -15,7 +14,15 @@ from herringbone import (
     export_command,
     gear_command,
     housing_command,
+    run_command,
     stability_command,
+)
+from herringbone.command_options import (
+    add_command,
+    add_kind,
+    add_scene,
+    add_start_values,
+    start_values,
 )
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
@@ -29,10 +36,6 @@ EXIT_CODES = {
     OutcomeKind.INTERRUPTED: 130,
 }
 BAD_INPUT = 2
-_FMU = "native, python, in-process, or auto (default): native if there is a C compiler"
-_OVERRIDE = "start value in SI units, instead of the scene's; may be repeated"
-_SLOW = "INSTANCE=N,..."
-_SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -63,12 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=herringbone.__version__)
     parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-
-    def add(name: str, command: Callable, text: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=text, description=text)
-        sub.set_defaults(command=command)
-        return sub
-
+    add = partial(add_command, commands)
     sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
     sub.add_argument("name", nargs="?", help="component whose variables are shown")
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
@@ -76,58 +74,24 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
     sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
     sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
-    _run_options(add("run", _run, "run a system"))
+    run_command.add_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("stability", _stability, "predict the stable steps of algorithms")
     _comparison_options(sub)
     stability_command.add_options(sub)
-    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
+    add_start_values(sub)
     bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
     export_command.add_options(sub)
-    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
+    add_start_values(sub)
     gear_command.register(commands)
     housing_command.register(commands)
     return parser
 
 
-def _scene_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
-    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
-
-
-def _run_options(sub: argparse.ArgumentParser) -> None:
-    _scene_options(sub)
-    sub.add_argument(
-        "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
-    )
-    sub.add_argument(
-        "--step", type=float, help="communication step size in s; the largest, with --tolerance"
-    )
-    sub.add_argument(
-        "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
-    )
-    sub.add_argument(
-        "--slow", metavar=_SLOW, help="heavy bodies that step once in N communication steps"
-    )
-    sub.add_argument("--t-end", type=float, help="duration in s")
-    sub.add_argument("--record-step", type=float, help="time between records in s")
-    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
-    sub.add_argument("--fmu", default="auto", help=_FMU)
-    sub.add_argument(
-        "--replace", action="append", default=[], metavar=_REPLACE,
-        help="FMU in the place of an instance; may be repeated",
-    )  # fmt: skip
-    sub.add_argument("--set", action="append", default=[], metavar=_SET, help=_OVERRIDE)
-    sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
-    sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
-    sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
-    sub.add_argument("--json", action="store_true", help="print one JSON object")
-
-
 def _comparison_options(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compare algorithms on a scene."""
-    _scene_options(sub)
+    add_scene(sub)
     sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
 
 
@@ -135,95 +99,15 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     _comparison_options(sub)
     sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
-    sub.add_argument("--fmu", default="auto", help=_FMU)
+    add_kind(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
     )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def _assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
-    found = {}
-    for item in items:
-        name, equals, value = item.partition("=")
-        if not equals or not name or not value:
-            raise ParameterError(f"{option} {item}: it must be {form}")
-        found[name] = value
-    return found
-
-
-def _multiples(text: str | None) -> dict[str, int]:
-    """Whole numbers by instance, of an option that lists them."""
-    found = {}
-    for name, number in _assignments(text.split(",") if text else [], "--slow", _SLOW).items():
-        if not number.isdecimal():
-            raise ParameterError(f"--slow {name}={number}: it must be a whole number of steps")
-        found[name] = int(number)
-    return found
-
-
-def _values(items: Sequence[str]) -> dict[str, float | str]:
-    """Numbers where they read as numbers, text otherwise."""
-    found: dict[str, float | str] = {}
-    for name, text in _assignments(items, "--set", _SET).items():
-        try:
-            found[name] = float(text)
-        except ValueError:
-            found[name] = text
-    return found
-
-
 def _run(options: argparse.Namespace) -> int:
-    from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
-    from herringbone.report import summary_text, write_report  # noqa: PLC0415
-
-    check_writable(options.output or Path("results"))
-    optional = {
-        name: value
-        for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
-        if (value := getattr(options, name)) is not None
-    }
-    with _Bar() as bar:
-        result = api.run(
-            options.system,
-            **optional,
-            fmu=options.fmu,
-            replace_parts=_assignments(options.replace, "--replace", _REPLACE),
-            values=_values(options.set),
-            slow=_multiples(options.slow),
-            reference=options.reference,
-            progress=bar.show,
-        )
-    name = Path(options.system).stem
-    folder = options.output or Path("results") / f"{name}-{result.info.scene}"
-    result = write_report(result, folder, parquet=options.parquet)
-    show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message:
-        say(f"herringbone: {result.outcome.kind.value}: {result.outcome.message}")
-    return EXIT_CODES[result.outcome.kind]
-
-
-class _Bar:
-    """Progress bar of simulated milliseconds, on a terminal only."""
-
-    def __enter__(self) -> "_Bar":
-        self._bar: tqdm | None = None
-        return self
-
-    def show(self, reached: float, t_end: float) -> None:
-        """Move the bar to a simulated time [s]."""
-        if self._bar is None:
-            self._bar = tqdm(
-                total=round(1e3 * t_end, 3),
-                unit="ms",
-                disable=None,
-                bar_format="{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]",
-            )
-        self._bar.update(1e3 * reached - self._bar.n)
-
-    def __exit__(self, *exception: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
+    return EXIT_CODES[run_command.run(options)]
 
 
 def _list(options: argparse.Namespace) -> int:
@@ -275,7 +159,7 @@ def _chart(options: argparse.Namespace) -> int:
 
 
 def _stability(options: argparse.Namespace) -> int:
-    show(stability_command.stability(options, _values(options.set)))
+    show(stability_command.stability(options, start_values(options.set)))
     return 0
 
 
@@ -285,6 +169,6 @@ def _bench(options: argparse.Namespace) -> int:
 
 
 def _export(options: argparse.Namespace) -> int:
-    for line in export_command.export(options, _values(options.set)):
+    for line in export_command.export(options, start_values(options.set)):
         show(line)
     return 0

@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from herringbone.build_command import add_platform_options, chosen_platforms, untested
+from herringbone.command_options import add_scene
 from herringbone.output import check_writable
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options, `--set` excepted."""
-    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
-    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+    add_scene(sub)
     sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
     sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
     sub.add_argument(

@@ -6,14 +6,15 @@ from typing import Any
 
 from tqdm import tqdm
 
+from herringbone.command_options import add_command
 from herringbone.output import check_writable, show
 
 
 def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private)
     """Add the command to those of the program."""
-    text = "compute a gear pair: table, picture, stiffness table"
-    sub = commands.add_parser("gear", help=text, description=text)
-    sub.set_defaults(command=_gear)
+    sub = add_command(
+        commands, "gear", _gear, "compute a gear pair: table, picture, stiffness table"
+    )
     sub.add_argument("file", type=Path, help="gear file (.toml) or REXS file (.rexs)")
     sub.add_argument("--method", default="slices", help="slices (default), coupled-slices or fe")
     sub.add_argument("--torque", type=float, help="of the pinion in N m; the file's if not given")

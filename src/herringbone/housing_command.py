@@ -2,12 +2,13 @@
 
 import argparse
 import json
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
+from herringbone.command_options import add_command
 from herringbone.core.paths import component_folder
 from herringbone.output import check_writable, say, show
 
@@ -24,12 +25,7 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     text = "make, reduce and import housings"
     group = commands.add_parser("housing", help=text, description=text)
     commands = group.add_subparsers(required=True, metavar="COMMAND")
-
-    def add(name: str, command: Callable, text: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=text, description=text)
-        sub.set_defaults(command=command)
-        return sub
-
+    add = partial(add_command, commands)
     sub = add("build", _build, "mesh and solve a welded housing, write its modal data")
     sub.add_argument(
         "file", nargs="?", type=Path, help="TOML file; the default housing's if not given"

@@ -43,6 +43,8 @@ TOP = {
     "system_fmu",
     "ssp_import",
     "chart_command",
+    "command_options",
+    "run_command",
     "run_result",
     "stability_command",
     "build_command",

@@ -1,0 +1,82 @@
+"""What several commands share: how they are declared, their options, and what these stand for."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from herringbone.core import ParameterError
+
+_SET = "INSTANCE.VARIABLE=VALUE"
+
+
+def add_command(
+    commands: Any,  # noqa: ANN401 (argparse's type is private)
+    name: str,
+    command: Callable[[argparse.Namespace], int],
+    text: str,
+) -> argparse.ArgumentParser:
+    """Declare a command, and what runs it."""
+    sub = commands.add_parser(name, help=text, description=text)
+    sub.set_defaults(command=command)
+    return sub
+
+
+def add_scene(sub: argparse.ArgumentParser) -> None:
+    """Declare what is run."""
+    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+    sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+
+
+def add_kind(sub: argparse.ArgumentParser) -> None:
+    """Declare the kind of the parts' FMUs."""
+    sub.add_argument(
+        "--fmu",
+        default="auto",
+        help="native, python, in-process, or auto (default): native if there is a C compiler",
+    )
+
+
+def add_start_values(sub: argparse.ArgumentParser) -> None:
+    """Declare start values; `start_values` reads them."""
+    sub.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar=_SET,
+        help="start value in SI units, instead of the scene's; may be repeated",
+    )
+
+
+def start_values(items: Sequence[str]) -> dict[str, float | str]:
+    """Numbers where they read as numbers, text otherwise, by `instance.variable`.
+
+    Raises:
+        ParameterError: an item is no assignment.
+    """
+    found: dict[str, float | str] = {}
+    for name, text in assignments(items, "--set", _SET).items():
+        try:
+            found[name] = float(text)
+        except ValueError:
+            found[name] = text
+    return found
+
+
+def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:
+    """Names and values of the items NAME=VALUE of an option.
+
+    Args:
+        items: as given.
+        option: its name.
+        form: what an item looks like.
+
+    Raises:
+        ParameterError: an item has another form.
+    """
+    found = {}
+    for item in items:
+        name, equals, value = item.partition("=")
+        if not equals or not name or not value:
+            raise ParameterError(f"{option} {item}: it must be {form}")
+        found[name] = value
+    return found
