@@ -55,7 +55,8 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
     from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
-    from herringbone.report import summary_text, write_report  # noqa: PLC0415
+    from herringbone.report import write_report  # noqa: PLC0415
+    from herringbone.summary import summary_text  # noqa: PLC0415
 
     check_writable(options.output or Path("results"))
     optional = {

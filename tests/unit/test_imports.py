@@ -35,6 +35,7 @@ TOP = {
     "api",
     "cli",
     "report",
+    "summary",
     "listing",
     "export",
     "export_command",

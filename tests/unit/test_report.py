@@ -14,7 +14,8 @@ from support_result import make_foreign_result, make_result
 
 from herringbone.analysis.radiated_power import radiated_power
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
-from herringbone.report import summary_text, write_report
+from herringbone.report import write_report
+from herringbone.summary import summary_text
 
 STEADY = slice(2000, None)
 
