@@ -10,7 +10,7 @@ from herringbone.gears.gear_file import read_gear_file
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.mesh_stiffness import MeshStiffness
-from herringbone.gears.methods import METHODS, Progress, mesh_stiffness
+from herringbone.gears.methods import Progress, check_method, mesh_stiffness
 from herringbone.gears.rexs import read_rexs
 from herringbone.gears.table_file import table_text
 
@@ -48,8 +48,7 @@ def gear(
         HerringboneError: see `read_gear_file`, `read_rexs`, `GearJob.task` and the method; or a
             file cannot be written.
     """
-    if method not in METHODS:
-        raise ParameterError(f"method '{method}' is none of {', '.join(METHODS)}")
+    check_method(method)
     job = _job(file, stage, halves)
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})

@@ -9,7 +9,7 @@ from herringbone.gears.coupled_slices import CoupledSliceMesh
 from herringbone.gears.gear_pair import GearPair
 from herringbone.gears.mesh_stiffness import MeshStiffness
 from herringbone.gears.modification import Modification
-from herringbone.gears.point_mesh import Progress, silent
+from herringbone.gears.point_mesh import PointMesh, Progress, silent
 from herringbone.gears.slices import PHASES, SliceMesh
 
 _OVERSAMPLING = 4
@@ -39,45 +39,48 @@ class Task:
     corner_contact: bool = False
 
 
-def _slices(task: Task, progress: Progress | None = None) -> MeshStiffness:
-    mesh = SliceMesh(
+def _slices(task: Task, progress: Progress | None) -> SliceMesh:
+    return SliceMesh(
         task.pair,
         task.modification,
         calibration=task.calibration,
         slices=task.slices,
         corner_contact=task.corner_contact,
     )
-    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
 
 
-def _coupled_slices(task: Task, progress: Progress | None = None) -> MeshStiffness:
-    mesh = CoupledSliceMesh(
+def _coupled_slices(task: Task, progress: Progress | None) -> PointMesh:
+    return CoupledSliceMesh(
         task.pair,
         task.modification,
         calibration=task.calibration,
         corner_contact=task.corner_contact,
     )
-    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
 
 
-def _finite_elements(task: Task, progress: Progress | None = None) -> MeshStiffness:
+def _finite_elements(task: Task, progress: Progress | None) -> PointMesh:
     from herringbone.gears.finite_elements import FiniteElementMesh  # noqa: PLC0415 (uses METHODS)
 
-    mesh = FiniteElementMesh(
+    return FiniteElementMesh(
         task.pair,
         task.modification,
         corner_contact=task.corner_contact,
         progress=progress or silent,
     )
-    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
 
 
-METHODS: dict[str, Callable[..., MeshStiffness]] = {
+METHODS: dict[str, Callable[[Task, Progress | None], SliceMesh | PointMesh]] = {
     "slices": _slices,
     "coupled-slices": _coupled_slices,
     "fe": _finite_elements,
 }
-"""`method(task, progress)`."""
+"""What makes the mesh of each method."""
+
+
+def check_method(method: str) -> None:
+    """Raises ParameterError if there is no such method."""
+    if method not in METHODS:
+        raise ParameterError(f"method '{method}' is none of {', '.join(METHODS)}")
 
 
 def mesh_stiffness(
@@ -88,6 +91,6 @@ def mesh_stiffness(
     Raises:
         ParameterError: the method is unknown, or see the method.
     """
-    if method not in METHODS:
-        raise ParameterError(f"method '{method}' is none of {', '.join(METHODS)}")
-    return METHODS[method](task, progress)
+    check_method(method)
+    mesh = METHODS[method](task, progress)
+    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
