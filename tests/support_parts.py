@@ -7,7 +7,7 @@ masses and a spring-damper are the linear test problem, whose solution `two_mass
 import ctypes
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -17,8 +17,10 @@ from scipy.linalg import expm
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import Instance, ParameterError
-from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.part import Addresses, PartVariable, closing_all
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.open_fmu import open_fmu
+from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
@@ -448,6 +450,25 @@ def open_in_process(system: System) -> list[InProcessPart]:
             part.set(name, value)
         parts.append(part)
     return parts
+
+
+def run_fmus_and_in_process(
+    system: System, fmus: Mapping[str, Path], algorithm: Algorithm, grid: Grid, **more
+) -> tuple[Recording, Recording]:
+    """Run a system of components as FMUs and in-process.
+
+    Args:
+        fmus: file of each component's FMU.
+        more: further arguments of `simulate`.
+    """
+    parts = [open_fmu(spec.name, fmus[spec.component]) for spec in system.parts]
+    with closing_all(parts):
+        for part, spec in zip(parts, system.parts, strict=True):
+            for name, value in spec.values.items():
+                part.set(name, value)
+        both = (parts, open_in_process(system))
+        found, wanted = (simulate(system, each, algorithm, grid, **more) for each in both)
+    return found, wanted
 
 
 def run_in_process(system: System, algorithm: Algorithm, h: float, t_end: float, record=None):

@@ -74,18 +74,29 @@ def test_repeated_step_is_bit_identical(name, started):
     host.slave.freeFMUstate(saved)
 
 
+def serialised_state(host):
+    """The present state in bytes."""
+    saved = host.slave.getFMUstate()
+    data = host.slave.serializeFMUstate(saved)
+    host.slave.freeFMUstate(saved)
+    return data
+
+
+def restore(host, serialised):
+    """Go back to a state in bytes."""
+    restored = host.slave.deSerializeFMUstate(serialised)
+    host.slave.setFMUstate(restored)
+    host.slave.freeFMUstate(restored)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_serialised_state_goes_on_in_another_instance(name, started):
     host, other = started(name, "one"), started(name, "other")
     run(host, name)
-    saved = host.slave.getFMUstate()
-    serialised = host.slave.serializeFMUstate(saved)
-    host.slave.freeFMUstate(saved)
+    serialised = serialised_state(host)
     wanted = run(host, name, 5, STEPS)
     run(other, name, 2)
-    restored = other.slave.deSerializeFMUstate(serialised)
-    other.slave.setFMUstate(restored)
-    other.slave.freeFMUstate(restored)
+    restore(other, serialised)
     assert run(other, name, 5, STEPS) == wanted
 
 
@@ -93,14 +104,10 @@ def test_serialised_state_goes_on_in_another_instance(name, started):
 def test_state_restores_resources_of_an_instance_that_has_read_none(name, started, fmus):
     host = started(name)
     run(host, name)
-    saved = host.slave.getFMUstate()
-    serialised = host.slave.serializeFMUstate(saved)
-    host.slave.freeFMUstate(saved)
+    serialised = serialised_state(host)
     wanted = run(host, name, 5, STEPS)
     with Host("part", fmus[name]) as fresh:
-        restored = fresh.slave.deSerializeFMUstate(serialised)
-        fresh.slave.setFMUstate(restored)
-        fresh.slave.freeFMUstate(restored)
+        restore(fresh, serialised)
         assert run(fresh, name, 5, STEPS) == wanted
 
 

@@ -25,7 +25,7 @@ from support_parts import (
     TwoMass,
     columns,
     fail_at,
-    open_in_process,
+    run_fmus_and_in_process,
 )
 
 from herringbone.analysis.error import relative_error
@@ -34,7 +34,6 @@ from herringbone.cli import main
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, Jacobi, with_tolerance
 from herringbone.cosim.ladder import RUNGS, TICKS
-from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
@@ -308,18 +307,8 @@ def test_only_li_adapts_its_step():
 def test_python_fmus_give_the_same_bits(python_fmus):
     scene = read_scene(find_scene(find_system("test_rig"), "separation"))
     system = started(read_system("test_rig"), scene)[0]
-    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in system.parts]
-    try:
-        for part, spec in zip(fmus, system.parts, strict=True):
-            for name, value in spec.values.items():
-                part.set(name, value)
-        found, wanted = (
-            simulate(system, parts, LI(tolerance=1e-3), make_grid(2e-3, 2e-4, 2e-4))
-            for parts in (fmus, open_in_process(system))
-        )
-    finally:
-        for part in fmus:
-            part.close()
+    grid = make_grid(2e-3, 2e-4, 2e-4)
+    found, wanted = run_fmus_and_in_process(system, python_fmus, LI(tolerance=1e-3), grid)
     assert found.steps == wanted.steps
     assert found.steps.rejected > 0
     assert np.array_equal(columns(found, wanted.names), wanted.values)

@@ -9,13 +9,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support_parts import columns, open_in_process
+from support_parts import columns, open_in_process, run_fmus_and_in_process
 
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.ports import HALVES
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
@@ -108,18 +107,8 @@ def test_within_a_thousandth_at_all_speeds(speed):
 def test_python_fmus_give_the_same_bits(python_fmus):
     """50 macro steps, all recorded outputs."""
     system, h = rig("separation"), 40e-6
-    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in system.parts]
-    try:
-        for part, spec in zip(fmus, system.parts, strict=True):
-            for name, value in spec.values.items():
-                part.set(name, value)
-        found, wanted = (
-            simulate(system, parts, LI(degree=3), make_grid(50 * h, h, h))
-            for parts in (fmus, open_in_process(system))
-        )
-    finally:
-        for part in fmus:
-            part.close()
+    grid = make_grid(50 * h, h, h)
+    found, wanted = run_fmus_and_in_process(system, python_fmus, LI(degree=3), grid)
     assert found.macro_steps == wanted.macro_steps == 50
     assert set(found.names) == set(wanted.names)
     assert np.array_equal(columns(found, wanted.names), wanted.values)

@@ -16,6 +16,7 @@ from support_parts import (
     TwoMass,
     columns,
     open_in_process,
+    run_fmus_and_in_process,
     slope,
 )
 
@@ -25,7 +26,6 @@ from herringbone.cli import main
 from herringbone.components.ports import HALVES
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
-from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
@@ -82,18 +82,8 @@ def test_slow_motors_cost_jacobi_no_accuracy(rig, order):
 
 
 def test_python_fmus_give_the_same_bits(rig, python_fmus):
-    fmus = [open_fmu(spec.name, python_fmus[spec.component]) for spec in rig.system.parts]
-    try:
-        for part, spec in zip(fmus, rig.system.parts, strict=True):
-            for name, value in spec.values.items():
-                part.set(name, value)
-        found, wanted = (
-            simulate(rig.system, parts, LI(), make_grid(8e-4, 4e-5, 4e-5), slow={"drive_motor": 5})
-            for parts in (fmus, open_in_process(rig.system))
-        )
-    finally:
-        for part in fmus:
-            part.close()
+    grid, slow = make_grid(8e-4, 4e-5, 4e-5), {"drive_motor": 5}
+    found, wanted = run_fmus_and_in_process(rig.system, python_fmus, LI(), grid, slow=slow)
     assert found.macro_steps == 20
     assert np.array_equal(columns(found, wanted.names), wanted.values)
 
