@@ -1,7 +1,7 @@
 """Panels of the pictures: signals over time, and spectra with mesh orders."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -86,24 +86,34 @@ def time_panel(
     entries = [half_name(name) for name in columns]
     if mean and not diverged:
         part = steady_part(result)
-        steady = values[part.rows if part.steady else shown]
-        average = steady.mean(axis=0)
-        values = values - average
-        spread = np.ptp(steady, axis=0)
-        entries = [
-            f"{entry}, mean {rounded(m, max(abs(m), s))} {unit}"
-            for entry, m, s in zip(entries, average, spread, strict=True)
-        ]
+        values, entries = _without_mean(values, part.rows if part.steady else shown, entries, unit)
     depth = depths(values[shown])
     for i, name in enumerate(columns):
         style = HALF_STYLE.get(name, {"linestyle": "--" if i >= len(COLOURS) else "-"})
         draw_line(axes, time, values[shown, i], label=entries[i], zorder=depth[i], **style)
     axes.margins(x=0.0)
     if diverged:
-        typical = float(np.median(np.abs(values[shown])))
-        axes.set_yscale("symlog", linthresh=min(max(10.0 * typical, 1e-9), 1e20), linscale=2.0)
-        axes.yaxis.set_major_locator(SymmetricalLogLocator(axes.yaxis.get_transform()))
-        axes.locator_params(axis="y", numticks=7)
+        _show_all_decades(axes, values[shown])
+
+
+def _without_mean(
+    values: np.ndarray, steady: slice, entries: Sequence[str], unit: str
+) -> tuple[np.ndarray, list[str]]:
+    """Signals (n, m) without their means over the steady rows, which their entries then tell."""
+    average, spread = values[steady].mean(axis=0), np.ptp(values[steady], axis=0)
+    told = [
+        f"{entry}, mean {rounded(m, max(abs(m), s))} {unit}"
+        for entry, m, s in zip(entries, average, spread, strict=True)
+    ]
+    return values - average, told
+
+
+def _show_all_decades(axes: Axes, values: np.ndarray) -> None:
+    """An ordinate on which a diverging signal still shows how it began."""
+    typical = float(np.median(np.abs(values)))
+    axes.set_yscale("symlog", linthresh=min(max(10.0 * typical, 1e-9), 1e20), linscale=2.0)
+    axes.yaxis.set_major_locator(SymmetricalLogLocator(axes.yaxis.get_transform()))
+    axes.locator_params(axis="y", numticks=7)
 
 
 def rounded(value: float, scale: float) -> str:
