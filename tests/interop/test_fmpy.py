@@ -1,4 +1,4 @@
-"""fmpy runs the native FMUs: the mesh under CVode, and both FMI versions with equal results."""
+"""fmpy runs the native FMUs: mesh and housing under CVode; both FMI versions with equal results."""
 
 import fnmatch
 from functools import cache
@@ -17,7 +17,7 @@ from herringbone.fmi import golden
 from herringbone.fmi.native import build_native_fmus
 from herringbone.start import started
 
-MESH = "gear_mesh"
+MESH, HOUSING = "gear_mesh", "modal_housing"
 HOLD, DURATION = 1e-5, 1e-2
 """Time over which an input is held, and end of the run [s]."""
 
@@ -39,10 +39,10 @@ def held(time, rows, names):
 
 @pytest.fixture(scope="module")
 def recorded(native_fmus):
-    """Function: inputs of the mesh in a run of the test rig, and its start values there."""
+    """Function: inputs of a part in a run of the test rig, and its start values there."""
 
     @cache
-    def record(scene):
+    def record(scene, name):
         system, folder = load_system("test_rig")
         system, _ = started(system, load_scene(folder, scene))
         result = hb.run(
@@ -51,15 +51,34 @@ def recorded(native_fmus):
         parts = [
             DescribedPart(p.name, native_fmus[str(p.component)], p.values) for p in system.parts
         ]
-        place = [part.name for part in parts].index(MESH)
+        place = [part.name for part in parts].index(name)
         connected = build_network(system, parts).inputs(place)
         columns = [f"{parts[c.source].name}.{c.output}" for c in connected]
         names = [c.input for c in connected]
-        assert sorted(names) == sorted(v.name for v in COMPONENTS[MESH].declaration.inputs)
+        assert sorted(names) == sorted(v.name for v in COMPONENTS[name].declaration.inputs)
         rows = result.data[columns].to_numpy()
-        return held(result.data["time"].to_numpy(), rows, names), dict(system.part(MESH).values)
+        return held(result.data["time"].to_numpy(), rows, names), dict(system.part(name).values)
 
     return record
+
+
+def both_kinds(fmu, signals, start, outputs):
+    """Results of model exchange under CVode and of co-simulation, under the same held inputs."""
+    return (
+        fmpy.simulate_fmu(
+            str(fmu),
+            fmi_type=kind,
+            solver="CVode",
+            stop_time=DURATION,
+            output_interval=HOLD,
+            relative_tolerance=1e-11,
+            record_events=False,
+            start_values=start,
+            input=signals,
+            output=outputs,
+        )
+        for kind in ("ModelExchange", "CoSimulation")
+    )
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
@@ -76,23 +95,10 @@ def test_mesh_under_cvode_agrees_with_its_co_simulation(
     in the forces, but 7e-6 of the small axial velocities; it falls with the step. It steps over
     the kinks where the teeth part and meet, which CVode finds by the event indicators.
     """
-    signals, start = recorded(scene)
+    signals, start = recorded(scene, MESH)
     outputs = [v.name for v in COMPONENTS[MESH].declaration.outputs if not v.feedthrough]
-    exchange, steps = (
-        fmpy.simulate_fmu(
-            str((native_fmus if fmi == 2 else fmi3_fmus)[MESH]),
-            fmi_type=kind,
-            solver="CVode",
-            stop_time=DURATION,
-            output_interval=HOLD,
-            relative_tolerance=1e-11,
-            record_events=False,
-            start_values={**start, "micro_step": micro_step},
-            input=signals,
-            output=outputs,
-        )
-        for kind in ("ModelExchange", "CoSimulation")
-    )
+    fmu = (native_fmus if fmi == 2 else fmi3_fmus)[MESH]
+    exchange, steps = both_kinds(fmu, signals, {**start, "micro_step": micro_step}, outputs)
     np.testing.assert_allclose(exchange["time"], steps["time"], rtol=1e-12)
     compared = fnmatch.filter(outputs, pattern)
     assert "mesh_left.force" in compared
@@ -101,6 +107,24 @@ def test_mesh_under_cvode_agrees_with_its_co_simulation(
     assert {name: error for name, error in worst.items() if error > 1e-6} == {}
     assert np.ptp(steps["mesh_left.force"]) > 1e-2 * scale["mesh_left.force"]
     assert (steps["mesh_left.force"] == 0.0).any() == (scene == "separation")
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("scene", ["loaded", "separation"])
+def test_housing_under_cvode_agrees_with_its_co_simulation(
+    scene, fmi, native_fmus, fmi3_fmus, recorded
+):
+    """Co-simulation propagates the modes exactly under held forces; CVode at 1e-11 integrates."""
+    signals, start = recorded(scene, HOUSING)
+    outputs = [v.name for v in COMPONENTS[HOUSING].declaration.outputs if not v.feedthrough]
+    fmu = (native_fmus if fmi == 2 else fmi3_fmus)[HOUSING]
+    exchange, steps = both_kinds(fmu, signals, start, outputs)
+    np.testing.assert_allclose(exchange["time"], steps["time"], rtol=1e-12)
+    assert len(outputs) == 24
+    for name in outputs:
+        scale = np.abs(steps[name]).max()
+        assert np.ptp(steps[name]) > 1e-3 * scale
+        assert np.abs(exchange[name] - steps[name]).max() < 1e-6 * scale, name
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,7 +1,10 @@
 /* A component made by hand, small enough to know its results in closed form: a rotor with two
    resource files.
 
-       J gain w' = ratio tau,   phi' = w,   and a hidden counter of steps
+       J gain w' = ratio tau,   phi' = w,   and two state vectors with room for two elements each
+
+   of which as many are in use as `shapes` has columns of numbers but one; the FMU is built for one.
+   The first element of `counter` counts steps; in model exchange its rate is the time.
 
    The work space caches ratio / (J gain).
 
@@ -21,7 +24,10 @@
 static const HbReal reals[] = {
     {"phi", "rad", 0, -1e300, 1e300, 1, 0},
     {"w", "rad/s", 0, -1e300, 1e300, 100, 0},
-    {NULL, NULL, 0, -1e300, 1e300, 10, 0},
+    {"counter[1]", "s", 0, -1e300, 1e300, 10, 0},
+    {NULL, NULL, 0, -1e300, 1e300, 1, 0},
+    {"other[1]", "1", 0, -1e300, 1e300, 20, 0},
+    {NULL, NULL, 0, -1e300, 1e300, 1, 0},
     NODES("tau", "N.m"),
     NODES("flange.phi", "rad"),
     NODES("flange.w", "rad/s"),
@@ -33,14 +39,15 @@ static const HbReal reals[] = {
     {"interface_degree", "1", 0, 0, 4, 1, 1},
 };
 static const uint8_t access_of[] = {
-    HB_STATE, HB_STATE, HB_HIDDEN,
+    HB_STATE, HB_STATE, HB_ELEMENT, HB_HIDDEN, HB_ELEMENT, HB_HIDDEN,
     HB_INPUT, HB_INPUT, HB_INPUT, HB_INPUT, HB_INPUT,
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
     HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT, HB_OUTPUT,
     HB_OUTPUT, HB_LOCAL, HB_FIXED, HB_TUNABLE, HB_TUNABLE,
 };
-static const uint8_t extents[] = {1, 1, 0, 1, 4, 0, 0, 0, 1, 4, 0, 0, 0, 1, 4,
+static const uint32_t exchanged[] = {PHI, W, COUNTER, OTHER};
+static const uint8_t extents[] = {1, 1, 1, 0, 1, 0, 1, 4, 0, 0, 0, 1, 4, 0, 0, 0, 1, 4,
                                   0, 0, 0, 1, 4, 0, 0, 0, 1, 1, 1, 1, 1};
 static const uint32_t rates[GAIN] = {[PHI] = W, [PHI_OUT] = W_OUT, [W_OUT] = A};
 
@@ -55,6 +62,7 @@ static const HbColumn shape_columns[] = {{"point", NULL, no_words, 1, 0},
                                          {"shape", shape_units, NULL, 0, 1}};
 static const HbText texts[] = {{"inertias", "inertias.csv", inertia_columns, 3},
                                {"shapes", "shapes.csv", shape_columns, 2}};
+static const HbVector vectors[] = {{1, LENGTH, 1, "counters"}, {1, LENGTH, 1, "others"}};
 static const HbRefusal refusals[] = {{0, ": mass %g kg in row %g must be positive"},
                                      {1, ": %g rows, %g expected"}};
 
@@ -76,6 +84,8 @@ static void rhs(double *b, double t, double *dx) {
     dx[PHI] = b[W];
     dx[W] = acceleration(b);
     dx[COUNTER] = t; /* so that the time shows */
+    dx[COUNTER + 1] = dx[OTHER + 1] = 0.0;
+    dx[OTHER] = -b[OTHER];
 }
 
 static void out(double *b, double t) {
@@ -129,6 +139,7 @@ static int32_t load(const double *values, const int64_t *shape, double *b, doubl
         return 2;
     }
     row += 2;
+    b[LENGTH] = (double)(shape[3] - 2);
     for (int64_t i = 0; i < shape[2]; i++, row += shape[3])
         for (int64_t k = 1; k < shape[3]; k++)
             b[OFFSET] += row[k];
@@ -143,21 +154,24 @@ static void indicators(double *b, double t, double *z) {
 static void tangent(double *b, double t, double *d, double *dx) {
     rhs(b, t, dx);
     out(b, t);
-    dx[3 + PHI] = d[W];
-    dx[3 + W] = b[RATIO] * d[TAU] / (b[INERTIA] * b[GAIN]);
-    dx[3 + COUNTER] = 0.0;
+    double *rate = dx + STATES;
+    rate[PHI] = d[W];
+    rate[W] = b[RATIO] * d[TAU] / (b[INERTIA] * b[GAIN]);
+    rate[COUNTER] = rate[COUNTER + 1] = rate[OTHER + 1] = 0.0;
+    rate[OTHER] = -d[OTHER];
     d[PHI_OUT] = d[PHI];
     d[W_OUT] = d[W];
     d[TORQUE] = d[TAU];
-    d[A] = dx[3 + W];
+    d[A] = rate[W];
 }
 
 const HbComponent hb_component = {
     .name = "rotor", .token = "{token}", .sources = SOURCES,
-    .states = 3, .visible_states = 2, .first_input = TAU, .inputs = 1, .first_output = PHI_OUT,
+    .states = STATES, .visible_states = 2, .first_input = TAU, .inputs = 1, .first_output = PHI_OUT,
     .node_outputs = 3, .mutable_size = INERTIA, .first_table = GAIN, .size = SIZE, .work = 1,
     .degree = DEGREE, .reals = reals, .access = access_of, .extents = extents, .rates = rates,
     .texts_count = 2, .texts = texts, .step = step, .rhs = rhs, .out = out, .load = load,
-    .refusals_count = 2, .refusals = refusals, .model_exchange = 1, .indicators_count = 1,
-    .indicators = indicators, .tangent = tangent,
+    .refusals_count = 2, .refusals = refusals, .exchanged_count = 4, .exchanged = exchanged,
+    .vectors_count = 2, .vectors = vectors, .indicators_count = 1, .indicators = indicators,
+    .tangent = tangent,
 };

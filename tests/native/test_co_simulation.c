@@ -85,10 +85,10 @@ static void test_values(void) {
 static void test_refused_values(void) {
     fmi2Component c = make("r");
     double value = 0;
-    fmi2ValueReference unknown[] = {W, 2, GAIN, 4000000000u};
+    fmi2ValueReference unknown[] = {W, COUNTER + 1, GAIN, 4000000000u};
     double values[4];
     REFUSED(fmi2GetReal(c, unknown, 4, values), "no Real with value reference 4000000000");
-    REFUSED(fmi2SetReal(c, unknown + 1, 1, &value), "no Real with value reference 2");
+    REFUSED(fmi2SetReal(c, unknown + 1, 1, &value), "no Real with value reference 3");
     REFUSED(set(c, TAU, NAN), "r.tau = nan N.m: it must be finite");
     REFUSED(set(c, INERTIA, INFINITY), "it must be finite");
     REFUSED(set(c, INERTIA, 0.0), "r.inertia = 0 kg.m2: it must lie between 1e-09 and 1e+09");

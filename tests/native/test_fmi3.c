@@ -66,8 +66,11 @@ static void test_arrays(void) {
     CHECK(memcmp(tau, back, sizeof tau) == 0);
     REFUSED(fmi3SetFloat64(c, both, 2, tau, 4), "4 values for 2 variables of 5");
     REFUSED(fmi3GetFloat64(c, both, 2, back, 2), "2 values for 2 variables of 5");
-    REFUSED(fmi3GetFloat64(c, odd, 1, back, 1), "no Float64 with value reference 5");
-    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){COUNTER}, 1, back, 1), "no Float64");
+    REFUSED(fmi3GetFloat64(c, odd, 1, back, 1), "no Float64 with value reference 8");
+    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){COUNTER + 1}, 1, back, 1), "no Float64");
+    REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){DER_COUNTER + 1}, 1, back, 1), "no Float64");
+    CHECK(get(c, COUNTER) == 0.0 && get(c, DER_OTHER) == 0.0);
+    REFUSED(set(c, COUNTER, 1.0), "r.counter[1] = 1 s: a continuous local cannot be set now");
     REFUSED(fmi3GetFloat64(c, &(fmi3ValueReference){INDICATOR + 1}, 1, back, 1), "no Float64");
     OK(fmi3GetFloat64(c, NULL, 0, NULL, 0));
     OK(set(c, DEGREE, 1.0));
@@ -164,7 +167,7 @@ static void test_derivatives(void) {
     CHECK(sensitivity[0] == 3.0 && sensitivity[1] == 3.0 && sensitivity[2] == 0.5);
     CHECK(get(c, A) == before); /* outputs stay those of the last step */
     REFUSED(fmi3GetDirectionalDerivative(c, &tau, 1, by, 1, seed, 1, sensitivity, 1),
-            "no output or derivative with value reference 3");
+            "no output or derivative with value reference 6");
     REFUSED(fmi3GetDirectionalDerivative(c, of, 1, of, 1, seed, 1, sensitivity, 1),
             "no input or state");
     OK(fmi3GetDirectionalDerivative(c, of, 1, NULL, 0, NULL, 0, sensitivity, 1));

@@ -43,6 +43,7 @@ FILES = {
     "excel.csv": '\ufeff# units: speed r/min, mass kg\r\n"speed" , mass ,side\r\n'
     '"1", 5e-1 ," left "\r\n\r\n2,+.5,"right"',
     "shapes.csv": "# units: shape kg^-1/2\npoint,m1,m2\na,0.5,-0.25\nb,0.25,0.25\n",
+    "three_shapes.csv": "# units: shape kg^-1/2\npoint,m1,m2,m3\na,1,0,0\nb,0,0,0\n",
     "one_shape.csv": "# units: shape kg^-1/2\npoint,m1,m2\na,0.5,-0.25\n",
 }
 """Resource files of the rotor; the gain is the first mass, ten times as large in r/min."""

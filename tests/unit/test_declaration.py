@@ -5,6 +5,7 @@ import pytest
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import (
     Declaration,
+    StateVector,
     StructureError,
     Text,
     input_,
@@ -30,6 +31,25 @@ def test_name_twice():
 def test_name_of_a_text_twice():
     with pytest.raises(StructureError, match="declared twice: a"):
         declare(state("a", "m", ""), texts=[Text("a", "", "a.csv")])
+
+
+def test_name_of_a_state_vector_twice():
+    with pytest.raises(StructureError, match="declared twice: q"):
+        declare(state("q", "m", ""), vectors=[StateVector("q", "m", "", 2)])
+
+
+def test_unit_of_a_state_vector_must_be_known():
+    with pytest.raises(StructureError, match="unit 'kg m' is unknown"):
+        declare(vectors=[StateVector("q", "kg m", "", 2)])
+
+
+@pytest.mark.parametrize(
+    ("vector", "element"),
+    [("q", "q[3]"), ("a.q", "a.q[3]"), ("der(a.q)", "der(a.q[3])")],
+)
+def test_element_of_a_state_vector_has_a_structured_name(vector, element):
+    """FMI 2.0.4, section 2.2.9: `der(identifier)`, where the identifier has the indices."""
+    assert StateVector(vector, "m", "", 4).element(3) == element
 
 
 def test_interface_degree_is_taken():
@@ -62,12 +82,13 @@ def test_layout_of_a_small_declaration():
         local("count", "s", ""),
         state("x", "m", ""),
         input_("g", "N", ""),
-        hidden_states=3,
+        vectors=[StateVector("q", "m", "", 2), StateVector("der(q)", "m/s", "", 1)],
         tables=11,
     )
     i = d.index
     assert i["x"] == 0
     assert d.state_count == 4  # the hidden ones at 1, 2, 3
+    assert d.vector_indices == {"q": 1, "der(q)": 3}
     assert (d.first_input, i["f"], i["g"]) == (4, 4, 4 + STRIDE)
     assert [i[f"g.node{n}"] for n in range(1, NODES + 1)] == [10, 11, 12, 13]
     assert (d.first_output, i["noded"], i["noded.node4"]) == (14, 14, 18)

@@ -10,9 +10,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from herringbone.analysis.composite_source import BlockMap, composite_source
 from herringbone.analysis.monolithic import make_instances
-from herringbone.analysis.twin_source import twin_layout, twin_source
+from herringbone.analysis.twin_source import TwinLayout, twin_layout, twin_source
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.resource_loader import Refusal, ResourceLoader
 from herringbone.core import (
@@ -20,6 +22,7 @@ from herringbone.core import (
     Declaration,
     Instance,
     Kernels,
+    StateVector,
     StructureError,
     Text,
     Variable,
@@ -78,8 +81,8 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         raise StructureError(f"{system.name}: two parts have both visible and hidden states")
     network = build_network(inside, [InProcessPart(i) for i in instances])
     open_inputs = _open_inputs(network, instances)
-    declaration = _declaration(inside, network, instances, open_inputs)
     layout = twin_layout(instances)
+    declaration = _declaration(inside, network, instances, open_inputs, layout)
     places = _block_map(declaration, instances, layout.block_first)
     source = composite_source(
         twin_source(inside.name, network, instances, layout),
@@ -95,6 +98,9 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations.",
         load=_loader(declaration, instances, module.system_load),
         start=module.system_start,
+        indicators=module.system_indicators,
+        indicator_count=sum(i.component.indicator_count for i in instances),
+        nominals=_nominals(declaration, instances, layout.block_first),
     )
     return Composite(component, dict(_resources(instances)))
 
@@ -125,7 +131,11 @@ def _open_inputs(network: Network, instances: list[Instance]) -> set[str]:
 
 
 def _declaration(
-    system: System, network: Network, instances: list[Instance], open_inputs: set[str]
+    system: System,
+    network: Network,
+    instances: list[Instance],
+    open_inputs: set[str],
+    layout: TwinLayout,
 ) -> Declaration:
     depends = _feedthrough(network, instances, open_inputs)
     variables: list[Variable] = []
@@ -150,7 +160,6 @@ def _declaration(
             maximum=_LONGEST_MICRO_STEP,
         )
     )
-    states = sum(i.component.declaration.state_count for i in instances)
     return Declaration(
         system.name,
         f"{system.description} ({', '.join(i.name for i in instances)} in one FMU)",
@@ -165,10 +174,39 @@ def _declaration(
             for i in instances
             for t in i.component.declaration.texts
         ],
-        hidden_states=sum(map(_hidden, instances)),
+        vectors=_vectors(instances, layout.block_first),
         tables=sum(i.component.declaration.size for i in instances),
-        work=steppers.body_work(states, len(open_inputs)),
+        work=steppers.body_work(layout.state_first[-1], len(open_inputs)),
     )
+
+
+def _vectors(instances: list[Instance], blocks: tuple[int, ...]) -> Iterator[StateVector]:
+    """The parts' state vectors; the tables begin with the parts' blocks."""
+    for first, instance in zip(blocks, instances, strict=False):
+        declaration = instance.component.declaration
+        for v in declaration.vectors:
+            yield replace(
+                v,
+                name=_full_name(instance, v.name),
+                text=v.text and f"{instance.name}.{v.text}",
+                length=first + declaration.first_table + v.length,
+            )
+
+
+def _nominals(
+    declaration: Declaration, instances: list[Instance], blocks: tuple[int, ...]
+) -> Callable[[np.ndarray], np.ndarray]:
+    def nominals(b: np.ndarray) -> np.ndarray:
+        tables = b[declaration.first_table :]
+        found = [
+            i.component.nominals(tables[first : first + i.block.size])
+            if i.component.nominals
+            else np.ones(_hidden(i))
+            for first, i in zip(blocks, instances, strict=False)
+        ]
+        return np.concatenate(found)
+
+    return nominals
 
 
 def _feedthrough(

@@ -48,6 +48,7 @@ def system_rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 @kernel
 def system_out(b: np.ndarray, t: float) -> None:
     blocks = b[{first}:]
+    refresh(b)
     place(b)
     scatter(blocks, b[:{states}])
     propagate(blocks, t)
@@ -62,6 +63,13 @@ def system_start(b: np.ndarray) -> None:
     refresh(b)
     scatter(blocks, b[:{states}])
 {starts}    return
+
+
+@kernel
+def system_indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
+    blocks = b[{first}:]
+    scatter(blocks, b[:{states}])
+{indicators}    return
 
 
 @kernel
@@ -91,8 +99,10 @@ def composite_source(
     """
     loading = [i for i in instances if i.component.declaration.texts]
     starting = {i.component.name for i in instances if hasattr(i.component.start, "py_func")}
+    indicating = {i.component.name for i in instances if i.component.indicators}
     lines = [twin]
     lines += [f'\n{n}_start = COMPONENTS["{n}"].start' for n in sorted(starting)]
+    lines += [f'\n{n}_indicators = COMPONENTS["{n}"].indicators' for n in sorted(indicating)]
     names = sorted({i.component.name for i in loading})
     lines += [f'\n{n}_load = COMPONENTS["{n}"].load.kernel' for n in names]
     for name, pairs in (("OUTPUT", m.outputs), ("PARAMETER", m.parameters)):
@@ -105,6 +115,7 @@ def composite_source(
         outputs=len(m.outputs),
         inputs="".join(f"    blocks[{to}] = b[{at}]\n" for at, to in m.inputs) or "    return\n",
         starts=_starts(instances, blocks, states, starting),
+        indicators=_indicators(instances, blocks),
         loads=_loads(instances, blocks),
     )
     return "".join([*lines, "\n", text])
@@ -122,6 +133,20 @@ def _starts(
                 f"    for i in range({count}):\n"
                 f"        b[{states[p]} + i] = blocks[{blocks[p]} + i]\n"
             )
+    return "".join(lines)
+
+
+def _indicators(instances: list[Instance], blocks: tuple[int, ...]) -> str:
+    """The parts' event indicators, part after part; they depend on states and parameters alone."""
+    lines, first = [], 0
+    for p, instance in enumerate(instances):
+        end = first + instance.component.indicator_count
+        if end > first:
+            lines.append(
+                f"    {instance.component.name}_indicators("
+                f"blocks[{blocks[p]}:{blocks[p + 1]}], t, z[{first}:{end}])\n"
+            )
+        first = end
     return "".join(lines)
 
 

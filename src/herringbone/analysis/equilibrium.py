@@ -18,7 +18,10 @@ from herringbone.cosim.system import System
 _ITERATIONS = 40
 _CONVERGED = 1e-11
 _DIFFERENCE = 1e-3
-_SCALE = {"m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0}
+_SCALE = {
+    "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
+    "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
+}  # fmt: skip
 _RANK = 1e-12
 
 
@@ -90,7 +93,8 @@ def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
     for instance in twin.instances:
         declaration = instance.component.declaration
         names += [f"the rate of {instance.name}.{v.name}" for v in declaration.states]
-        names += [f"a modal rate of {instance.name}"] * declaration.hidden_states
+        for v in declaration.vectors:
+            names += [f"the rate of {instance.name}.{v.element(k + 1)}" for k in range(v.capacity)]
     return [names[k] for k in keep] + zero
 
 
@@ -105,13 +109,13 @@ def _steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
 
 
 def _scales(twin: Twin) -> np.ndarray:
-    """Sizes of the states; modal coordinates have those of a displacement."""
+    """Sizes of the states."""
     scales = []
     for instance in twin.instances:
         declaration = instance.component.declaration
         scales += [_SCALE.get(v.unit, 1.0) for v in declaration.states]
-        scales += [1e-6] * (declaration.hidden_states // 2)
-        scales += [1e-3] * (declaration.hidden_states - declaration.hidden_states // 2)
+        for vector in declaration.vectors:
+            scales += [_SCALE.get(vector.unit, 1.0)] * vector.capacity
     return np.array(scales)
 
 

@@ -20,18 +20,20 @@ from herringbone.core.variable import NODES
 from herringbone.kernels import affine_step
 from herringbone.kernels.affine_step import HEADER
 
-CHANGE = {"m": 1e-9, "m/s": 1e-6, "rad": 1e-7, "rad/s": 1e-3, "N": 1e-2, "N.m": 1e-3}
+CHANGE = {
+    "m": 1e-9, "m/s": 1e-6, "rad": 1e-7, "rad/s": 1e-3, "N": 1e-2, "N.m": 1e-3,
+    "kg^1/2.m": 1e-9, "kg^1/2.m/s": 1e-6,
+}  # fmt: skip
 """Differences by unit: small against the mesh deflection (1e-6 m), large against rounding."""
 OTHER_CHANGE = 1e-6
-_HIDDEN_CHANGE = (1e-9, 1e-6)
 
 
 def state_changes(instance: Instance) -> list[float]:
-    """Differences of a part's states; the hidden ones are positions, then velocities [m, m/s]."""
+    """Differences of a part's states, those of its state vectors last."""
     declaration = instance.component.declaration
     found = [CHANGE.get(v.unit, OTHER_CHANGE) for v in declaration.states]
-    for change in _HIDDEN_CHANGE:
-        found += [change] * (declaration.hidden_states // 2)
+    for vector in declaration.vectors:
+        found += [CHANGE.get(vector.unit, OTHER_CHANGE)] * vector.capacity
     return found
 
 

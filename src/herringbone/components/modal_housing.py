@@ -9,6 +9,10 @@ Positions and velocities never depend on the inputs directly; the accelerations 
 
 `start.<seat>.f_x` ... are the forces under which the housing is at rest at the start.
 
+In model exchange the modal coordinates q[i] are continuous states: as many as the data have with
+which the FMU was built. With other data of another number of modes, such an instance is refused;
+co-simulation takes any data.
+
 Modes of kind "residual" are pseudo modes that make the static compliance at the seats exact;
 "rigid" modes have no stiffness. The data that come along are described in HOUSING.md.
 
@@ -33,6 +37,7 @@ from herringbone.core import (
     Component,
     Declaration,
     Kernels,
+    StateVector,
     Text,
     Variable,
     input_,
@@ -46,6 +51,10 @@ from herringbone.kernels.steppers import NOT_FINITE
 
 MODES = 64
 """Most modes that the component takes."""
+_USUAL_FORCE = 1e3
+"""Force [N] along each degree of freedom, for the usual sizes of the modal coordinates."""
+_SLOWEST, _SMALLEST_SHAPE = 2.0 * math.pi * 10.0, 1e-6
+"""What rigid modes [rad/s], and modes that do not move the seats [kg^-1/2], count as there."""
 _DOFS = tuple((seat, axis) for seat in HALVES for axis in "xyz")
 _N = len(_DOFS)
 _FORCES = tuple(f"{seat}.f_{axis}" for seat, axis in _DOFS)
@@ -89,7 +98,13 @@ _d = Declaration(
             modal_data.shape_columns(_DOFS),
         ),
     ],
-    hidden_states=2 * MODES,
+    vectors=[
+        StateVector(name, unit, f"modal {what}", MODES, "modes", "modes")
+        for name, unit, what in (
+            ("q", "kg^1/2.m", "coordinate"),
+            ("der(q)", "kg^1/2.m/s", "velocity"),
+        )
+    ],
     tables=_TABLE_SIZE,
     work=_WORK,
 )
@@ -255,4 +270,20 @@ def _load(
 
 _LOADER = ResourceLoader(_d.texts, _load, modal_data.refusals(_DOFS, MODES), scratch=1)
 
-MODAL_HOUSING = Component(_d, Kernels(_step, _rhs, _out), __doc__, load=_LOADER, start=_start)
+
+def _nominals(b: np.ndarray) -> np.ndarray:
+    """Deflections under the usual force at all seats, and their rates at the natural frequency."""
+    omega = np.maximum(b[_OMEGA : _OMEGA + MODES], _SLOWEST)
+    shapes = b[_SHAPES : _SHAPES + _N * MODES].reshape(_N, MODES)
+    force = _USUAL_FORCE * np.maximum(np.linalg.norm(shapes, axis=0), _SMALLEST_SHAPE)
+    return np.concatenate([force / omega**2, force / omega])
+
+
+MODAL_HOUSING = Component(
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    load=_LOADER,
+    start=_start,
+    nominals=_nominals,
+)

@@ -32,7 +32,16 @@ import math
 
 import numpy as np
 
-from herringbone.core import Component, Declaration, Kernels, input_, local, output, parameter
+from herringbone.core import (
+    Component,
+    Declaration,
+    Kernels,
+    StateVector,
+    input_,
+    local,
+    output,
+    parameter,
+)
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 from herringbone.kernels.sampling import sampler_stepper, sampler_work
@@ -74,7 +83,10 @@ _d = Declaration(
                   minimum=0, maximum=32, whole=True),
         parameter("micro_step", "s", "longest Runge-Kutta step", 2e-5, minimum=1e-9, maximum=1e-4),
     ],
-    hidden_states=2 * _SECTIONS,
+    vectors=[
+        StateVector(name, "m/s", f"state {name} of the filters' sections", _SECTIONS)
+        for name in ("x", "z")
+    ],
     work=sampler_work(2 * _SECTIONS, 1),
 )  # fmt: skip
 

@@ -15,6 +15,7 @@ from herringbone.core.instance import Instance
 from herringbone.core.outcome import Outcome, OutcomeKind
 from herringbone.core.variable import (
     Column,
+    StateVector,
     Text,
     Variable,
     input_,
@@ -37,6 +38,7 @@ __all__ = [
     "OutcomeKind",
     "ParameterError",
     "ResourceError",
+    "StateVector",
     "StructureError",
     "Text",
     "Variable",

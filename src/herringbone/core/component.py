@@ -55,6 +55,8 @@ class Component:
         indicators: kernel (b, t, z) that writes the event indicators of model exchange: the
             right-hand side is not smooth where one of them changes its sign.
         indicator_count: how many there are.
+        nominals: sizes (hidden_states,) that the elements of the state vectors usually have, from
+            the tables of a block; None: 1. Integrators scale their tolerance by them.
         samples: its step also takes samples, which `rhs` and `out` do not show.
     """
 
@@ -67,6 +69,7 @@ class Component:
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
     indicators: Callable[[np.ndarray, float, np.ndarray], None] | None = None
     indicator_count: int = 0
+    nominals: Callable[[np.ndarray], np.ndarray] | None = None
     samples: bool = False
 
     @property

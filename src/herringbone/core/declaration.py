@@ -9,7 +9,7 @@ from functools import cached_property
 
 from herringbone.core.errors import ParameterError, StructureError
 from herringbone.core.units import base_exponents
-from herringbone.core.variable import NODES, Causality, Text, Variable, parameter
+from herringbone.core.variable import NODES, Causality, StateVector, Text, Variable, parameter
 
 INTERFACE_DEGREE = "interface_degree"
 
@@ -27,7 +27,7 @@ class Declaration:
         description: one line.
         variables: states first or not, in the order in which they are shown.
         texts: String parameters that name resource files.
-        hidden_states: states that are no FMI variables, such as modal coordinates.
+        vectors: states whose number follows from resource files, such as modal coordinates.
         tables: length of the table part of the block.
         work: length of the work space that the kernels need.
 
@@ -44,14 +44,14 @@ class Declaration:
         variables: Iterable[Variable],
         *,
         texts: Iterable[Text] = (),
-        hidden_states: int = 0,
+        vectors: Iterable[StateVector] = (),
         tables: int = 0,
         work: int = 0,
     ) -> None:
         self.name = name
         self.description = description
         self.texts = tuple(texts)
-        self.hidden_states = hidden_states
+        self.vectors = tuple(vectors)
         self.tables = tables
         self.work = work
         self.variables = (
@@ -70,11 +70,13 @@ class Declaration:
         self._check()
 
     def _check(self) -> None:
-        names = [v.name for v in self.variables] + [t.name for t in self.texts]
+        names = [v.name for v in (*self.variables, *self.texts, *self.vectors)]
         twice = sorted({n for n in names if names.count(n) > 1})
         if twice:
             raise StructureError(f"{self.name}: declared twice: {', '.join(twice)}")
         inputs = {v.name for v in self.inputs}
+        for vector in self.vectors:
+            base_exponents(vector.unit)
         for v in self.variables:
             base_exponents(v.unit)
             unknown = set(v.feedthrough) - inputs
@@ -105,9 +107,23 @@ class Declaration:
         return self._select(Causality.PARAMETER)
 
     @property
+    def hidden_states(self) -> int:
+        """Room for the states that are no variables in co-simulation."""
+        return sum(v.capacity for v in self.vectors)
+
+    @property
     def state_count(self) -> int:
         """Number of states, hidden ones included; they lie at the start of the block."""
         return len(self.states) + self.hidden_states
+
+    @property
+    def vector_indices(self) -> dict[str, int]:
+        """Index of the first element of each state vector; they follow the other states."""
+        first, found = len(self.states), {}
+        for vector in self.vectors:
+            found[vector.name] = first
+            first += vector.capacity
+        return found
 
     @cached_property
     def first_input(self) -> int:

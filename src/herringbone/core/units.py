@@ -6,7 +6,7 @@ from herringbone.core.errors import StructureError
 
 BASE_UNITS: Final = ("kg", "m", "s", "rad")
 
-UNITS: Final[dict[str, dict[str, int]]] = {
+UNITS: Final[dict[str, dict[str, float]]] = {
     "1": {},
     "s": {"s": 1},
     "m": {"m": 1},
@@ -26,6 +26,9 @@ UNITS: Final[dict[str, dict[str, int]]] = {
     "N.m/s": {"kg": 1, "m": 2, "s": -3},
     "W": {"kg": 1, "m": 2, "s": -3},
     "Hz": {"s": -1},
+    "kg^1/2.m": {"kg": 0.5, "m": 1},
+    "kg^1/2.m/s": {"kg": 0.5, "m": 1, "s": -1},
+    "kg^1/2.m/s2": {"kg": 0.5, "m": 1, "s": -2},
 }
 
 RATES: Final = {
@@ -34,11 +37,13 @@ RATES: Final = {
     "rad": "rad/s",
     "rad/s": "rad/s2",
     "N.m": "N.m/s",
+    "kg^1/2.m": "kg^1/2.m/s",
+    "kg^1/2.m/s": "kg^1/2.m/s2",
 }
 """Units of the time derivatives of quantities that are states."""
 
 
-def base_exponents(unit: str) -> dict[str, int]:
+def base_exponents(unit: str) -> dict[str, float]:
     """SI base-unit exponents of a unit.
 
     Raises:

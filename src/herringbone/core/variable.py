@@ -63,6 +63,38 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
+class StateVector:
+    """States of which a resource file decides how many there are.
+
+    They are hidden: the block has room for `capacity` of them, of which the first ones are in use
+    and the others stay 0, so that co-simulation takes any data. A native FMU is built with one data
+    set; the elements that are in use there become variables, `x[1]`, `x[2]`, ..., and states of its
+    model exchange. A system as one component keeps the vectors of its parts, `part.x`.
+
+    Attributes:
+        name: of the vector; the vector `der(x)` has the derivatives of the vector `x`.
+        unit, description: as of a variable.
+        capacity: room in the block.
+        elements: what the elements stand for, in the plural, such as "modes".
+        text: the String parameter whose file decides how many there are; "": all are in use.
+        length: index in the tables at which loading writes how many there are.
+    """
+
+    name: str
+    unit: str
+    description: str
+    capacity: int
+    elements: str = "elements"
+    text: str = ""
+    length: int = 0
+
+    def element(self, k: int) -> str:
+        """Name of element k = 1, 2, ...; FMI's structured names put the index inside `der(...)`."""
+        inside = self.name.removesuffix(")")
+        return f"{inside}[{k}]" + self.name[len(inside) :]
+
+
+@dataclass(frozen=True, slots=True)
 class Column:
     """A column of a resource file: numbers in one of some units, or words.
 
@@ -147,9 +179,11 @@ def state(
     )
 
 
-def local(name: str, unit: str, description: str) -> Variable:
+def local(name: str, unit: str, description: str, *, nominal: float = 1.0) -> Variable:
     """A local variable that the kernel updates and that is no state, such as a time counter."""
-    return Variable(name, unit, Causality.LOCAL, Variability.CONTINUOUS, description)
+    return Variable(
+        name, unit, Causality.LOCAL, Variability.CONTINUOUS, description, nominal=nominal
+    )
 
 
 def parameter(

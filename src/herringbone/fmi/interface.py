@@ -3,6 +3,7 @@
 The value reference of a real is its index in the block, that of a String lies above the block.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from herringbone.core import Component, Declaration, Text, Variable, local
@@ -39,35 +40,45 @@ def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
 
 
 def has_model_exchange(component: Component) -> bool:
-    """True if the component's native FMUs offer model exchange.
-
-    All its states are variables, and its step does nothing but integrate.
-    """
-    declaration = component.declaration
-    return bool(declaration.states) and not declaration.hidden_states and not component.samples
+    """True if native FMUs offer model exchange: the step does nothing but integrate states."""
+    return component.declaration.state_count > 0 and not component.samples
 
 
-def derivatives(component: Component) -> dict[str, tuple[int, Variable]]:
-    """The time derivative of each state for model exchange, by the state's name.
+def visible_states(component: Component) -> dict[int, Variable]:
+    """The states that are variables in co-simulation, too, by index in the block.
 
-    Returns:
-        Value reference and variable: a state that is the rate of another one, or a variable of its
-        own, behind the Strings. Empty if model exchange is not offered.
+    None if model exchange is not offered.
     """
     if not has_model_exchange(component):
         return {}
     declaration = component.declaration
-    states = {v.name: v for v in declaration.states}
+    return {declaration.index[v.name]: v for v in declaration.states}
+
+
+def derivatives(
+    declaration: Declaration, states: Mapping[int, Variable]
+) -> dict[int, tuple[int, Variable]]:
+    """The time derivative of each state, by the state's value reference.
+
+    Args:
+        declaration: of the component.
+        states: the continuous states of model exchange.
+
+    Returns:
+        Value reference and variable: a state that is the rate of another one, or a variable of its
+        own, behind the Strings.
+    """
+    reference = {v.name: index for index, v in states.items()}
     found = {}
-    for i, variable in enumerate(declaration.states):
+    for index, variable in states.items():
         name = f"der({variable.name})"
-        if name in states:
-            found[variable.name] = declaration.index[name], states[name]
+        if name in reference:
+            found[index] = reference[name], states[reference[name]]
         else:
             if variable.name.startswith("der("):
                 name = f"{variable.name.removesuffix(')')},2)"
             rate = local(name, RATES[variable.unit], f"time derivative of {variable.name}")
-            found[variable.name] = first_derivative(declaration) + i, rate
+            found[index] = first_derivative(declaration) + index, rate
     return found
 
 

@@ -11,6 +11,7 @@ from herringbone.core.paths import content_hash
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface
+from herringbone.fmi.used_states import UsedStates
 
 STEP_SIZE: Final = 1e-5
 """Communication step size of the default experiment [s]."""
@@ -41,12 +42,12 @@ def identifier(component: Component) -> str:
     return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}"))
 
 
-def model_description(component: Component, *, native: bool = False) -> Element:
+def model_description(component: Component, native: UsedStates | None = None) -> Element:
     """The root element; it depends on the sources alone, so that a build is reproducible.
 
     Args:
         component: what is described.
-        native: with what the native FMUs can do besides.
+        native: with what the native FMUs can do besides; these are the states that they show.
     """
     declaration = component.declaration
     root = Element(
@@ -60,25 +61,27 @@ def model_description(component: Component, *, native: bool = False) -> Element:
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
     )
-    rates = interface.derivatives(component) if native else {}
+    states = native.scalars() if native else {}
+    rates = interface.derivatives(declaration, states)
     if rates:
         root.set("numberOfEventIndicators", str(component.indicator_count))
         exchange = _CAPABILITIES | _DERIVATIVES
         SubElement(root, "ModelExchange", modelIdentifier=component.name, **exchange)
     capabilities = _STEPS | _CAPABILITIES | (_NATIVE | _DERIVATIVES if native else {})
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **capabilities)
-    add_units(root, declaration, *(rate.unit for _, rate in rates.values()))
+    shown = (v.unit for v in (*states.values(), *(rate for _, rate in rates.values())))
+    add_units(root, declaration, *shown)
     add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
-    reals = interface.reals(declaration)
+    reals = dict(sorted((interface.reals(declaration) | states).items()))
     for reference, variable in reals.items():
         variables.append(_real(reference, variable))
     for reference, text in interface.texts(declaration).items():
         variables.append(_string(reference, text))
     _add_structure(root, declaration, list(reals.values()))
     if rates:
-        _add_derivatives(root, rates)
+        _add_derivatives(root, list(reals), rates)
     return root
 
 
@@ -87,8 +90,9 @@ def add_units(root: Element, declaration: Declaration, *further: str) -> None:
     definitions = SubElement(root, "UnitDefinitions")
     for name in sorted({v.unit for v in declaration.variables}.union(further)):
         unit = SubElement(definitions, "Unit", name=name)
-        exponents = {base: str(n) for base, n in base_exponents(name).items()}
-        SubElement(unit, "BaseUnit", exponents)
+        exponents = base_exponents(name)
+        if all(n == int(n) for n in exponents.values()):  # FMI knows no others
+            SubElement(unit, "BaseUnit", {base: str(n) for base, n in exponents.items()})
 
 
 def add_log_categories(root: Element) -> None:
@@ -99,10 +103,11 @@ def add_log_categories(root: Element) -> None:
 
 
 def sizes(variable: Variable) -> dict[str, str]:
-    """The attributes of a finite range, and of a state's nominal value."""
+    """The attributes of a finite range, and of a nominal value."""
     range_ = {"min": variable.minimum, "max": variable.maximum}
     found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
-    return found | ({"nominal": repr(float(variable.nominal))} if variable.state else {})
+    known = variable.state or variable.nominal != 1.0
+    return found | ({"nominal": repr(float(variable.nominal))} if known else {})
 
 
 def _scalar(
@@ -160,22 +165,29 @@ def _add_structure(root: Element, declaration: Declaration, reals: list[Variable
         SubElement(unknowns, "Unknown", index=index, dependencies=_join(sorted(inputs + exact)))
 
 
-def _add_derivatives(root: Element, rates: dict[str, tuple[int, Variable]]) -> None:
-    """Say which variable is the derivative of which state; those that are new are added."""
-    variables = root.find("ModelVariables")
-    structure = root.find("ModelStructure")
-    shown = {v.get("name"): (i, v) for i, v in enumerate(variables, 1)}
+def _add_derivatives(
+    root: Element, references: list[int], rates: dict[int, tuple[int, Variable]]
+) -> None:
+    """Say which variable is the derivative of which state; those that are new are added.
+
+    States and derivatives that are calculated are unknown in initialisation, in order of position.
+    """
+    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
+    position = {reference: i for i, reference in enumerate(references, 1)}
     derivatives = Element("Derivatives")
     structure.insert(1, derivatives)
     for state, (reference, rate) in rates.items():
-        if rate.name not in shown:
+        if reference not in position:
             variables.append(_real(reference, rate))
-            shown[rate.name] = len(variables), variables[-1]
-            index = str(len(variables))
-            SubElement(structure.find("InitialUnknowns"), "Unknown", index=index)
-        index, element = shown[rate.name]
-        element.find("Real").set("derivative", str(shown[state][0]))
-        SubElement(derivatives, "Unknown", index=str(index))
+            position[reference] = len(variables)
+        element = variables[position[reference] - 1]
+        element.find("Real").set("derivative", str(position[state]))
+        SubElement(derivatives, "Unknown", index=str(position[reference]))
+    unknowns = structure.find("InitialUnknowns")
+    for reference in {*rates, *(reference for reference, _ in rates.values())}:
+        if variables[position[reference] - 1].get("initial") == "calculated":
+            SubElement(unknowns, "Unknown", index=str(position[reference]))
+    unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index")))
 
 
 def _join(indices: list[int]) -> str:

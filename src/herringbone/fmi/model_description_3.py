@@ -19,6 +19,7 @@ from herringbone.fmi.model_description import (
     identifier,
     sizes,
 )
+from herringbone.fmi.used_states import UsedStates
 
 _TIME_UNIT: Final = "s"
 _CAPABILITIES: Final = {
@@ -34,8 +35,13 @@ _STEPS: Final = {
 }
 
 
-def model_description_3(component: Component) -> Element:
-    """The root element; it depends on the sources alone, so that a build is reproducible."""
+def model_description_3(used: UsedStates) -> Element:
+    """The root element; it depends on the sources alone, so that a build is reproducible.
+
+    Args:
+        used: the component, and the states that its FMU shows.
+    """
+    component = used.component
     declaration = component.declaration
     root = Element(
         "fmiModelDescription",
@@ -48,15 +54,17 @@ def model_description_3(component: Component) -> Element:
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
     )
-    rates = interface.derivatives(component)
+    states = used.arrays()
+    rates = interface.derivatives(declaration, {i: v for i, (v, _) in states.items()})
     if rates:
         SubElement(root, "ModelExchange", modelIdentifier=component.name, **_CAPABILITIES)
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **_STEPS, **_CAPABILITIES)
-    add_units(root, declaration, _TIME_UNIT, *(rate.unit for _, rate in rates.values()))
+    shown = [*(v for v, _ in states.values()), *(rate for _, rate in rates.values())]
+    add_units(root, declaration, _TIME_UNIT, *(v.unit for v in shown))
     add_log_categories(root)
     SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
     variables = SubElement(root, "ModelVariables")
-    references = _references(declaration)
+    references = dict(sorted((_references(declaration) | states).items()))
     for reference, (variable, extent) in references.items():
         variables.append(_float64(reference, variable, extent))
     for reference, text in interface.texts(declaration).items():
@@ -81,13 +89,13 @@ def model_description_3(component: Component) -> Element:
     )
     _add_structure(root, declaration, references)
     if rates:
-        _add_derivatives(root, declaration, rates)
+        _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
         _add_indicators(root, component)
     return root
 
 
 def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:
-    """The variables and their lengths by ascending value reference."""
+    """The variables and their lengths by value reference."""
     found = {}
     for variable in declaration.variables:
         first = declaration.index[variable.name]
@@ -96,7 +104,7 @@ def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:
             text = f"{variable.description}; nodes of the macro step"
             nodes = replace(variable, name=f"{variable.name}.node", description=text)
             found[first + 1] = nodes, NODES
-    return dict(sorted(found.items()))
+    return found
 
 
 def _float64(reference: int, variable: Variable, extent: int) -> Element:
@@ -152,20 +160,25 @@ def _add_structure(
 
 
 def _add_derivatives(
-    root: Element, declaration: Declaration, rates: dict[str, tuple[int, Variable]]
+    root: Element, extents: dict[int, int], rates: dict[int, tuple[int, Variable]]
 ) -> None:
-    """Say which variable is the derivative of which state; those that are new are added."""
+    """Say which variable is the derivative of which state; those that are new are added.
+
+    States and derivatives that are calculated are unknown in initialisation.
+    """
     variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
-    shown = {v.get("name"): v for v in variables}
+    shown = {int(v.get("valueReference")): v for v in variables}
     outputs = len(structure.findall("Output"))
     for place, (state, (reference, rate)) in enumerate(rates.items(), outputs):
         derivative = Element("ContinuousStateDerivative", valueReference=str(reference))
         structure.insert(place, derivative)
-        if rate.name not in shown:
-            shown[rate.name] = _float64(reference, rate, 1)
-            variables.append(shown[rate.name])
+        if reference not in shown:
+            shown[reference] = _float64(reference, rate, extents[state])
+            variables.append(shown[reference])
+        shown[reference].set("derivative", str(state))
+    for reference in sorted({*rates, *(reference for reference, _ in rates.values())}):
+        if shown[reference].get("initial") == "calculated":
             SubElement(structure, "InitialUnknown", valueReference=str(reference))
-        shown[rate.name].set("derivative", str(declaration.index[state]))
 
 
 def _add_indicators(root: Element, component: Component) -> None:

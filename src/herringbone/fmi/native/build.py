@@ -105,7 +105,7 @@ def _make_libraries(models: list[Model], platforms: list[Platform]) -> None:
         _compile_kernels(folder, missing, wanted)
         for model in wanted:
             description = folder / f"{model.name}.c"
-            description.write_text(component_source(model.component), encoding="ascii")
+            description.write_text(component_source(model.states), encoding="ascii")
             for platform in missing:
                 kernels = folder / platform.name / f"{model.name}.o"
                 check_object(kernels.read_bytes(), platform, model.name)

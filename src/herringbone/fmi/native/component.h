@@ -18,7 +18,8 @@
 
 /* What the environment may do with an entry of the block. */
 enum HbAccess {
-    HB_HIDDEN,     /* no FMI variable: hidden states */
+    HB_HIDDEN,     /* no FMI variable: elements of a state vector that are not in use */
+    HB_ELEMENT,    /* never set: element of a state vector, made when initialisation ends */
     HB_INPUT,      /* set at any time */
     HB_OUTPUT,     /* never set */
     HB_LOCAL,      /* never set */
@@ -31,7 +32,7 @@ enum HbAccess {
 typedef struct {
     const char *name, *unit; /* name is NULL for a hidden state */
     double start, minimum, maximum;
-    double nominal; /* of a state, hidden or not; 1 otherwise */
+    double nominal; /* of a state; 1 otherwise */
     uint8_t whole;  /* a parameter that takes whole numbers only */
 } HbReal;
 
@@ -60,6 +61,15 @@ typedef struct {
     const char *format;
 } HbRefusal;
 
+/* A state vector whose number of elements a resource file decides. Model exchange has as many as the
+   data set with which the FMU is built; co-simulation takes any. */
+typedef struct {
+    uint32_t count;       /* elements that model exchange has */
+    uint32_t length;      /* index of the entry of the tables that tells how many there are */
+    uint32_t text;        /* the resource file that decides (index in `texts`) */
+    const char *elements; /* what they stand for, such as "modes" */
+} HbVector;
+
 typedef struct {
     const char *name;    /* FMI model identifier */
     const char *token;   /* guid of FMI 2, instantiationToken of FMI 3 */
@@ -79,7 +89,8 @@ typedef struct {
     const HbReal *reals;
     const uint8_t *access;  /* HbAccess */
     const uint8_t *extents; /* FMI 3: length of the array variable that starts here; 0: none does.
-                               A signal with nodes is the scalar X and the array X.node[4]. */
+                               A signal with nodes is the scalar X and the array X.node[4], a state
+                               vector is one array, and so are its derivatives. */
     const uint32_t *rates;  /* index of the output or state that is the entry's time derivative, 0:
                                none is known */
 
@@ -107,8 +118,11 @@ typedef struct {
     uint32_t refusals_count;
     const HbRefusal *refusals;
 
-    /* Model exchange, offered if `model_exchange`. */
-    uint32_t model_exchange;
+    /* Model exchange, offered if it has states: `exchanged` are their indices, in its order. */
+    uint32_t exchanged_count;
+    const uint32_t *exchanged;
+    uint32_t vectors_count;
+    const HbVector *vectors;
     uint32_t indicators_count;
     void (*indicators)(double *b, double t, double *z);
     /* Directional derivative. d, as long as the block: on entry the direction at states and inputs,

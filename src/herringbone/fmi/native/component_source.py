@@ -1,15 +1,16 @@
 """The C file that describes one component to the wrapper; see component.h for every entry."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 from herringbone.components.resource_loader import ResourceLoader
-from herringbone.core import Component, Declaration, Text, Variable
+from herringbone.core import Declaration, Text, Variable
 from herringbone.core.component import unchanged
 from herringbone.core.paths import content_hash
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
+from herringbone.fmi.used_states import UsedStates
 
 _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
 _ENTRY_POINTS = """\
@@ -24,9 +25,14 @@ void hb_indicators(double *b, double t, double *z);
 """
 
 
-def component_source(component: Component) -> str:
-    """C source that defines `hb_component`; it depends on the sources alone."""
-    declaration = component.declaration
+def component_source(used: UsedStates) -> str:
+    """C source that defines `hb_component`; it depends on the sources and the data set alone.
+
+    Args:
+        used: the component, and the states that its FMU shows.
+    """
+    component, declaration = used.component, used.component.declaration
+    states, block = used.scalars(), _block(used)
     loader = component.load if isinstance(component.load, ResourceLoader) else None
     refusals = loader.refusals if loader else ()
     parts = [
@@ -35,10 +41,12 @@ def component_source(component: Component) -> str:
         "#include <stddef.h>",
         '#include "component.h"',
         _ENTRY_POINTS,
-        _array("HbReal reals", _reals(declaration)),
-        _array("uint8_t access", _access(declaration)),
-        _array("uint8_t extents", _extents(declaration)),
-        _array("uint32_t rates", _rates(declaration)),
+        _array("HbReal reals", _reals(block)),
+        _array("uint8_t access", _access(block, states)),
+        _array("uint8_t extents", _extents(used)),
+        _array("uint32_t rates", _rates(declaration, block)),
+        _array("uint32_t exchanged", states),
+        _array("HbVector vectors", _vectors(used)),
         *_grammars(declaration.texts),
         _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
@@ -72,7 +80,10 @@ def component_source(component: Component) -> str:
         "load_scratch": loader.scratch if loader else 0,
         "refusals_count": len(refusals),
         "refusals": "refusals",
-        "model_exchange": int(interface.has_model_exchange(component)),
+        "exchanged_count": len(states),
+        "exchanged": "exchanged",
+        "vectors_count": sum(bool(v.vector.text) for v in used.vectors),
+        "vectors": "vectors",
         "indicators_count": component.indicator_count,
         "indicators": "hb_indicators" if component.indicators else "NULL",
         "tangent": "hb_tangent",
@@ -109,23 +120,26 @@ def _real(variable: Variable) -> str:
     return f"{{{', '.join(words)}, {int(variable.whole)}}}"
 
 
-def _block(declaration: Declaration) -> list[Variable | None]:
+def _block(used: UsedStates) -> list[Variable | None]:
     """The variables by index in the block, parameters included; None: a hidden state."""
-    reals = interface.reals(declaration)
+    declaration = used.component.declaration
+    reals = interface.reals(declaration) | used.scalars()
     return [reals.get(i) for i in range(declaration.first_table)]
 
 
-def _reals(declaration: Declaration) -> Iterable[str]:
-    for variable in _block(declaration):
+def _reals(block: list[Variable | None]) -> Iterable[str]:
+    for variable in block:
         yield _real(variable) if variable else "{NULL, NULL, 0.0, 0.0, 0.0, 1.0, 0}"
 
 
-def _access(declaration: Declaration) -> Iterable[str]:
-    for variable in _block(declaration):
+def _access(block: list[Variable | None], states: Container[int]) -> Iterable[str]:
+    for index, variable in enumerate(block):
         if variable is None:
             yield "HB_HIDDEN"
         elif variable.state:
             yield "HB_STATE"
+        elif index in states:
+            yield "HB_ELEMENT"
         elif variable.causality is Causality.INPUT:
             yield "HB_INPUT"
         elif variable.causality is Causality.PARAMETER:
@@ -134,27 +148,41 @@ def _access(declaration: Declaration) -> Iterable[str]:
             yield "HB_OUTPUT" if variable.causality is Causality.OUTPUT else "HB_LOCAL"
 
 
-def _extents(declaration: Declaration) -> list[int]:
+def _extents(used: UsedStates) -> list[int]:
+    declaration = used.component.declaration
     extents = [0] * declaration.first_table
     for variable in declaration.variables:
         first = declaration.index[variable.name]
         extents[first] = 1
         if variable.nodes:
             extents[first + 1] = NODES
+    for first, (_, extent) in used.arrays().items():
+        extents[first] = extent
     return extents
 
 
-def _rates(declaration: Declaration) -> Iterable[int]:
+def _rates(declaration: Declaration, block: list[Variable | None]) -> Iterable[int]:
     """Index of the output that is an output's time derivative, 0 if there is none.
 
     Ports name motions by Modelica: s, v, a and phi, w, a.
     """
     index = {v.name: declaration.index[v.name] for v in declaration.outputs}
-    for variable in _block(declaration):
+    for variable in block:
         port, _, quantity = variable.name.rpartition(".") if variable else ("", "", "")
         kind, *axis = quantity.split("_")
         rate = "_".join([_RATES.get(kind, ""), *axis])
         yield index.get(f"{port}.{rate}", 0) if f"{port}.{quantity}" in index else 0
+
+
+def _vectors(used: UsedStates) -> Iterable[str]:
+    """The state vectors whose number of elements a resource file decides."""
+    declaration = used.component.declaration
+    texts = [text.name for text in declaration.texts]
+    for of in used.vectors:
+        v = of.vector
+        if v.text:
+            length, text = declaration.first_table + v.length, texts.index(v.text)
+            yield f"{{{len(of.nominals)}, {length}, {text}, {_string(v.elements)}}}"
 
 
 def _grammars(texts: Iterable[Text]) -> Iterable[str]:

@@ -95,7 +95,9 @@ fmi3Status fmi3Reset(fmi3Instance c) {
 static size_t extent(fmi3ValueReference reference) {
     if (reference < hb_component.first_table)
         return hb_component.extents[reference];
-    return reference >= reference_of_rate(0) && reference <= last_reference();
+    if (reference >= reference_of_rate(0) && reference < reference_of_time())
+        return hb_component.extents[reference - reference_of_rate(0)];
+    return reference >= reference_of_time() && reference <= last_reference();
 }
 
 /* Value references of all elements of the variables, one per value. If all are scalars, these are

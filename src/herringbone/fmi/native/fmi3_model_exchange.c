@@ -70,6 +70,6 @@ fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *count) {
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *count) {
     if (!c || !count)
         return fmi3Error;
-    *count = hb_component.states;
+    *count = hb_component.exchanged_count;
     return fmi3OK;
 }

@@ -75,6 +75,21 @@ static Status refuse_tables(Instance *instance, int32_t number, char *const file
                          why.text);
 }
 
+/* Model exchange has the states of the data set with which the FMU was built. */
+static Status check_vectors(Instance *instance, char *const files[]) {
+    for (uint32_t k = 0; instance->model_exchange && k < hb_component.vectors_count; k++) {
+        const HbVector *vector = &hb_component.vectors[k];
+        if (instance->block[vector->length] != vector->count)
+            return instance_fail(instance, STATUS_ERROR,
+                                 "%s: %s: %g %s, but this FMU was built for %u in model exchange; "
+                                 "export it again with this file, or use co-simulation",
+                                 instance->name, files[vector->text],
+                                 instance->block[vector->length], vector->elements,
+                                 (unsigned)vector->count);
+    }
+    return STATUS_OK;
+}
+
 static Status make_tables(Instance *instance, const Numbers *numbers, const int64_t *shape,
                           char *const files[]) {
     double report[HB_REPORT] = {0.0};
@@ -88,6 +103,9 @@ static Status make_tables(Instance *instance, const Numbers *numbers, const int6
     free(scratch);
     if (refusal)
         return refuse_tables(instance, refusal, files, report);
+    Status status = check_vectors(instance, files);
+    if (status != STATUS_OK)
+        return status;
     memset(instance->work, 0, hb_component.work * sizeof *instance->work);
     instance->now.tables = hash_tables(tables, count);
     return STATUS_OK;

@@ -93,7 +93,7 @@ Instance *instance_new(const char *name, const char *token, const char *resource
         log_write(log, STATUS_ERROR, &message);
         return NULL;
     }
-    if (model_exchange && !hb_component.model_exchange) {
+    if (model_exchange && !hb_component.exchanged_count) {
         message_write(&message, "%s: this FMU offers co-simulation only", name);
         log_write(log, STATUS_ERROR, &message);
         return NULL;

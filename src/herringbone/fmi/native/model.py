@@ -11,6 +11,7 @@ from herringbone.components.registry import component
 from herringbone.core import Component
 from herringbone.core.paths import resources_folder
 from herringbone.fmi.native.component_source import component_source
+from herringbone.fmi.used_states import UsedStates, used_states
 
 _REGISTRY = "herringbone.components.registry:component"
 
@@ -39,10 +40,15 @@ class Model:
         return self.component.name
 
     @cached_property
+    def states(self) -> UsedStates:
+        """The states that its FMU shows."""
+        return used_states(self.component, self.resources)
+
+    @cached_property
     def key(self) -> str:
         """Hash of all that decides on the FMU, besides the sources of the package."""
         digest = hashlib.sha256()
-        for text in (self.factory, self.argument, self.identity, component_source(self.component)):
+        for text in (self.factory, self.argument, self.identity, component_source(self.states)):
             digest.update(text.encode() + b"\0")
         for name, file in sorted(self.resources.items()):
             digest.update(name.encode() + b"\0" + file.read_bytes())

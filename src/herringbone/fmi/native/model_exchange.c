@@ -1,6 +1,5 @@
-/* Model exchange: the host integrates. All states count, hidden ones too. */
+/* Model exchange: the host integrates. */
 #include <math.h>
-#include <string.h>
 
 #include "instance.h"
 
@@ -47,30 +46,26 @@ Status instance_move_time(Instance *instance, double time) {
     return instance_set_time(instance, time, "time");
 }
 
-static const char *state_name(uint32_t state) {
-    const char *name = hb_component.reals[state].name;
-    return name ? name : "hidden state";
-}
-
 /* Refuse a NaN or infinite number per state: the integrator may try a smaller step. */
 static Status check_finite(Instance *instance, const double numbers[], const char *of) {
-    for (uint32_t i = 0; i < hb_component.states; i++)
-        if (!isfinite(numbers[i]))
+    for (uint32_t k = 0; k < hb_component.exchanged_count; k++)
+        if (!isfinite(numbers[k]))
             return instance_fail(instance, STATUS_DISCARD,
                                  "%s: %s%s = %g; reduce the integrator's step, or check the inputs",
-                                 instance->name, of, state_name(i),
-                                 isnan(numbers[i]) ? NAN : numbers[i]);
+                                 instance->name, of,
+                                 hb_component.reals[hb_component.exchanged[k]].name,
+                                 isnan(numbers[k]) ? NAN : numbers[k]);
     return STATUS_OK;
 }
 
 Status instance_set_continuous_states(Instance *instance, const double states[], size_t count) {
     if (!in(instance, 1u << PHASE_EVENT | 1u << PHASE_CONTINUOUS))
         return instance_refuse(instance, "setContinuousStates");
-    if (count != hb_component.states)
-        return refuse_length(instance, "states", count, hb_component.states);
+    if (count != hb_component.exchanged_count)
+        return refuse_length(instance, "states", count, hb_component.exchanged_count);
     Status status = check_finite(instance, states, "");
-    if (status == STATUS_OK)
-        memcpy(instance->block, states, count * sizeof *states);
+    for (size_t k = 0; status == STATUS_OK && k < count; k++)
+        instance->block[hb_component.exchanged[k]] = states[k];
     instance->outdated = instance->rates_outdated = true;
     return status;
 }
@@ -78,32 +73,34 @@ Status instance_set_continuous_states(Instance *instance, const double states[],
 Status instance_get_continuous_states(Instance *instance, double states[], size_t count) {
     if (!in(instance, ANY_MODE | 1u << PHASE_TERMINATED))
         return instance_refuse(instance, "getContinuousStates");
-    if (count != hb_component.states)
-        return refuse_length(instance, "states", count, hb_component.states);
+    if (count != hb_component.exchanged_count)
+        return refuse_length(instance, "states", count, hb_component.exchanged_count);
     Status status = instance->outdated ? instance_refresh(instance) : STATUS_OK;
-    memcpy(states, instance->block, count * sizeof *states);
+    for (size_t k = 0; k < count; k++)
+        states[k] = instance->block[hb_component.exchanged[k]];
     return status;
 }
 
 Status instance_get_nominals(Instance *instance, double nominals[], size_t count) {
     if (!in(instance, ANY_MODE | 1u << PHASE_TERMINATED))
         return instance_refuse(instance, "getNominalsOfContinuousStates");
-    if (count != hb_component.states)
-        return refuse_length(instance, "states", count, hb_component.states);
-    for (size_t i = 0; i < count; i++)
-        nominals[i] = hb_component.reals[i].nominal;
+    if (count != hb_component.exchanged_count)
+        return refuse_length(instance, "states", count, hb_component.exchanged_count);
+    for (size_t k = 0; k < count; k++)
+        nominals[k] = hb_component.reals[hb_component.exchanged[k]].nominal;
     return STATUS_OK;
 }
 
 Status instance_get_rates(Instance *instance, double rates[], size_t count) {
     if (!in(instance, ANY_MODE | 1u << PHASE_TERMINATED))
         return instance_refuse(instance, "getDerivatives");
-    if (count != hb_component.states)
-        return refuse_length(instance, "derivatives", count, hb_component.states);
+    if (count != hb_component.exchanged_count)
+        return refuse_length(instance, "derivatives", count, hb_component.exchanged_count);
     Status status = instance->rates_outdated ? instance_refresh_rates(instance) : STATUS_OK;
     if (status != STATUS_OK)
         return status;
-    memcpy(rates, instance->rates, count * sizeof *rates);
+    for (size_t k = 0; k < count; k++)
+        rates[k] = instance->rates[hb_component.exchanged[k]];
     return check_finite(instance, rates, "derivative of ");
 }
 

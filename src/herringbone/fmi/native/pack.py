@@ -29,7 +29,9 @@ def pack_native(model: Model, libraries: Mapping[Platform, Path], fmi: int, fmu:
     """
     component = model.component
     description = (
-        model_description(component, native=True) if fmi == 2 else model_description_3(component)
+        model_description(component, model.states)
+        if fmi == 2
+        else model_description_3(model.states)
     )
     binaries = _by_tuple(component, libraries) if fmi == 3 else _by_system(component, libraries)
     resources = {f"resources/{name}": file.read_bytes() for name, file in model.resources.items()}

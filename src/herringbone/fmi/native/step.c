@@ -3,14 +3,20 @@
 
 #include "instance.h"
 
-/* Name of the first entry that is NaN or infinite, hidden states last; NULL if there is none. */
+static bool in_vector(uint32_t index) {
+    return hb_component.access[index] == HB_HIDDEN || hb_component.access[index] == HB_ELEMENT;
+}
+
+/* Name of the first entry that is NaN or infinite, those of state vectors last; NULL if there is
+   none. */
 static const char *first_not_finite(const Instance *instance, double *value, const char **unit) {
-    for (int hidden = 0; hidden < 2; hidden++) {
+    for (int last = 0; last < 2; last++) {
         for (uint32_t i = 0; i < hb_component.first_table; i++) {
-            if ((hb_component.access[i] == HB_HIDDEN) == hidden && !isfinite(instance->block[i])) {
+            if (in_vector(i) == last && !isfinite(instance->block[i])) {
+                const HbReal *real = &hb_component.reals[i];
                 *value = isnan(instance->block[i]) ? NAN : instance->block[i];
-                *unit = hidden ? "" : hb_component.reals[i].unit;
-                return hidden ? "hidden state" : hb_component.reals[i].name;
+                *unit = real->name ? real->unit : "";
+                return real->name ? real->name : "hidden state";
             }
         }
     }

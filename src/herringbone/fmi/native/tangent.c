@@ -29,9 +29,14 @@ static Status prepare(Instance *instance) {
     return instance->outdated ? instance_refresh(instance) : STATUS_OK;
 }
 
+static bool is_state(uint32_t reference) {
+    return hb_component.access[reference] == HB_STATE ||
+           hb_component.access[reference] == HB_ELEMENT;
+}
+
 static bool is_known(uint32_t reference) {
-    return instance_is_real(reference) && (hb_component.access[reference] == HB_INPUT ||
-                                           hb_component.access[reference] == HB_STATE);
+    return instance_is_real(reference) &&
+           (hb_component.access[reference] == HB_INPUT || is_state(reference));
 }
 
 /* Tangent of an unknown; NULL if it has none. */
@@ -40,8 +45,8 @@ static const double *tangent_of(const Instance *instance, uint32_t reference) {
     if (reference - reference_of_rate(0) < hb_component.states)
         return &dx[hb_component.states + reference - reference_of_rate(0)];
     bool has = instance_is_output(reference) ||
-               (instance_is_real(reference) && (hb_component.access[reference] == HB_STATE ||
-                                                hb_component.access[reference] == HB_LOCAL));
+               (instance_is_real(reference) &&
+                (is_state(reference) || hb_component.access[reference] == HB_LOCAL));
     return has ? &instance->direction[reference] : NULL;
 }
 
