@@ -15,6 +15,7 @@ from herringbone.housing.modal_model import ModalHousing
 from herringbone.housing.reduction import Reduction, reduce_model
 
 if TYPE_CHECKING:
+    from herringbone.housing.finite_elements import FiniteElements
     from herringbone.housing.mode_shares import ModeShares
 
 STAGES = 9
@@ -69,13 +70,12 @@ def build_housing(
     mesh = mesh_housing(design.dimensions, design.mesh_size)
     progress(f"assemble {len(mesh.tetrahedra)} tetrahedra")
     elements = FiniteElements(design, mesh)
-    options = design.modes
     found = reduce_model(
         elements.stiffness,
         elements.mass,
         elements.seat_input,
-        band_hz=options.band_hz,
-        tolerance=options.tolerance,
+        band_hz=design.modes.band_hz,
+        tolerance=design.modes.tolerance,
         progress=progress,
     )
     progress("energy shares")
@@ -83,21 +83,32 @@ def build_housing(
     shares = mode_shares(elements, found.frequency_hz[lowest], found.vectors[:, lowest])
     progress("surface")
     gram = found.vectors.T @ (elements.radiating_form() @ found.vectors)
-    model = ModalHousing(
+    model = _modal_housing(design, elements, found, (gram + gram.T) / 2.0, len(mesh.tetrahedra))
+    return BuiltHousing(model, shares, elements.total_mass, elements.stiffness.shape[0])
+
+
+def _modal_housing(
+    design: HousingDesign,
+    elements: "FiniteElements",
+    found: Reduction,
+    gram: np.ndarray,
+    tetrahedra: int,
+) -> ModalHousing:
+    """The modal data of a reduced model: at seats and sensors, with where they come from."""
+    return ModalHousing(
         kind=found.kind,
         frequency_hz=found.frequency_hz,
-        damping_ratio=_damping_ratio(found, options),
+        damping_ratio=_damping_ratio(found, design.modes),
         points=elements.points,
         shapes=np.vstack([found.seat_shapes, elements.sensor_output() @ found.vectors]),
-        valid_to_hz=options.band_hz,
+        valid_to_hz=design.modes.band_hz,
         damping={"model": "viscous-modal", "source": "given with the dimensions: assumed"},
         boundary="faces of the base bolt holes fixed",
-        source=_source(design, len(mesh.tetrahedra), elements.stiffness.shape[0]),
+        source=_source(design, tetrahedra, elements.stiffness.shape[0]),
         static=found.static,
-        gram=(gram + gram.T) / 2.0,
+        gram=gram,
         certificate=found.certificate,
     )
-    return BuiltHousing(model, shares, elements.total_mass, elements.stiffness.shape[0])
 
 
 def _damping_ratio(found: Reduction, options: ModeOptions) -> np.ndarray:
