@@ -21,7 +21,12 @@ from functools import cached_property
 from herringbone.core import ParameterError
 from herringbone.gears import given, iso6336
 from herringbone.gears.checks import check_given, check_meshing
-from herringbone.gears.contact import PathOfContact, ToothForces
+from herringbone.gears.contact import (
+    PathOfContact,
+    ToothForces,
+    path_of_contact,
+    tooth_forces,
+)
 from herringbone.gears.half_body import GapShaft, HalfBody, gap_shaft, half_body
 from herringbone.gears.tooth_profile import Rack, ToothProfile, generate_tooth
 
@@ -227,21 +232,7 @@ class GearPair:
     @cached_property
     def path_of_contact(self) -> PathOfContact:
         """Points A to E on the line of action, in the transverse plane."""
-        total = self.center_distance * math.sin(self.working_transverse_pressure_angle)
-        reach = [
-            math.sqrt(tip**2 - base**2)
-            for tip, base in zip(self.tip_radius, self.base_radius, strict=True)
-        ]
-        start, end = total - reach[1], reach[0]
-        pitch = self.base_radius[0] * math.tan(self.working_transverse_pressure_angle)
-        return PathOfContact(
-            start,
-            end - self.transverse_base_pitch,
-            pitch,
-            start + self.transverse_base_pitch,
-            end,
-            total,
-        )
+        return path_of_contact(self)
 
     @cached_property
     def length_of_path_of_contact(self) -> float:
@@ -269,20 +260,8 @@ class GearPair:
         return abs(speed) * self.number_of_teeth[0] / (2.0 * math.pi)
 
     def tooth_forces(self, torque: float) -> ToothForces:
-        """Static forces in the mesh at a torque of the pinion [N m], shared equally by the halves.
-
-        The normal force is T1 / (halves r_b1 cos(beta_b)): combined with base radii, the helix
-        angle is the one at the base cylinder.
-        """
-        along = torque / self.base_radius[0]
-        half = along / self.halves
-        return ToothForces(
-            tangential=torque / self.reference_radius[0],
-            line_of_action=along,
-            normal=half / math.cos(self.base_helix_angle),
-            axial=half * math.tan(abs(self.base_helix_angle)),
-            radial=half * math.sin(self.working_transverse_pressure_angle),
-        )
+        """Static forces in the mesh at a torque of the pinion [N m], shared by the halves."""
+        return tooth_forces(self, torque)
 
     # Teeth and bodies
 

@@ -118,26 +118,12 @@ def generate_tooth(
     Raises:
         ParameterError: the tooth has no flank.
     """
-    longer = 1.0 / math.cos(helix_angle)
-    alpha_n, x = rack.pressure_angle, rack.profile_shift
-    alpha = math.atan(math.tan(alpha_n) * longer)
-    radius = 0.5 * number_of_teeth * rack.module * longer
-    base = radius * math.cos(alpha)
-    half_thickness = 0.25 * math.pi * rack.module + x * math.tan(alpha_n)
-    centre = x - rack.dedendum + rack.fillet_radius
-    tangent = centre - rack.fillet_radius * math.sin(alpha_n)
-    along = half_thickness - tangent * math.tan(alpha_n) + rack.fillet_radius * math.cos(alpha_n)
-
-    def trochoid(theta: np.ndarray) -> np.ndarray:
-        u = longer * (along - rack.fillet_radius * np.cos(theta))
-        v = centre - rack.fillet_radius * np.sin(theta)
-        return _rolled(u, v, v / (longer * np.tan(theta)), radius)
-
-    half_angle = half_thickness * longer / radius
-    at_base = half_angle + involute(alpha)
-    undercut = tangent < -radius * math.sin(alpha) ** 2
-    last = _meets_involute(trochoid, alpha_n, base, at_base) if undercut else alpha_n
-    fillet = trochoid(np.linspace(0.5 * math.pi, last, points))
+    cut = _Cut(rack, number_of_teeth, helix_angle)
+    radius, base, at_base = cut.radius, cut.base, cut.half_angle + involute(cut.alpha)
+    undercut = cut.tangent < -radius * math.sin(cut.alpha) ** 2
+    end = rack.pressure_angle
+    last = _meets_involute(cut.trochoid, end, base, at_base) if undercut else end
+    fillet = cut.trochoid(np.linspace(0.5 * math.pi, last, points))
     form = float(np.hypot(*fillet[-1]))
     if form >= tip_radius:
         raise ParameterError(
@@ -152,13 +138,45 @@ def generate_tooth(
         flank=flank,
         reference_radius=radius,
         base_radius=base,
-        root_radius=radius + x - rack.dedendum,
+        root_radius=radius + rack.profile_shift - rack.dedendum,
         form_radius=form,
         tip_radius=tip_radius,
-        reference_half_angle=half_angle,
+        reference_half_angle=cut.half_angle,
         number_of_teeth=number_of_teeth,
         undercut=undercut,
     )
+
+
+class _Cut:
+    """A rack as it cuts a gear, in the transverse section.
+
+    Attributes:
+        longer: lengths along the pitch line, over those in the normal section.
+        alpha: transverse pressure angle [rad].
+        radius, base: reference and base radius [m].
+        half_angle: half of the tooth's angle at the reference circle [rad].
+        along, centre: u in the normal section, and v, of the tip rounding's centre [m].
+        tangent: v at which the straight flank goes over into the tip rounding [m].
+    """
+
+    def __init__(self, rack: Rack, number_of_teeth: float, helix_angle: float) -> None:
+        alpha_n, self.fillet_radius = rack.pressure_angle, rack.fillet_radius
+        self.longer = 1.0 / math.cos(helix_angle)
+        self.alpha = math.atan(math.tan(alpha_n) * self.longer)
+        self.radius = 0.5 * number_of_teeth * rack.module * self.longer
+        self.base = self.radius * math.cos(self.alpha)
+        half_thickness = 0.25 * math.pi * rack.module + rack.profile_shift * math.tan(alpha_n)
+        self.half_angle = half_thickness * self.longer / self.radius
+        self.centre = rack.profile_shift - rack.dedendum + rack.fillet_radius
+        self.tangent = self.centre - rack.fillet_radius * math.sin(alpha_n)
+        flank = half_thickness - self.tangent * math.tan(alpha_n)
+        self.along = flank + rack.fillet_radius * math.cos(alpha_n)
+
+    def trochoid(self, theta: np.ndarray) -> np.ndarray:
+        """Points (n, 2) [m] that the tip rounding cuts at its angles [rad]."""
+        u = self.longer * (self.along - self.fillet_radius * np.cos(theta))
+        v = self.centre - self.fillet_radius * np.sin(theta)
+        return _rolled(u, v, v / (self.longer * np.tan(theta)), self.radius)
 
 
 def _involutes(radii: np.ndarray, base: float) -> np.ndarray:
