@@ -5,6 +5,8 @@ import os
 import signal
 import threading
 import time
+from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +19,8 @@ from support_parts import (
     spoil_at,
 )
 
-from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.part import closing_all
 from herringbone.cosim.algorithms import GaussSeidel, Jacobi
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.simulation import make_grid, simulate
@@ -275,3 +278,12 @@ def test_unconnected_inputs_keep_their_start_value(algorithm):
     recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(2.0, 0.1, 0.1))
     found = columns(recording, ("left.flange.s", "right.flange.s", "spring.a.f"))[-1]
     assert found == pytest.approx([6.0, 6.0, 0.0], abs=1e-12)  # s = a t^2 / 2
+
+
+def test_all_parts_are_closed_after_an_error():
+    closed = []
+    parts = [SimpleNamespace(close=partial(closed.append, name)) for name in ("left", "right")]
+    with pytest.raises(HerringboneError), closing_all(parts) as opened:
+        assert opened is parts
+        raise HerringboneError("a part refuses to initialise")
+    assert closed == ["left", "right"]
