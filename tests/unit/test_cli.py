@@ -124,7 +124,7 @@ def test_check(capsys, python_fmus):
 
 def test_check_of_no_fmu(capsys, tmp_path):
     file = tmp_path / "x.fmu"
-    assert shown(capsys, "check", str(file), code=1).startswith(f"there is no file {file}")
+    assert refused(capsys, "check", str(file)) == f"herringbone: there is no file {file}\n"
     file.write_text("not a zip")
     assert shown(capsys, "check", str(file), code=1).startswith(f"{file} is not an FMU")
 

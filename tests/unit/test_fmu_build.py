@@ -59,7 +59,8 @@ def test_scripts_are_thin_and_have_two_methods(name):
 def test_check_reports_files_that_are_no_fmu(tmp_path):
     (tmp_path / "text.fmu").write_text("text")
     assert "is not an FMU" in check_fmu(tmp_path / "text.fmu")[0]
-    assert "there is no file" in check_fmu(tmp_path / "none.fmu")[0]
+    with pytest.raises(FmuError, match=r"there is no file .*none\.fmu"):
+        check_fmu(tmp_path / "none.fmu")
 
 
 def test_check_reports_a_real_without_unit_and_an_invalid_structure(python_fmus, tmp_path):

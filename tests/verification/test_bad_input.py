@@ -175,7 +175,11 @@ def test_system_file(refused, tmp_path, text, said):
         ("--algorithm=jacobi:order=7", "jacobi: order=7; it must be 0, 1 or 2"),
         ("--algorithm=jacobi:order=two", "jacobi:order=two"),
         ("--tolerance=2", "li: tolerance=2; it must lie between 1e-08 and 1"),
-        ("--slow=nope=2", "slow: nope=2: there is no instance 'nope'"),
+        (
+            "--slow=nope=2",
+            "slow: nope=2: there is no instance 'nope'; drive_motor, load_motor, gear_mesh, "
+            "modal_housing can be slow",
+        ),
         ("--slow=drive_motor", "--slow drive_motor: it must be INSTANCE=N,..."),
         ("--slow=drive_motor=2.5", "--slow drive_motor=2.5: it must be a whole number of steps"),
         ("--slow=load_coupling=2", "load_coupling has direct feedthrough; only bodies can be slow"),

@@ -46,6 +46,11 @@ class Network:
         other = {*self.elements, *self.sources, *self.slow}
         return tuple(i for i in range(len(self.parts)) if i not in other)
 
+    @property
+    def _that_can_be_slow(self) -> str:
+        names = [self.parts[p].name for p in self.bodies if p not in self.feedthrough]
+        return f"{', '.join(names)} can be slow" if names else "no part here can be slow"
+
     def inputs(self, part: int) -> list[Connection]:
         """Connections that feed a part."""
         return [c for c in self.connections if c.target == part]
@@ -61,11 +66,14 @@ class Network:
         for name, multiple in multiples.items():
             what = f"slow: {name}={multiple}"
             if name not in index:
-                raise ParameterError(f"{what}: there is no instance '{name}'")
+                raise ParameterError(
+                    f"{what}: there is no instance '{name}'; {self._that_can_be_slow}"
+                )
             if index[name] not in self.bodies or index[name] in self.feedthrough:
                 kind = "has no input" if index[name] in self.sources else "has direct feedthrough"
                 raise ParameterError(
-                    f"{what}: {name} {kind}; only bodies can be slow, which send motion"
+                    f"{what}: {name} {kind}; only bodies can be slow, which send motion: "
+                    f"{self._that_can_be_slow}"
                 )
             if int(multiple) != multiple or not 1 <= multiple <= MOST_MULTIPLE:
                 raise ParameterError(f"{what}: it must be a whole number, 1 to {MOST_MULTIPLE}")

@@ -24,7 +24,12 @@ def check_fmu(path: Path) -> list[str]:
 
     Returns:
         Problems, one line each; empty if none was found.
+
+    Raises:
+        FmuError: there is no such file.
     """
+    if not path.is_file():
+        raise FmuError(f"there is no file {path}")
     try:
         description = read_fmu(path)
     except FmuError as error:
