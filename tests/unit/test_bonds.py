@@ -1,46 +1,87 @@
-"""The bond table of the test rig against the prototype's, and of two rotors in closed form."""
+"""Bonds in closed form: of the test rig from its masses and its housing's shapes, of two rotors."""
 
-from dataclasses import replace
+import csv
+import math
 
 import numpy as np
 import pytest
-from support_parts import PROTOTYPE_HOUSING
 
 from herringbone.analysis.bonds import bond_table, highest_frequency
 from herringbone.analysis.linear_parts import linear_network
+from herringbone.core.paths import resources_folder
 from herringbone.cosim.system import PartSpec, System
 from herringbone.cosim.system_file import find_system, read_system
 from herringbone.scenes import find_scene, read_scene
 from herringbone.start import started
 
-EXPECTED = {  # gear and seat mass [kg], frequency [Hz], damping ratio
-    "bearing_supports.shaft.pinion_left.f_y": (6.5, 7.22, 2167.0, 0.0276),
-    "bearing_supports.shaft.pinion_right.f_y": (6.5, 7.21, 2168.0, 0.0276),
-    "bearing_supports.shaft.wheel_left.f_y": (47.74, 8.86, 1466.0, 0.0506),
-    "bearing_supports.shaft.wheel_right.f_z": (47.74, 4.48, 1120.0, 0.0683),
+ANGLE = math.atan(math.tan(math.radians(20.0)) / math.cos(math.radians(30.0)))
+"""Working transverse pressure angle of a pair without profile shift, 30 degrees helix."""
+MASS = {"pinion": 6.5, "wheel": 47.739}
+RADIAL, AXIAL = 6.34e8, 2.03e8
+DIRECTIONS = {"y": {"x": math.sin(ANGLE), "y": math.cos(ANGLE)}, "z": {"z": 1.0}}
+HELD = (("pinion", "y", RADIAL), ("wheel", "y", RADIAL), ("wheel", "z", AXIAL))
+BEARINGS = {  # gear half, axis: mass [kg], stiffness [N/m]
+    (f"{gear}_{side}", axis): (MASS[gear], stiffness)
+    for gear, axis, stiffness in HELD
+    for side in ("left", "right")
 }
+COUPLINGS = {  # stiffness, damping, inertias of motor and of both gear halves
+    "drive_coupling.flange_a.tau": (6e4, 5.0, (0.08, 2.0 * 7.38e-3)),
+    "load_coupling.flange_a.tau": (3e5, 50.0, (2.0 * 0.5813, 2.0)),
+}
+DAMPING_RATIO = 0.02
+"""Of a gear half on its bearing, against rigid ground."""
+EXACT = 1e-5
+"""Masses are known to five digits; slopes are found by differences of linear equations."""
 
 
 @pytest.fixture(scope="module")
 def rig():
     scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
-    scene = replace(scene, values={**scene.values, **PROTOTYPE_HOUSING})
     return linear_network(started(read_system("test_rig"), scene)[0])
 
 
-def test_bonds_of_the_test_rig(rig):
+@pytest.fixture(scope="module")
+def seat_shapes():
+    """Mass-normalised shapes [kg^-1/2] of the shipped housing along each bearing, (n, modes)."""
+    file = resources_folder("modal_housing") / "shapes.csv"
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
+    shapes = {(row[0], row[1]): np.array(row[2:], dtype=float) for row in csv.reader(lines[1:])}
+    return np.array(
+        [
+            sum(part * shapes[half, dof] for dof, part in DIRECTIONS[axis].items())
+            for half, axis in BEARINGS
+        ]
+    )
+
+
+def test_bonds_of_the_test_rig(rig, seat_shapes):
+    """A seat's mass is 1 / sum of its squared shapes; six bearings hold, the pinion floats."""
     table = {bond.name: bond for bond in bond_table(*rig)}
-    assert len(table) == 8  # six bearings that hold, two couplings; the pinion floats axially
-    for name, (gear, seat, frequency, zeta) in EXPECTED.items():
-        bond = table[name]
+    expected = [f"bearing_supports.shaft.{half}.f_{axis}" for half, axis in BEARINGS]
+    assert set(table) == {*expected, *COUPLINGS}
+    for name, (mass, k), shape in zip(expected, BEARINGS.values(), seat_shapes, strict=True):
+        bond, seat = table[name], 1.0 / (shape @ shape)
         assert bond.bodies == ("gear_mesh", "modal_housing")
-        assert bond.masses == pytest.approx((gear, seat), rel=0.01)
-        assert bond.frequency / (2.0 * np.pi) == pytest.approx(frequency, rel=0.01)
-        assert bond.damping_ratio == pytest.approx(zeta, rel=0.01)
+        assert bond.masses == pytest.approx((mass, seat), rel=EXACT)
+        assert bond.frequency == pytest.approx(math.sqrt(k / mass + k / seat), rel=EXACT)
+        zeta = DAMPING_RATIO * math.sqrt(1.0 + mass / seat)
+        assert bond.damping_ratio == pytest.approx(zeta, rel=EXACT)
+    for name, (k, damping, inertias) in COUPLINGS.items():
+        w = math.sqrt(k * sum(1.0 / inertia for inertia in inertias))
+        assert table[name].masses == pytest.approx(inertias, rel=EXACT)
+        assert table[name].frequency == pytest.approx(w, rel=EXACT)
+        assert table[name].damping_ratio == pytest.approx(0.5 * damping * w / k, rel=EXACT)
 
 
-def test_all_bonds_together_are_a_little_faster_than_the_fastest(rig):
-    assert highest_frequency(*rig) == pytest.approx(2.0 * np.pi * 2173.0, rel=0.01)
+def test_all_bonds_together_are_a_little_faster_than_the_fastest(rig, seat_shapes):
+    """The housing connects the bearings; a gear half at one of them is alone."""
+    mass, k = np.array(list(BEARINGS.values())).T
+    inverse = np.diag(1.0 / mass) + seat_shapes @ seat_shapes.T
+    w = np.sqrt(np.linalg.eigvalsh(np.sqrt(np.outer(k, k)) * inverse)[-1])
+    assert highest_frequency(*rig) == pytest.approx(w, rel=EXACT)
+    fastest = max(bond.frequency for bond in bond_table(*rig))
+    assert 1.0 < w / fastest < 1.05
 
 
 def test_blocks_are_left_as_they_were(rig):
