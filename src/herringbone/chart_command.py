@@ -17,7 +17,7 @@ from herringbone.analysis.step_ladder import (
     ladder,
     run_points,
 )
-from herringbone.analysis.work_precision import Reach, WorkPrecision
+from herringbone.analysis.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.api import load_scene, load_system, open_parts
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import AUTO, parse_algorithm, refuse_adaptive
@@ -162,7 +162,7 @@ def table(found: WorkPrecision, files: Sequence[str]) -> str:
     for algorithm in found.algorithms:
         reached = [found.reach(algorithm, level) for level in LEVELS]
         lines.append(f"{algorithm:<{wide}}" + "".join(map(_cells, reached)))
-    lines += ["> no larger step was tried; ! the next larger one failed", ""]
+    lines += ["; ".join(f"{mark} {meaning}" for mark, meaning in MARKS.items()), ""]
     lines += [*found.notes, "Files: " + ", ".join(files)]
     return "\n".join(line.rstrip() for line in lines)
 
@@ -170,5 +170,4 @@ def table(found: WorkPrecision, files: Sequence[str]) -> str:
 def _cells(reach: Reach | None) -> str:
     if reach is None:
         return f"{'-':>12}{'-':>11}   "
-    mark = {"ladder": ">", "failure": "!"}.get(reach.limited, "")
-    return f"{f'{mark}{reach.step * 1e6:.1f}':>12}{reach.passes_per_ms:>11.0f}   "
+    return f"{f'{reach.mark}{reach.step * 1e6:.1f}':>12}{reach.passes_per_ms:>11.0f}   "

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -124,6 +125,20 @@ def test_picture(tmp_path):
     assert texts.count("80 µs") == 2
     write_chart(chart(), tmp_path / "chart.png")
     assert (tmp_path / "chart.png").stat().st_size < 2e5
+
+
+def test_legend_marks_what_the_table_marks():
+    """The ladder ends below the level, or the next step fails."""
+    points = (*(point(GOOD, h, 1e-4) for h in (1e-6, 20e-6)), point(CHEAP, 1e-6, 1e-4))
+    failed = point(CHEAP, 2e-6, math.inf, outcome="diverged")
+    found = replace(chart(), points=(*points, failed))
+    legend = chart_picture(found).legends[0]
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels[1:] == ["li degree 3  (>20 µs)", "jacobi order 1  (!1 µs)"]
+    rows = [line.split() for line in table(found, []).splitlines()[3:5]]
+    assert [row[3] for row in rows] == [">20.0", "!1.0"]
+    explained = ["> no larger step was tried", "! the next larger one failed"]
+    assert legend.get_title().get_text().splitlines()[1:] == explained
 
 
 def test_table():

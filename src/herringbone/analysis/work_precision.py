@@ -13,6 +13,8 @@ from typing import Any
 
 from herringbone.core import OutcomeKind
 
+MARKS = {">": "no larger step was tried", "!": "the next larger one failed"}
+"""What the marks of `Reach` mean."""
 REFUSED = "refused"
 """Outcome of a run that the algorithm or a part would not begin or go on with."""
 
@@ -68,6 +70,11 @@ class Reach:
     step: float
     passes_per_ms: float
     limited: str
+
+    @property
+    def mark(self) -> str:
+        """What stands before the step in tables, see MARKS; "" if it is interpolated."""
+        return {"ladder": ">", "failure": "!"}.get(self.limited, "")
 
 
 @dataclass(frozen=True)

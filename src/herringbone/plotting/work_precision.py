@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpecFromSubplotSpec
 from PIL import Image
 
-from herringbone.analysis.work_precision import Point, WorkPrecision
+from herringbone.analysis.work_precision import MARKS, Point, WorkPrecision
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
 LEVEL = 1e-3
@@ -138,7 +138,7 @@ def _draw_errors(axes: Axes, found: WorkPrecision, cost: Cost, looks: dict[str, 
     for algorithm in found.algorithms:
         good = [p for p in found.of(algorithm) if not p.failed]
         reach = found.reach(algorithm, LEVEL)
-        step = f"{reach.step * 1e6:.3g} µs" if reach else f"> {100 * LEVEL:g} %"
+        step = f"{reach.mark}{reach.step * 1e6:.3g} µs" if reach else "none"
         axes.plot(
             [cost(p) for p in good],
             [p.worst for p in good],
@@ -197,6 +197,10 @@ def _mark_real_time(axes: Axes) -> None:
 def _legend(figure: Figure, axes: Axes, found: WorkPrecision) -> None:
     """Right of the panels, where it covers no data."""
     handles, labels = axes.get_legend_handles_labels()
+    reached = [found.reach(algorithm, LEVEL) for algorithm in found.algorithms]
+    marks = {reach.mark for reach in reached if reach}
+    said = [f"{mark} {meaning}" for mark, meaning in MARKS.items() if mark in marks]
+    title = f"algorithm  (largest step for {100 * LEVEL:g} %)"
     legend = figure.legend(
         handles,
         labels,
@@ -205,7 +209,7 @@ def _legend(figure: Figure, axes: Axes, found: WorkPrecision) -> None:
         borderaxespad=0.0,
         handlelength=3.2,
         labelspacing=0.55,
-        title=f"algorithm  (largest step for {100 * LEVEL:g} %)",
+        title="\n".join((title, *said)),
         alignment="left",
     )
     legend.get_title().set_fontsize(8.5)
