@@ -20,7 +20,7 @@ from herringbone.analysis.step_ladder import (
 from herringbone.analysis.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.api import load_scene, load_system, open_parts
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.cosim.algorithms import AUTO, parse_algorithm, refuse_adaptive
+from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.start import started
@@ -36,6 +36,7 @@ def measure(
     scene: str | None = None,
     algorithms: Sequence[str] = (),
     steps: Sequence[float] = STEPS,
+    tolerances: Sequence[float] = (),
     t_end: float | None = None,
     fmu: str = AUTO_FMU,
     progress: Progress = lambda algorithm, step: None,
@@ -47,6 +48,7 @@ def measure(
         scene: name or file of a scene; the system's "loaded" if not given.
         algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
         steps: communication step sizes [s].
+        tolerances: relative errors for which li adapts its step, one more curve; none if not given.
         t_end: duration of each run [s]; the scene's if not given.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         progress: called before each run with the algorithm and the step [s].
@@ -59,7 +61,10 @@ def measure(
             f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
         )
     chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or charted_algorithms()
-    refuse_adaptive(chosen, "a chart shows the error of fixed steps")
+    if 0.0 in tolerances:
+        raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
+    refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
+    chosen = [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
     structure, folder = load_system(system)
     options = load_scene(folder, scene)
     options = replace(options, t_end=options.t_end if t_end is None else t_end)

@@ -98,6 +98,9 @@ def _comparison_options(sub: argparse.ArgumentParser) -> None:
 def _chart_options(sub: argparse.ArgumentParser) -> None:
     _comparison_options(sub)
     sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
+    sub.add_argument(
+        "--tolerances", type=float, nargs="+", help="relative errors: a curve of adaptive li"
+    )
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
     sub.add_argument(
@@ -145,7 +148,8 @@ def _chart(options: argparse.Namespace) -> int:
     from herringbone.chart_command import chart  # noqa: PLC0415 (numba: only when something runs)
 
     check_writable(options.output or Path("results"))
-    given = {"algorithms": options.algorithm, "steps": options.steps, "t_end": options.t_end}
+    given = {"algorithms": options.algorithm, **vars(options)}
+    given = {name: given[name] for name in ("algorithms", "steps", "tolerances", "t_end")}
     text, outcome = chart(
         options.system,
         options.output,

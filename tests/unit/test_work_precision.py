@@ -57,6 +57,14 @@ def test_failures_are_kept():
     assert [row["error"]["bearing_force"] for row in found.rows()[4:6]] == [7.0, None]
 
 
+def test_tolerances_make_one_curve():
+    name = "li:degree=3,iterations=1,tolerance="
+    points = [point(f"{name}{t:g}", h, t) for t, h in ((1e-3, 2e-5), (1e-4, 1e-5))]
+    found = replace(chart(), points=(*chart().points, *points))
+    assert found.algorithms == (CHEAP, GOOD, f"{name}*")
+    assert [p.step for p in found.of(f"{name}*")] == [1e-5, 2e-5]
+
+
 def test_reach_interpolates_in_logarithms():
     reach = chart().reach(CHEAP, 1e-3)
     assert reach.limited == "error"
@@ -114,6 +122,9 @@ def test_labels_show_what_differs():
         ("jacobi:order=1,schedule=parallel", "jacobi:order=2,schedule=parallel")
     )
     assert list(labels.values()) == ["jacobi order 1", "jacobi order 2"]
+    adaptive = f"{GOOD},tolerance=*"
+    labels = variant_labels((GOOD, adaptive))
+    assert labels == {GOOD: "li degree 3", adaptive: "li adaptive"}
     assert variant_labels(("predict", GOOD)) == {"predict": "predict", GOOD: "li degree 3"}
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from herringbone.chart_command import measure
 from herringbone.cli import main
+from herringbone.core import ParameterError
 from herringbone.housing import default_housing
 
 T_END = 0.005
@@ -54,6 +55,35 @@ def test_cost_and_internals(chart):
         else:
             assert passes == pytest.approx(1.0)
         assert p.wall_s > 0.0
+
+
+def test_curve_of_adaptive_li():
+    """Error over tolerance between 0.1 and 5, at the twin's values where the steps end."""
+    tolerances = (1e-2, 1e-3, 1e-4)
+    found = measure(
+        "test_rig", algorithms=(LI_3,), steps=(4e-5,), tolerances=tolerances, t_end=0.02,
+        fmu="in-process",
+    )  # fmt: skip
+    (_, curve) = found.algorithms
+    assert curve == "li:degree=3,iterations=1,tolerance=*"
+    points = found.of(curve)
+    for p, tolerance in zip(points, sorted(tolerances), strict=True):
+        assert p.algorithm == f"li:degree=3,iterations=1,tolerance={tolerance}"
+        assert 0.1 < p.worst / tolerance < 5.0
+    assert found.reach(curve, 1e-3).step > points[0].step
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"tolerances": (2.0,)}, "li: tolerance=2; it must lie between"),
+        ({"tolerances": (0.0,)}, "tolerances: 0 keeps the step"),
+        ({"algorithms": ("li:tolerance=1e-3",)}, "over steps or over --tolerances; leave the"),
+    ],
+)
+def test_bad_tolerances(options, words):
+    with pytest.raises(ParameterError, match=words):
+        measure("test_rig", **options)
 
 
 def test_command(tmp_path, capsys):

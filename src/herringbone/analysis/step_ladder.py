@@ -98,15 +98,22 @@ class Reference:
         """Relative error by channel group; infinite if the run ended early."""
         if not recording.outcome.completed:
             return dict.fromkeys(self.groups, math.inf)
-        rows = np.searchsorted(self._keys, _key(recording.time))
+        twin, time = self._at(recording.time)
         found = {}
         for group, columns in self.groups.items():
             values = recording.values[:, [recording.names.index(c) for c in columns]]
-            twin = self._values[rows][:, [self._columns.index(c) for c in columns]]
+            own = twin[:, [self._columns.index(c) for c in columns]]
             with np.errstate(over="ignore", invalid="ignore"):
-                error = relative_error(values, twin)
+                error = relative_error(values, own, time)
             found[group] = error if math.isfinite(error) else math.inf
         return found
+
+    def _at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """The twin (n, columns) at times; these too, if they are no grid of the reference."""
+        rows = np.searchsorted(self._keys, _key(times)).clip(max=self._keys.size - 1)
+        if np.array_equal(self._keys[rows], _key(times)):
+            return self._values[rows], None
+        return self.twin.solve(times, self._columns), times
 
 
 def _key(times: np.ndarray) -> np.ndarray:
@@ -124,13 +131,15 @@ def run_points(
 ) -> Iterator[tuple[Point, tuple[str, ...]]]:
     """Run each algorithm up the ladder, up to two failures in a row or an interrupt.
 
+    An algorithm that adapts its step runs once, up to its own largest step.
+
     Yields:
         Each point, and notes on it.
     """
     for algorithm in algorithms:
         failures = 0
         _warm(system, open_parts, algorithm, grids[0])
-        for grid in grids:
+        for grid in [_largest(algorithm, grids[0])] if algorithm.adaptive else grids:
             progress(str(algorithm), grid.step)
             point, notes = _point(system, open_parts, reference, algorithm, grid)
             yield point, notes
@@ -139,6 +148,13 @@ def run_points(
             failures = failures + 1 if point.failed else 0
             if failures == _FAILURES:
                 break
+
+
+def _largest(algorithm: Algorithm, grid: Grid) -> Grid:
+    """As long as a grid, with the largest step of an adaptive algorithm."""
+    t_end = grid.step * grid.count
+    step = min(algorithm.start_step, t_end)
+    return make_grid(t_end, step, step)
 
 
 def _simulated(

@@ -6,6 +6,7 @@ The error is that of `error.relative_error` against the monolithic twin. Cost is
 
 import csv
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 
 from herringbone.core import OutcomeKind
 
+_TOLERANCE = re.compile(r"(tolerance=)[^,]+")
 MARKS = {">": "no larger step was tried", "!": "the next larger one failed"}
 """What the marks of `Reach` mean."""
 REFUSED = "refused"
@@ -25,7 +27,7 @@ class Point:
 
     Attributes:
         algorithm: as on the command line.
-        step: communication step size, as used [s].
+        step: communication step size, as used [s]; the mean of an adaptive run.
         passes_per_ms: doStep calls of the most called part per simulated millisecond [1/ms].
         wall_s: wall time of the loop, the shortest of the repeats [s].
         t_reached: simulated time reached [s].
@@ -40,6 +42,11 @@ class Point:
     t_reached: float
     error: Mapping[str, float]
     outcome: str
+
+    @property
+    def curve(self) -> str:
+        """The algorithm; runs that adapt their step to different tolerances are one curve."""
+        return _TOLERANCE.sub(r"\1*", self.algorithm)
 
     @property
     def worst(self) -> float:
@@ -102,12 +109,12 @@ class WorkPrecision:
 
     @property
     def algorithms(self) -> tuple[str, ...]:
-        """Algorithms in the order in which they ran."""
-        return tuple(dict.fromkeys(p.algorithm for p in self.points))
+        """Algorithms in the order in which they ran, with `tolerance=*` if they adapt the step."""
+        return tuple(dict.fromkeys(p.curve for p in self.points))
 
     def of(self, algorithm: str) -> list[Point]:
         """Points of an algorithm, by ascending step."""
-        return sorted((p for p in self.points if p.algorithm == algorithm), key=lambda p: p.step)
+        return sorted((p for p in self.points if p.curve == algorithm), key=lambda p: p.step)
 
     def front(self, cost: Callable[[Point], float]) -> list[Point]:
         """Pareto front of the good points: no other is both cheaper and more accurate."""

@@ -48,6 +48,7 @@ def variant_labels(algorithms: tuple[str, ...]) -> dict[str, str]:
         others = [own for a, own in options.items() if a.partition(":")[0] == family]
         differing = [k for k, v in values.items() if any(o.get(k) != v for o in others)]
         shown = [f"{k} {values[k]}" for k in differing or list(values)[:1]]
+        shown = ["adaptive" if option == "tolerance *" else option for option in shown]
         found[algorithm] = " ".join([family.replace("_", " "), ", ".join(shown)]).strip()
     return found
 
