@@ -1,78 +1,96 @@
-"""The largest stable macro step of the non-linear system, from runs around the predicted one.
+"""The first unstable macro step as runs show it, near the predicted one.
 
-An unstable gearbox need not go beyond all bounds: its meshes open, and it keeps moving at a large
-amplitude. A step counts as unstable if its run ends early, or if in its second half the forces
-between the parts fluctuate more than in a run at half the predicted limit, by a factor.
+A step is unstable if a small perturbation of a run grows (see `perturbed_run`). Stability is not
+monotone in the step: steps are tried upwards, in the middle of predicted bands too, and only the
+interval before the first unstable one is halved.
 """
 
 import math
-from collections.abc import Callable
-
-import numpy as np
+from collections.abc import Callable, Sequence
 
 from herringbone.analysis.monolithic import make_instances
-from herringbone.components.in_process import InProcessPart
-from herringbone.core import HerringboneError
+from herringbone.analysis.perturbed_run import perturbation_growth
 from herringbone.cosim.algorithms import Algorithm
-from herringbone.cosim.energy import power_pairs
-from herringbone.cosim.network import build_network
-from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system import System
 
-DURATION, FEWEST = 0.02, 1000
-"""Shortest run [s], and the fewest macro steps of one."""
-LOUDER = 3.0
-"""Fluctuation of the forces, over that at half the predicted limit, of an unstable run."""
-HIGHEST = 2.0
-"""Highest step that is tried, over the predicted limit."""
-_BELOW, _RESOLUTION = 0.5, 1.02
+LOWEST, HIGHEST = 0.5, 2.0
+"""Range of steps that are tried, over the predicted limit."""
+_DURATION, _FEWEST, _MOST = 0.5, 1000, 12500
+_START, _FACTOR, _RESOLUTION = 0.9, 1.04, 1.01
+
+Bands = Sequence[tuple[float, float]]
 
 
-def nonlinear_limit(system: System, algorithm: Algorithm, predicted: float) -> float | None:
-    """Macro step [s] at which runs of the non-linear parts become unstable, to 2 %.
+def nonlinear_limit(
+    system: System, algorithm: Algorithm, predicted: float, bands: Bands = ()
+) -> float | None:
+    """First macro step [s] at which runs of the non-linear parts are unstable, to 1 %.
 
     Args:
         system: of components of this package, as it is started.
         algorithm: coupling algorithm.
         predicted: limit of the linear parts [s].
+        bands: predicted unstable steps (from, to) [s].
 
     Returns:
-        A step between half the predicted limit and twice of it; None if runs are stable up to
-        there, or if there is no finite prediction.
+        A step between half the predicted limit and twice of it; None if runs are stable, or
+        unstable, all the way, or if there is no finite prediction.
+    """
+
+    def unstable(step: float) -> bool:
+        steps = run_steps(predicted)
+        growth = perturbation_growth(
+            system, lambda: make_instances(system), algorithm, step, steps=steps
+        )
+        return growth > 0.0
+
+    return first_unstable(unstable, predicted, bands)
+
+
+def run_steps(near: float) -> int:
+    """Macro steps of a run that is to tell of steps near a given one [s].
+
+    Growth is seen from about 1.4 / steps, 0.01 to 0.14 % per step: the smaller the step, the more
+    slowly an unstable motion grows from step to step, and the cheaper is one.
+    """
+    return int(min(max(_DURATION / near, _FEWEST), _MOST))
+
+
+def first_unstable(
+    unstable: Callable[[float], bool], predicted: float, bands: Bands = (), highest: float = HIGHEST
+) -> float | None:
+    """First unstable step [s], to 1 %, looked for around a predicted one.
+
+    Args:
+        unstable: tells of a step.
+        predicted: limit [s].
+        bands: predicted unstable steps (from, to) [s], whose middles are tried.
+        highest: step that is tried last, over the predicted limit.
+
+    Returns:
+        The step; None if none is unstable, if all are, or if the prediction is not finite.
     """
     if not math.isfinite(predicted):
         return None
-    quiet = fluctuation(system, algorithm, _BELOW * predicted)
-
-    def unstable(step: float) -> bool:
-        return not fluctuation(system, algorithm, step) <= LOUDER * quiet
-
-    return _first(unstable, _BELOW * predicted, HIGHEST * predicted)
-
-
-def fluctuation(system: System, algorithm: Algorithm, step: float) -> float:
-    """Norm of the forces' standard deviations in the second half of a run; infinite if it ends."""
-    parts = [InProcessPart(i) for i in make_instances(system)]
-    network = build_network(system, parts)
-    forces = [
-        f"{parts[pair.force.source].name}.{pair.force.output}" for pair in power_pairs(network)
-    ]
-    grid = make_grid(max(DURATION, FEWEST * step), step, step)
-    try:
-        run = simulate(system, parts, algorithm, grid)
-    except HerringboneError:  # no Jacobian where the values overflow
-        return math.inf
-    if not run.outcome.completed:
-        return math.inf
-    columns = [run.names.index(name) for name in forces]
-    return float(np.linalg.norm(run.values[len(run.time) // 2 :, columns].std(axis=0)))
+    low = _START * predicted
+    while unstable(low):
+        low /= _FACTOR
+        if low < LOWEST * predicted:
+            return None
+    middles = [math.sqrt(a * b) for a, b in bands if math.isfinite(b)]
+    tried = low
+    while tried < highest * predicted:
+        following = _FACTOR * tried
+        tried = min([following, *(m for m in middles if tried < m < following)])
+        if unstable(tried):
+            return _refined(unstable, low, tried)
+        low = tried
+    return None
 
 
-def _first(unstable: Callable[[float], bool], low: float, high: float) -> float | None:
-    """Step between a stable and an unstable one at which they change sides; None if none is."""
-    if not unstable(high):
-        return None
+def _refined(unstable: Callable[[float], bool], low: float, high: float) -> float:
+    """Step between a stable and an unstable one at which they change sides."""
     while high > _RESOLUTION * low:
         middle = math.sqrt(low * high)
         low, high = (low, middle) if unstable(middle) else (middle, high)
-    return high
+    return math.sqrt(low * high)

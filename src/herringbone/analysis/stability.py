@@ -32,12 +32,13 @@ class StepLimits:
 
     Attributes:
         algorithm: what it is called on the command line.
-        unstable_bands: at mean mesh stiffness, (from, to) [s]; `to` is infinite for the last one,
-            above which everything that was examined is unstable.
+        unstable_bands: at mean mesh stiffness, (from, to) [s]; `to` is infinite if everything
+            that was examined above `from` is unstable, and finite for the last band, too, if
+            steps are stable again up to where the scan ended.
         mesh_stiffness: first unstable step [s] at minimum, mean and maximum; infinite if none.
         frequency: of the motion that grows at the mean's limit [Hz].
-        simulated_limit: step [s] at which runs of the non-linear system become unstable; None if
-            none was looked for, or if none is up to twice the predicted limit.
+        simulated_limit: first step [s] at which runs of the non-linear system are unstable; None
+            if none was looked for, or if none is from half to twice the predicted limit.
     """
 
     algorithm: str
@@ -115,7 +116,7 @@ def stability(
         try:
             limit = step_limits(system, algorithm, progress)
             if simulate:
-                seen = nonlinear_limit(system, algorithm, limit.limit)
+                seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands)
                 limit = replace(limit, simulated_limit=seen)
             limits.append(limit)
             chosen.append(algorithm)

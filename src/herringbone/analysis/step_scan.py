@@ -45,7 +45,9 @@ def unstable_bands(
 ) -> tuple[tuple[float, float], ...]:
     """Unstable bands (from, to) [s] over the steps of a range [s].
 
-    The upper end of the last band is infinite: above it everything examined is unstable.
+    `to` is infinite if everything examined above `from` is unstable. The fine scan ends at twice
+    the coarse one's first hit: above a finite last band steps are stable up to there, and nothing
+    is known beyond.
     """
     coarse = _find_unstable(growth, smallest, _COARSE, largest)
     if coarse is None:

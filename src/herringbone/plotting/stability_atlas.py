@@ -1,23 +1,50 @@
 """Picture of the stability atlas: step limits over bearing stiffness, damping and mass ratio."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from herringbone.analysis.atlas import Panel
-from herringbone.plotting.style import COLOURS, figure_legend, styled
+from herringbone.core import HerringboneError
+from herringbone.plotting.style import COLOURS, MARKER_COLOUR, figure_legend, styled
 
-_WIDTH, _HEIGHT = 12.0, 4.2
+_WIDTH, _HEIGHT = 12.6, 4.6
+_MARKERS = "osD^v"
+_TITLE = "Largest stable step of coupling algorithms: stable below the lines"
+_KEYS = {
+    "predicted from the linear parts": {"linestyle": "-"},
+    "first unstable step in runs of the same parts (mesh frozen at mean stiffness)": {
+        "linestyle": "",
+        "marker": "o",
+        "markersize": 4.5,
+    },
+}
+_SCHEDULE = ",schedule=bodies_first"
+
+
+def write_atlas(panels: Sequence[Panel], file: Path) -> None:
+    """Write the picture.
+
+    Raises:
+        HerringboneError: the file cannot be written.
+    """
+    try:
+        atlas_picture(panels).savefig(file)
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write {file}: {error.strerror or error}; choose another folder with -o"
+        ) from error
 
 
 @styled
-def atlas_picture(panels: Sequence[Panel], title: str = "") -> Figure:
+def atlas_picture(panels: Sequence[Panel]) -> Figure:
     """Draw the limits: stable below the lines, points from runs of the real loop.
 
     Args:
         panels: limits, one panel each.
-        title: of the figure.
     """
     figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
@@ -26,16 +53,14 @@ def atlas_picture(panels: Sequence[Panel], title: str = "") -> Figure:
             colour = COLOURS[k % len(COLOURS)]
             ax.plot(panel.values, limits, color=colour, label=name.removesuffix(_SCHEDULE))
             ax.fill_between(panel.values, limits, 0.0, color=colour, alpha=0.06, linewidth=0.0)
-            seen = panel.simulated.get(name)
-            if seen and np.isfinite(seen).any():
-                ax.plot(panel.values, seen, "o", color=colour, markersize=4.0)
+            seen = panel.simulated.get(name, ())
+            if np.isfinite(seen).any():
+                marker = _MARKERS[k % len(_MARKERS)]
+                ax.plot(panel.values, seen, marker, color=colour, markersize=4.5)
         ax.set(xscale="log", yscale="log", xlabel=panel.quantity, title=panel.title)
-    axes[0].set_ylabel("largest stable step x highest frequency of the bonds")
-    figure.suptitle(
-        title or "Stable below the lines; points: runs of the real loop", x=0.01, ha="left"
-    )
+    axes[0].set_ylabel("step x highest angular frequency of the bonds [1]")
+    figure.suptitle(_TITLE, x=0.01, ha="left", fontweight="bold")
     figure_legend(figure, axes[-1])
+    keys = [Line2D([], [], color=MARKER_COLOUR, label=label, **how) for label, how in _KEYS.items()]
+    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
     return figure
-
-
-_SCHEDULE = ",schedule=bodies_first"
