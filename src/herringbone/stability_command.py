@@ -18,10 +18,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--step", type=float, help="only say what happens at this step in s, and why")
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error asked for")
     sub.add_argument(
-        "--simulate", action="store_true", help="also find the limits of the non-linear system"
+        "--simulate", action="store_true", help="also find the non-linear system's limits by runs"
     )
-    sub.add_argument("--atlas", action="store_true", help="also draw limits; takes a minute")
-    sub.add_argument("-o", "--output", type=Path, help="folder for stability.txt and .json")
+    sub.add_argument(
+        "--atlas", action="store_true", help="also draw limits, by runs too; two minutes"
+    )
+    sub.add_argument("-o", "--output", type=Path, help="folder for the files")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -71,13 +73,16 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             progress=show,
         )
         panels = atlas(structure, progress=show) if options.atlas else ()
-    if output:
-        report.write_stability(found, output)
-    if panels:
-        from herringbone.plotting.stability_atlas import atlas_picture  # noqa: PLC0415
+    files = report.write_stability(found, output) if output else []
+    if output and panels:
+        from herringbone.plotting.stability_atlas import write_atlas  # noqa: PLC0415
 
-        atlas_picture(panels).savefig(output / "stability_atlas.png")
-    return report.stability_json(found) if options.json else report.stability_text(found)
+        files.append(output / "stability_atlas.png")
+        write_atlas(panels, files[-1])
+    if options.json:
+        return json.dumps({**report.stability_summary(found), "results": [str(f) for f in files]})
+    written = ["", "Files: " + ", ".join(str(f) for f in files)] if files else []
+    return "\n".join([report.stability_text(found), *written])
 
 
 def _check(options: argparse.Namespace) -> None:

@@ -5,16 +5,18 @@ import json
 import numpy as np
 import pytest
 
-from herringbone.analysis.amplification import GROWTH, Amplification
+from herringbone.analysis import stability as stability_module
 from herringbone.analysis.atlas import Panel
-from herringbone.analysis.linear_parts import linear_network
+from herringbone.analysis.bonds import Bond
+from herringbone.analysis.linear_parts import MeshStiffness
+from herringbone.analysis.recommendation import Recommendation
 from herringbone.analysis.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability import Stability, StepLimits, default_algorithms
+from herringbone.analysis.stability_report import stability_text
 from herringbone.cli import main
+from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.system_file import find_system, read_system
-from herringbone.plotting.stability_atlas import atlas_picture
-from herringbone.scenes import find_scene, read_scene
-from herringbone.start import started
+from herringbone.plotting.stability_atlas import atlas_picture, write_atlas
 
 
 @pytest.fixture(scope="module")
@@ -70,18 +72,58 @@ def test_one_step_is_judged_and_explained(capsys):
     assert unstable["why"]["remedies"][0].startswith("a step below")
 
 
-def test_runs_become_unstable_just_beyond_the_linear_limit():
-    """Within 10 %: 1000 steps show no slower growth, and the teeth hold it at a finite size."""
-    folder = find_system("test_rig")
-    rig, _ = started(read_system("test_rig"), read_scene(find_scene(folder, "loaded")))
-    growth = Amplification(*linear_network(rig), Jacobi(2)).growth
-    below = next(h for h in np.geomspace(60e-6, 30e-6, 70) if growth(h).radius <= 1.0 + GROWTH)
-    found = nonlinear_limit(rig, Jacobi(2), below)
-    assert 0.98 * below < found < 1.1 * below
-
-
 def test_no_limit_is_looked_for_without_a_prediction():
     assert nonlinear_limit(None, Jacobi(2), np.inf) is None
+
+
+def made_up():
+    """A result with long names and many bands."""
+    bands = tuple((700e-6 + 1e-5 * k, 705e-6 + 1e-5 * k) for k in range(6))
+    limits = [
+        StepLimits(
+            str(algorithm),
+            (*bands, (1.1e-3, np.inf)),
+            dict.fromkeys(MeshStiffness, 7e-4),
+            73.0,
+            7e-4,
+        )
+        for algorithm in default_algorithms()
+    ]
+    name, bodies = "bearing_supports.shaft.pinion_right.f_y", ("gear_mesh", "modal_housing")
+    bond = Bond(name, bodies, (6.5, 6.284), 6.34e8, 2.5e3, 14087.0, 0.029)
+    recommended = Recommendation(str(Jacobi(2)), 1e-5, 1e-3, "accuracy")
+    return Stability(
+        "test_rig", "loaded", tuple(limits), (bond,), 14e3, 1e-3, recommended, ("word " * 40,)
+    )
+
+
+def test_text_fits_in_100_columns_and_says_everything():
+    text = stability_text(made_up())
+    assert max(map(len, text.splitlines())) <= 100
+    for algorithm in default_algorithms():
+        assert str(algorithm).removesuffix(",schedule=bodies_first") + " " in text
+    for low in range(700, 760, 10):
+        assert text.count(f"{low}.0-{low + 5}.0") == len(default_algorithms())
+    assert text.count("from 1100.0") == len(default_algorithms())
+    assert "gear_mesh 6.5 kg, modal_housing 6.284 kg" in text
+    assert text.count("word") == 40
+
+
+def test_written_files_are_named(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(stability_module, "stability", lambda *_, **__: made_up())
+    arguments = ["stability", "test_rig", "-o", str(tmp_path)]
+    files = [str(tmp_path / f"stability.{kind}") for kind in ("txt", "json")]
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "Files: " + ", ".join(files)
+    assert main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["results"] == files
+    (tmp_path / "stability.json").unlink()
+    (tmp_path / "stability.json").mkdir()
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        f"herringbone: cannot write to {tmp_path}: Is a directory; choose another folder with -o"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -103,11 +145,23 @@ def test_bad_input_is_one_line(arguments, words, capsys):
 
 def test_picture_has_a_line_and_points_per_algorithm():
     values = (0.01, 0.1)
+    nothing = (np.nan, np.nan)
     limits = {"jacobi:order=1,schedule=bodies_first": (0.4, 0.9), "li": (5.0, 5.5)}
-    points = {"li": (5.1, np.nan)}
+    points = {"jacobi:order=1,schedule=bodies_first": nothing, "li": (5.1, np.nan)}
     figure = atlas_picture([Panel("title", "damping ratio", values, limits, points)])
     (ax,) = figure.axes
     assert ax.get_xlabel() == "damping ratio"
     drawn = [tuple(line.get_ydata()) for line in ax.get_lines()]
     assert {(0.4, 0.9), (5.0, 5.5)} <= set(drawn)
-    assert any(line.get_marker() == "o" for line in ax.get_lines())
+    (seen,) = (line for line in ax.get_lines() if line.get_marker() != "None")
+    assert seen.get_ydata()[0] == 5.1
+    legends = [[text.get_text() for text in legend.get_texts()] for legend in figure.legends]
+    assert legends[0] == ["jacobi:order=1", "li"]
+    assert "mesh frozen at mean stiffness" in legends[1][1]
+
+
+def test_picture_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "stability_atlas.png").mkdir()
+    panel = Panel("title", "damping ratio", (0.1,), {"li": (5.0,)}, {"li": (5.1,)})
+    with pytest.raises(HerringboneError, match=r"cannot write .*atlas.png: Is a directory; choose"):
+        write_atlas([panel], tmp_path / "stability_atlas.png")
