@@ -1,7 +1,8 @@
 """Cost of a macro step of the test rig: this master against others, on the same native FMUs.
 
 One micro step per macro step, Jacobi with held inputs and all parts in parallel, which is what the
-other masters do; recording included.
+other masters do. Recording included: this master and the others keep all outputs of every step, as
+they offer it (libcosim: time series in memory, ecos: CSV file), the plain loop the connected ones.
 """
 
 import statistics
@@ -17,7 +18,7 @@ from herringbone.core.part import Part
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.fmu2_part import Fmu2Part
 from herringbone.cosim.network import build_network
-from herringbone.cosim.plan import connected_outputs
+from herringbone.cosim.plan import connected_outputs, record_names
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.ssp_write import write_ssp
 from herringbone.cosim.system import System
@@ -66,13 +67,27 @@ def measure(steps: int = 20000, repeats: int = 5) -> MacroStep:
             "this master, in-process": lambda: _ours(system, "in-process", steps),
             "this master, Python FMUs": lambda: _ours(system, "python", steps // _SLOW),
             "plain fmpy loop": lambda: _fmpy(system, steps // _SLOW),
-            **{m: lambda m=m: macro_step(m, file, STEP, steps // _SLOW) for m in PACKAGES},
+            **_others(system, file, steps // _SLOW),
         }
         kernels = lambda: _ours(replace(system, connections=()), "native", steps, steps)  # noqa: E731
         found = {name: [measure_() for _ in range(repeats)] for name, measure_ in loops.items()}
         alone = [kernels() for _ in range(repeats)]
     medians = {n: None if None in v else statistics.median(v) for n, v in found.items()}
     return MacroStep(medians, statistics.median(alone))
+
+
+def _others(system: System, file: Path, steps: int) -> dict[str, Callable[[], float | None]]:
+    """Other masters, with the outputs that this one records, and with none."""
+    parts = open_parts(system, "in-process")
+    outputs = record_names(build_network(system, parts))
+    names = [f"{p.name}.{n}" for p, ns in zip(parts, outputs, strict=True) for n in ns]
+    return {
+        name + ("" if recorded else ", nothing recorded"): lambda name=name, recorded=recorded: (
+            macro_step(name, file, STEP, steps, recorded)
+        )
+        for name in PACKAGES
+        for recorded in (names, ())
+    }
 
 
 def _ours(system: System, fmu: str, steps: int, every: int = 1) -> float:
