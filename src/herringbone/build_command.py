@@ -4,9 +4,11 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+from herringbone.command_options import assignments
 from herringbone.output import check_writable
 
 _ALL = "all"
+_SET = "COMPONENT.PARAMETER=FILE"
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -14,6 +16,13 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("component", nargs="*", help="components; all if none is given")
     sub.add_argument("--native", action="store_true", help="without Python at run time")
     add_platform_options(sub)
+    sub.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar=_SET,
+        help="resource file that a native FMU carries instead of its own; may be repeated",
+    )
     sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
 
 
@@ -58,15 +67,21 @@ def build(options: argparse.Namespace) -> Iterator[str]:
             "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
             "and run wherever Python and this package do"
         )
+    if not options.native and options.set:
+        raise ParameterError(
+            "--set puts files into native FMUs; add --native. Python FMUs read theirs at run time"
+        )
     if options.output:
         check_writable(options.output)
     platforms = chosen_platforms(options)
-    files = build_fmus(
+    files = assignments(options.set, "--set", _SET)
+    fmus = build_fmus(
         options.component,
         options.output,
         native=options.native,
         platforms=platforms,
         fmi=options.fmi,
+        files={path: Path(file) for path, file in files.items()},
     )
-    yield from map(str, files)
+    yield from map(str, fmus)
     yield from untested(platforms)

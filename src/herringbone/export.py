@@ -31,6 +31,7 @@ def build_fmus(
     native: bool = False,
     platforms: Sequence[str] = (),
     fmi: int = 2,
+    files: Mapping[str, Path] | None = None,
 ) -> list[Path]:
     """Build FMUs.
 
@@ -40,6 +41,8 @@ def build_fmus(
         native: FMUs without Python, instead of Python FMUs.
         platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
         fmi: FMI version of native FMUs, 2 or 3.
+        files: resource files that native FMUs carry instead of those that come along, by
+            `component.parameter`; model exchange is built for them.
 
     Returns:
         The FMU files.
@@ -50,16 +53,16 @@ def build_fmus(
     """
     names = list(components) or None
     built = (
-        build_native_fmus(names, platforms=platforms, fmi=fmi)
+        build_native_fmus(names, platforms=platforms, fmi=fmi, files=files)
         if native
         else build_python_fmus(names)
     )
-    files = list(built.values())
+    fmus = list(built.values())
     if folder is None:
-        return files
+        return fmus
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [Path(shutil.copyfile(file, folder / file.name)) for file in files]
+        return [Path(shutil.copyfile(file, folder / file.name)) for file in fmus]
     except OSError as error:
         raise ResourceError(
             f"cannot write to {folder}: {error.strerror}; choose another folder"

@@ -1,5 +1,9 @@
 """Model exchange of components with state vectors, built for one data set."""
 
+import re
+import zipfile
+from pathlib import Path
+
 import fmpy
 import numpy as np
 import pytest
@@ -8,8 +12,10 @@ from support_exchange import ExchangeHost
 
 from herringbone.components.modal_data import read_mode_table
 from herringbone.components.registry import COMPONENTS
+from herringbone.core import HerringboneError, Instance
 from herringbone.core.paths import resources_folder
 from herringbone.fmi.host import open_host
+from herringbone.fmi.native import build_native_fmus
 
 HOUSING = "modal_housing"
 RESOURCES = resources_folder(HOUSING)
@@ -125,12 +131,58 @@ def test_data_with_another_number_of_modes_are_refused(fmu, tmp_path):
     (message,) = host.messages
     assert message.endswith(
         f"resources/thesis_modes.csv: {OTHER_COUNT} modes, but this FMU was built for {COUNT} in "
-        "model exchange; export it again with this file, or use co-simulation (t = 0 s)"
+        "model exchange; build it again with this file, or use co-simulation (t = 0 s)"
     )
     host.fmu.reset()
     host.initialise()
     assert len(host.x) == 2 * COUNT
     host.close()
+
+
+def test_fmu_that_is_built_with_other_data(native_fmus, tmp_path):
+    """It has their states, carries them alone, and gives the bits of an instance with them."""
+    files = {name: RESOURCES / file for name, file in OTHER_DATA.items()}
+    given = {f"{HOUSING}.{name}": file for name, file in files.items()}
+    fmu = build_native_fmus([HOUSING], files=given)[HOUSING]
+    assert fmu != native_fmus[HOUSING]
+    with zipfile.ZipFile(fmu) as archive:
+        carried = [n for n in archive.namelist() if n.startswith("resources/")]
+    assert carried == ["resources/modes.csv", "resources/shapes.csv"]
+    host = ExchangeHost(fmu, tmp_path)
+    host.initialise()
+    numbers = range(1, OTHER_COUNT + 1)
+    assert host.states == [*(f"q[{k}]" for k in numbers), *(f"der(q[{k}])" for k in numbers)]
+    host.close()
+    part = Instance(COMPONENTS[HOUSING], "part")
+    for name, file in files.items():
+        part.set(name, str(file))
+    part.set("wheel_left.f_y", 1e3)
+    part.initialise()
+    outputs = [v.name for v in part.component.declaration.outputs]
+    with open_host("part", fmu) as steps:
+        steps.initialise({"wheel_left.f_y": 1e3})
+        steps.step(0.0, 1e-4)
+        part.step(0.0, 1e-4)
+        assert steps.values(*outputs) == [part[name] for name in outputs]
+        assert part["wheel_left.s_y"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("files", "message"),
+    [
+        (
+            {"modal_housing.mode": "x"},
+            "modal_housing has no resource file 'mode'; it has modes, sh",
+        ),
+        ({"drive_motor.modes": "x"}, "drive_motor has no resource file 'modes'; it has none"),
+        ({"gear_mesh.modes": "x"}, "a file is given for gear_mesh, which is not built"),
+        ({"modal_housing.modes": "x.csv"}, "cannot read x.csv"),
+        ({"modal_housing.modes": RESOURCES / "thesis_modes.csv"}, "shapes.csv has 60 modes, the"),
+    ],
+)
+def test_files_that_an_fmu_cannot_be_built_with(files, message):
+    with pytest.raises(HerringboneError, match=re.escape(message)):
+        build_native_fmus([HOUSING, "drive_motor"], files={k: Path(f) for k, f in files.items()})
 
 
 def test_co_simulation_takes_data_with_any_number_of_modes(fmu):

@@ -96,7 +96,7 @@ static void test_other_data(void) {
     OK(fmi2SetString(c, &shapes, 1, &other));
     OK(fmi2EnterInitializationMode(c));
     const char *why = "three_shapes.csv: 2 counters, but this FMU was built for 1 in model exchange; "
-                      "export it again with this file, or use co-simulation (t = 0 s)";
+                      "build it again with this file, or use co-simulation (t = 0 s)";
     REFUSED(fmi2GetReal(c, &a, 1, &value), why);
     REFUSED(fmi2GetContinuousStates(c, x, 4), why);
     REFUSED(fmi2ExitInitializationMode(c), why); /* each time */

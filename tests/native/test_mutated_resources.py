@@ -24,13 +24,14 @@ def fuzzer(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def arguments(fmu: Path, name: str, folder: Path) -> list[str | Path]:
-    """Library, guid and a copy of the resources."""
+    """Library, guid, number of continuous states and a copy of the resources."""
     with zipfile.ZipFile(fmu) as archive:
         library = next(n for n in archive.namelist() if n.startswith("binaries/"))
         archive.extract(library, folder)
-        guid = ElementTree.fromstring(archive.read("modelDescription.xml")).attrib["guid"]
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    states = str(len(root.findall("ModelStructure/Derivatives/Unknown")))
     shutil.copytree(resources_folder(name), folder / "resources")
-    return [folder / library, guid, folder / "resources"]
+    return [folder / library, root.attrib["guid"], states, folder / "resources"]
 
 
 @pytest.mark.parametrize(("name", "file"), FILES)

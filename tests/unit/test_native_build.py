@@ -160,6 +160,8 @@ def test_resources_lie_in_the_file(native_fmus):
         (["--native", "--platforms", "amiga"], "platform 'amiga' is unknown; there are: x86_64-l"),
         (["--native", "--fmi", "1"], "FMI version 1; it must be 2 or 3"),
         (["--fmi", "3"], "--platforms and --fmi choose among native FMUs; add --native"),
+        (["--set", "modal_housing.modes=x.csv"], "--set puts files into native FMUs; add --native"),
+        (["--native", "--set", "modes"], "--set modes: it must be COMPONENT.PARAMETER=FILE"),
         (["gearbox", "--native"], "there is no component 'gearbox'"),
     ],
 )

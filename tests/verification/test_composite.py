@@ -6,8 +6,10 @@ import pytest
 from herringbone.analysis.composite import Composite, make_composite
 from herringbone.analysis.monolithic import Twin
 from herringbone.api import load_scene, load_system
+from herringbone.components.registry import COMPONENTS
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Instance, ResourceError, StructureError
+from herringbone.fmi.used_states import used_states
 from herringbone.start import started
 
 SEATS_OUTSIDE = ("modal_housing",)
@@ -78,6 +80,51 @@ def test_declared_feedthrough_is_what_the_equations_have(outside, tmp_path):
             if seed[d.index[output]] != 0.0:
                 inputs.add(v.name)
     assert found == {v.name: set(v.feedthrough) for v in d.outputs}
+
+
+def test_state_vectors_are_those_of_the_parts_in_use(rig, tmp_path):
+    """Each element lies where the part's own equations find it, and so does its number."""
+    composite = make_composite(rig)
+    d, system = composite.component.declaration, _instance(composite, tmp_path)
+    vectors = {v.name: v for v in d.vectors}
+    assert list(vectors) == ["modal_housing.q", "der(modal_housing.q)"]
+    assert {v.text for v in d.vectors} == {"modal_housing.modes"}
+    used = used_states(composite.component, composite.resources).vectors
+    count = {int(system.block[d.first_table + v.length]) for v in d.vectors}
+    assert count == {len(u.nominals) for u in used} == {60}
+    housing = COMPONENTS["modal_housing"]
+    single = Instance(housing, "housing")
+    single.load_resources()
+    own = housing.nominals(single.block).reshape(2, -1)[:, :60]
+    np.testing.assert_allclose([u.nominals for u in used], own, rtol=0.05)  # two digits
+    dx = np.zeros(d.state_count)
+    positions, rates = (d.vector_indices[name] for name in vectors)
+    system.block[rates : rates + 60] = np.arange(60)
+    composite.component.kernels.rhs(system.block, 0.0, dx)
+    assert dx[positions : positions + 60].tolist() == list(range(60))
+
+
+def test_event_indicators_follow_the_states(rig, tmp_path):
+    """Of all parts only the mesh has some; no outputs need to be computed before."""
+    composite = make_composite(rig)
+    mesh, system = COMPONENTS["gear_mesh"], _instance(composite, tmp_path)
+    d, part = composite.component.declaration, Instance(mesh, "gear_mesh")
+    for v in mesh.declaration.parameters:
+        if (path := f"gear_mesh.{v.name}") in d.index:
+            part.set(v.name, system[path])
+    assert composite.component.indicator_count == mesh.indicator_count
+    found, expected = np.zeros((2, mesh.indicator_count))
+    places = [
+        d.index[f"der(gear_mesh.{v.name[4:]}" if v.name[:4] == "der(" else f"gear_mesh.{v.name}"]
+        for v in mesh.declaration.states
+    ]
+    for approach in (1e-3, -5e-6, -1e-3):  # drive contact, open, coast contact
+        system.set("gear_mesh.approach", approach)
+        part.block[: len(places)] = system.block[places]
+        mesh.indicators(part.block, 0.0, expected)
+        composite.component.indicators(system.block, 0.0, found)
+        assert found.tolist() == expected.tolist()
+    assert (expected < 0.0).all()
 
 
 def test_a_bad_resource_is_named_with_its_part(rig, tmp_path):

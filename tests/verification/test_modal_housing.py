@@ -238,3 +238,20 @@ def test_acceleration_depends_on_the_force_at_once(housing):
     np.testing.assert_allclose(motion(housing, "a"), SHAPES @ SHAPES[4], rtol=1e-12, atol=1e-15)
     assert not motion(housing, "s").any()
     assert not motion(housing, "v").any()
+
+
+def test_every_mode_has_a_nominal_value():
+    """Rigid modes, and modes that do not move the seats, too: integrators divide by it."""
+    housing = Instance(MODAL_HOUSING, "housing")
+    housing.initialise()
+    block, first = housing.block, MODAL_HOUSING.declaration.first_table + 1
+    shapes = block[first + 2 * MODES :][: len(DOFS) * MODES].reshape(len(DOFS), MODES)
+    before = MODAL_HOUSING.nominals(block).reshape(2, MODES)
+    block[first] = 0.0
+    shapes[:, 1] = 0.0
+    after = MODAL_HOUSING.nominals(block).reshape(2, MODES)
+    assert np.isfinite(after).all()
+    assert (after > 0.0).all()
+    rigid = 2.0 * np.pi * 10.0  # counts as 10 Hz
+    np.testing.assert_allclose(after[:, 0], before[1, 0] * OMEGA[0] / [rigid**2, rigid])
+    np.testing.assert_array_equal(after[:, 2:], before[:, 2:])

@@ -5,11 +5,13 @@ from functools import cache
 import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from support_exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
+from herringbone.core.paths import resources_folder
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.system_fmu import export_fmu
 
@@ -162,6 +164,33 @@ def test_directional_derivatives_are_the_differences(name, fmi, opened):
         wrong = np.abs(exact - found) > rounding + truncation
         names = np.array([*host.rates, *host.output_names])
         assert not wrong.any(), (state, names[wrong], exact[wrong], found[wrong])
+
+
+def test_a_housing_of_other_data_is_built_for_these(tmp_path):
+    """A system whose other parts stay outside makes an FMU of one part, with its data."""
+    folder = resources_folder("modal_housing")
+    values = {
+        f"modal_housing.{name}": str(folder / f"thesis_{name}.csv") for name in ("modes", "shapes")
+    }
+    fmu = export_fmu(
+        "gearbox", tmp_path / "one.fmu", outside=(MESH, "bearing_supports"), values=values
+    )
+    assert validate_fmu(str(fmu)) == []
+    host = ExchangeHost(fmu, tmp_path / "one")
+    host.initialise()
+    modes = [f"modal_housing.q[{k}]" for k in range(1, 5)]
+    assert host.states == [*modes, *(f"der({mode})" for mode in modes)]
+    host.set(**{"modal_housing.wheel_left.f_y": 1e3})
+    assert np.abs(host.dx[4:]).min() > 0.0
+    host.fmu.reset()
+    for name in ("modes", "shapes"):
+        text = [host.reference[f"modal_housing.{name}"]]
+        host.fmu.setString(text, [str(folder / f"{name}.csv")])
+    host.fmu.enterInitializationMode()
+    with pytest.raises(FMICallException):
+        host.fmu.exitInitializationMode()
+    assert f"modes.csv: {SHIPPED_MODES} modes, but this FMU was built for 4" in host.messages[-1]
+    host.fmu.freeInstance()
 
 
 def test_restored_state_brings_its_parameters_back(opened):

@@ -40,6 +40,8 @@ from herringbone.kernels.jit import inner
 MICRO_STEP = "micro_step"
 _OWN = (MICRO_STEP, INTERFACE_DEGREE)
 _LONGEST_MICRO_STEP = 1e-4
+_MICRO_STEP_OF_NO_PART = 2.5e-6
+"""Of systems in which no part has micro steps [s], such as a housing alone."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ def _declaration(
             MICRO_STEP,
             "s",
             "longest Runge-Kutta step of all parts",
-            min(steps),
+            min(steps, default=_MICRO_STEP_OF_NO_PART),
             minimum=1e-9,
             maximum=_LONGEST_MICRO_STEP,
         )

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS
@@ -28,7 +28,11 @@ VERSIONS = (2, 3)
 
 
 def build_native_fmus(
-    names: Iterable[str] | None = None, *, platforms: Sequence[str] = (), fmi: int = 2
+    names: Iterable[str] | None = None,
+    *,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
+    files: Mapping[str, Path] | None = None,
 ) -> dict[str, Path]:
     """Build native FMUs of components, or take those that these sources gave before.
 
@@ -36,15 +40,25 @@ def build_native_fmus(
         names: components; all if not given.
         platforms: names of platforms; this process' own one if not given.
         fmi: FMI version, 2 or 3.
+        files: resource files that the FMUs carry instead of those that come along, by
+            `component.parameter`.
 
     Returns:
         Path of the FMU by component.
 
     Raises:
-        StructureError, ParameterError: there is no such component, platform or FMI version.
+        StructureError, ParameterError: there is no such component, platform, FMI version or file.
+        ResourceError: a resource file is missing or malformed.
         FmuError: there is no compiler, it failed, or a binary would need more than libc.
     """
-    models = [registered_model(name) for name in (COMPONENTS if names is None else names)]
+    names = list(COMPONENTS if names is None else names)
+    given: dict[str, dict[str, Path]] = {}
+    for path, file in (files or {}).items():
+        owner, _, parameter = path.partition(".")
+        given.setdefault(owner, {})[parameter] = file
+    if others := sorted(given.keys() - set(names)):
+        raise ParameterError(f"a file is given for {others[0]}, which is not built")
+    models = [registered_model(name, given.get(name)) for name in names]
     return build_models(models, platforms=platforms, fmi=fmi)
 
 

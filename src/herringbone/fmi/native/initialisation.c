@@ -82,7 +82,7 @@ static Status check_vectors(Instance *instance, char *const files[]) {
         if (instance->block[vector->length] != vector->count)
             return instance_fail(instance, STATUS_ERROR,
                                  "%s: %s: %g %s, but this FMU was built for %u in model exchange; "
-                                 "export it again with this file, or use co-simulation",
+                                 "build it again with this file, or use co-simulation",
                                  instance->name, files[vector->text],
                                  instance->block[vector->length], vector->elements,
                                  (unsigned)vector->count);

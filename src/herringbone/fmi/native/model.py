@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from herringbone.components.registry import component
-from herringbone.core import Component
+from herringbone.core import Component, ParameterError
 from herringbone.core.paths import resources_folder
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.used_states import UsedStates, used_states
@@ -55,11 +57,30 @@ class Model:
         return digest.hexdigest()[:16]
 
 
-def registered_model(name: str) -> Model:
-    """The model of a component of the package; raises StructureError if there is none."""
+def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Model:
+    """The model of a component of the package.
+
+    Args:
+        name: of the component.
+        files: resource files instead of those that come along, by String parameter. They get the
+            names of those, and no other files lie in the FMU.
+
+    Raises:
+        StructureError: there is no such component.
+        ParameterError: it has no such resource file.
+        ResourceError: a file is missing or malformed.
+    """
     found = component(name)
-    files = sorted(resources_folder(name).glob("*.csv"))
-    return Model(found, _REGISTRY, name, {file.name: file for file in files})
+    folder = resources_folder(name)
+    if not files:
+        return Model(found, _REGISTRY, name, {f.name: f for f in sorted(folder.glob("*.csv"))})
+    own = {text.name: folder / text.start for text in found.declaration.texts}
+    if unknown := sorted(files.keys() - own.keys()):
+        known = f"it has {', '.join(own)}" if own else "it has none"
+        raise ParameterError(f"{name} has no resource file '{unknown[0]}'; {known}")
+    taken = {parameter: files.get(parameter, file) for parameter, file in own.items()}
+    found.load(np.zeros(found.declaration.size), taken)
+    return Model(found, _REGISTRY, name, {own[p].name: file for p, file in taken.items()})
 
 
 def made_component(factory: str, argument: str) -> Component:
