@@ -175,6 +175,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--algorithm=jacobi:order=7", "jacobi: order=7; it must be 0, 1 or 2"),
         ("--algorithm=jacobi:order=two", "jacobi:order=two"),
         ("--tolerance=2", "li: tolerance=2; it must lie between 1e-08 and 1"),
+        ("--tolerance=0", "li: tolerance=0; it must lie between 1e-08 and 1"),
         (
             "--slow=nope=2",
             "slow: nope=2: there is no instance 'nope'; drive_motor, load_motor, gear_mesh, "

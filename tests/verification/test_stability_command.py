@@ -12,7 +12,7 @@ from herringbone.analysis.linear_parts import MeshStiffness
 from herringbone.analysis.recommendation import Recommendation
 from herringbone.analysis.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability import Stability, StepLimits, default_algorithms
-from herringbone.analysis.stability_report import stability_text
+from herringbone.analysis.stability_report import stability_summary, stability_text
 from herringbone.cli import main
 from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import Jacobi
@@ -91,7 +91,7 @@ def made_up():
     ]
     name, bodies = "bearing_supports.shaft.pinion_right.f_y", ("gear_mesh", "modal_housing")
     bond = Bond(name, bodies, (6.5, 6.284), 6.34e8, 2.5e3, 14087.0, 0.029)
-    recommended = Recommendation(str(Jacobi(2)), 1e-5, 1e-3, "accuracy")
+    recommended = Recommendation(str(Jacobi(2)), 1e-5, 4.4e-8, 5e-5, "micro steps")
     return Stability(
         "test_rig", "loaded", tuple(limits), (bond,), 14e3, 1e-3, recommended, ("word " * 40,)
     )
@@ -107,6 +107,15 @@ def test_text_fits_in_100_columns_and_says_everything():
     assert text.count("from 1100.0") == len(default_algorithms())
     assert "gear_mesh 6.5 kg, modal_housing 6.284 kg" in text
     assert text.count("word") == 40
+
+
+def test_what_bounds_the_error_is_said():
+    said = "expected error 4.4e-06 %, bounded by micro steps; 0.005 % where teeth separate"
+    assert said in stability_text(made_up()).splitlines()
+    recommended = stability_summary(made_up())["recommended"]
+    assert recommended["expected_error"] == 4.4e-8
+    assert recommended["separation_error"] == 5e-5
+    assert recommended["bounded_by"] == "micro steps"
 
 
 def test_written_files_are_named(monkeypatch, tmp_path, capsys):
@@ -131,6 +140,7 @@ def test_written_files_are_named(monkeypatch, tmp_path, capsys):
     [
         (["--algorithm", "jacobi:order=7"], "order=7; it must be 0, 1 or 2"),
         (["--algorithm", "jacobi:order=2", "--tolerance", "3"], "tolerance = 3"),
+        (["--tolerance", "1e-12"], "tolerance = 1e-12: it must lie between 1e-08 and 1"),
         (["--scene", "nothing"], "nothing"),
         (["--step", "-1"], "step = -1 s: it must be positive"),
         (["--step", "1e-5", "--atlas"], "--step asks about one step; leave --atlas out"),

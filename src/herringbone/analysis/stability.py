@@ -13,13 +13,18 @@ import numpy as np
 from herringbone.analysis.amplification import GROWTH, Amplification, Growth
 from herringbone.analysis.bonds import Bond, bond_table, highest_frequency
 from herringbone.analysis.linear_parts import MeshStiffness, linear_network
-from herringbone.analysis.recommendation import Recommendation, recommend
+from herringbone.analysis.recommendation import (
+    CHARTED_MICRO_STEP,
+    Recommendation,
+    recommend,
+)
 from herringbone.analysis.simulated_limit import nonlinear_limit
 from herringbone.analysis.step_scan import GrowthOf, first_unstable_near, unstable_bands
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.system import System
+from herringbone.cosim.tolerance import check_tolerance
 
 Progress = Callable[[str], None]
 """Called after every matrix, with the name of the algorithm."""
@@ -104,10 +109,9 @@ def stability(
 
     Raises:
         StructureError: a part is a foreign FMU.
-        ParameterError: a mesh is open at the start, or the tolerance is not in (0, 1).
+        ParameterError: a mesh is open at the start, or the tolerance is out of range.
     """
-    if not 0.0 < tolerance < 1.0:
-        raise ParameterError(f"tolerance = {tolerance:g}: it must lie between 0 and 1")
+    check_tolerance(tolerance)
     network, instances = linear_network(system)
     bonds = bond_table(network, instances)
     highest = highest_frequency(network, instances)
@@ -123,7 +127,9 @@ def stability(
         except ParameterError as error:
             notes.append(f"{algorithm}: {error}")
     by_limit = [(a, found.limit) for a, found in zip(chosen, limits, strict=True)]
-    recommended = recommend(by_limit, highest, tolerance)
+    micro_steps = [i["micro_step"] for i in instances if i.component is GEAR_MESH]
+    micro_step = max(micro_steps, default=CHARTED_MICRO_STEP)
+    recommended = recommend(by_limit, highest, tolerance, micro_step)
     return Stability(
         system.name, scene, tuple(limits), bonds, highest, tolerance, recommended, tuple(notes)
     )

@@ -119,7 +119,8 @@ def stability_text(found: Stability) -> str:
             "",
             f"recommended for {100.0 * found.tolerance:g} %: "
             f"--algorithm {chosen.algorithm.removesuffix(_SCHEDULE)} --step {chosen.step:.3g}",
-            f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by {chosen.bounded_by}",
+            f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
+            f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
             *wrap(f"rule: {chosen.source}", _WIDTH),
         ]
     return "\n".join([*lines, *(line for n in found.notes for line in wrap(f"note: {n}", _WIDTH))])
@@ -166,6 +167,7 @@ def stability_summary(found: Stability) -> dict[str, Any]:
             "algorithm": chosen.algorithm,
             "step": chosen.step,
             "expected_error": chosen.expected_error,
+            "separation_error": chosen.separation_error,
             "bounded_by": chosen.bounded_by,
             "source": chosen.source,
         },

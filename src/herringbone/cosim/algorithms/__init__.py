@@ -11,6 +11,7 @@ from herringbone.cosim.algorithms.gauss_seidel import GaussSeidel
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.li import LI
 from herringbone.cosim.algorithms.predict import Predict
+from herringbone.cosim.tolerance import check_tolerance
 
 __all__ = [
     "ALGORITHMS",
@@ -62,7 +63,7 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
     """The algorithm, adapting its step to a tolerance.
 
     Raises:
-        ParameterError: it cannot, or has another tolerance already.
+        ParameterError: it cannot, or has another tolerance already, or this one is out of range.
     """
     if not isinstance(algorithm, LI):
         raise ParameterError(
@@ -71,6 +72,7 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
         )
     if algorithm.adaptive and algorithm.tolerance != tolerance:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
+    check_tolerance(tolerance, "li: tolerance={:g};")
     return replace(algorithm, tolerance=tolerance)
 
 

@@ -25,8 +25,8 @@ from herringbone.cosim.algorithms.adaptive import PreparedAdaptive, check_source
 from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
 from herringbone.cosim.network import Network
+from herringbone.cosim.tolerance import check_tolerance
 
-SMALLEST_TOLERANCE = 1e-8
 _MOST = 6
 _ORDERS = {1: 2, 2: 4, 3: 4, 4: 6}
 
@@ -59,11 +59,8 @@ class LI(Algorithm):
             raise ParameterError(f"li: degree={self.degree}; it must be 1, 2, 3 or 4")
         if not 1 <= self.iterations <= _MOST:
             raise ParameterError(f"li: iterations={self.iterations}; it must be 1 to {_MOST}")
-        if not (self.tolerance == 0.0 or SMALLEST_TOLERANCE <= self.tolerance < 1.0):
-            raise ParameterError(
-                f"li: tolerance={self.tolerance:g}; it must lie between {SMALLEST_TOLERANCE:g} "
-                "and 1, or be 0 for a fixed step"
-            )
+        if self.tolerance != 0.0:
+            check_tolerance(self.tolerance, "li: tolerance={:g};", ", or be 0 for a fixed step")
 
     def __str__(self) -> str:
         text = super().__str__()
