@@ -79,7 +79,7 @@ from herringbone.core import (
 )
 from herringbone.core.units import RATES
 from herringbone.kernels import force_law, steppers
-from herringbone.kernels.elementary import cosine, sine
+from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
 from herringbone.kernels.jit import kernel
 
 _MODULE, _PRESSURE_ANGLE, _HELIX_ANGLE = 3.5e-3, math.radians(20.0), math.radians(30.0)
@@ -226,6 +226,7 @@ def _mesh_parameters() -> list[Variable]:
 
 _STATES = 24
 _INPUTS = 10
+_DERIVED = 12
 
 _d = Declaration(
     "gear_mesh",
@@ -246,7 +247,7 @@ _d = Declaration(
             stiffness_table.COLUMNS,
         )
     ],
-    tables=2 * force_law.TABLE_SIZE + _STATES,
+    tables=2 * force_law.TABLE_SIZE + _STATES + _DERIVED,
     work=steppers.body_work(_STATES, _INPUTS),
 )
 
@@ -287,26 +288,56 @@ _IMPACT, _IMPACT_DURATION, _RESTRAINT, _AXIAL_DRAG, _DRAG, _MICRO_STEP = _d.indi
 _DEGREE = _i["interface_degree"]
 _TABLE = (_d.first_table, _d.first_table + force_law.TABLE_SIZE)
 _SCRATCH = _TABLE[1] + force_law.TABLE_SIZE
+# What `_derive` writes: cosine and sine of the base helix angle; phase [mesh periods] of the
+# meshes at angle zero, and per angle; mass [kg] of both rotations along the
+# path of contact; reciprocals.
+_FIRST_DERIVED = _SCRATCH + _STATES
+_COS, _SIN, _PHASE_LEFT, _PHASE_RIGHT, _PHASE_RATE, _PATH_MASS = range(
+    _FIRST_DERIVED, _FIRST_DERIVED + 6
+)
+_PER_TRANSITION, _PER_WHEEL_RB = _FIRST_DERIVED + 6, _FIRST_DERIVED + 7
+_PER_MASS, _PER_INERTIA = (
+    (_FIRST_DERIVED + 8, _FIRST_DERIVED + 9),
+    (_FIRST_DERIVED + 10, _FIRST_DERIVED + 11),
+)
 _TWO_PI = 2.0 * math.pi
 _CLOSED = 5e-6  # a usual deflection [m], where the search for an equilibrium begins
 
 
 @kernel
+def _derive(b: np.ndarray) -> None:
+    """Write what follows from the parameters alone."""
+    b[_COS], b[_SIN] = cosine(b[_BETA]), sine(b[_BETA])
+    b[_PHASE_RATE] = b[_TEETH[0]] / _TWO_PI
+    shift = b[_F_A] * b[_SIN] * b[_PHASE_RATE] / (b[_COS] * b[_RB[0]])
+    b[_PHASE_LEFT], b[_PHASE_RIGHT] = shift, b[_STAGGER] - shift
+    b[_PATH_MASS] = 1.0 / (b[_RB[0]] ** 2 / b[_INERTIAS[0]] + b[_RB[1]] ** 2 / b[_INERTIAS[1]])
+    b[_PER_TRANSITION], b[_PER_WHEEL_RB] = 1.0 / b[_TRANSITION], 1.0 / b[_RB[1]]
+    for gear in range(2):
+        b[_PER_MASS[gear]], b[_PER_INERTIA[gear]] = 1.0 / b[_MASSES[gear]], 1.0 / b[_INERTIAS[gear]]
+
+
+@kernel
+def _wheel(b: np.ndarray, order: int) -> float:
+    """Angle [rad] (order 0) or speed [rad/s] (order 1) of the wheel's left half."""
+    o = order * _HALF
+    return (b[_RB[0]] * b[_ANGLE + o] - b[_APPROACH + o]) * b[_PER_WHEEL_RB]
+
+
+@kernel
 def _axial_offset(b: np.ndarray) -> tuple[float, float]:
     """eps_z [m] and its rate [m/s]."""
-    w1 = b[_ANGLE + _HALF]
-    theta3 = (b[_RB[0]] * b[_ANGLE] - b[_APPROACH]) / b[_RB[1]]
-    w3 = (b[_RB[0]] * w1 - b[_APPROACH + _HALF]) / b[_RB[1]]
-    pinion, wheel = b[_ANGLE] + b[_PHI1], theta3 + b[_PHI2]
-    offset = b[_C0] + b[_C1] * cosine(pinion) + b[_C2] * cosine(wheel)
-    rate = -b[_C1] * w1 * sine(pinion) - b[_C2] * w3 * sine(wheel)
+    if b[_F_A] == 0.0:
+        return 0.0, 0.0
+    sin_p, cos_p = sine_and_cosine(b[_ANGLE] + b[_PHI1])
+    sin_w, cos_w = sine_and_cosine(_wheel(b, 0) + b[_PHI2])
+    offset = b[_C0] + b[_C1] * cos_p + b[_C2] * cos_w
+    rate = -b[_C1] * b[_ANGLE + _HALF] * sin_p - b[_C2] * _wheel(b, 1) * sin_w
     return b[_F_A] * offset, b[_F_A] * rate
 
 
 @kernel
-def _deflection(
-    b: np.ndarray, side: int, cos_b: float, sin_b: float, eps: float, eps_rate: float
-) -> tuple[float, float]:
+def _deflection(b: np.ndarray, side: int, eps: float, eps_rate: float) -> tuple[float, float]:
     """Deflection [m] and its rate [m/s] of mesh 0 (left) or 1 (right)."""
     s = 1.0 - 2.0 * side
     y, z, turn = _Y + side, _Z + side, side
@@ -314,89 +345,81 @@ def _deflection(
     path_rate = b[_APPROACH + _HALF] + turn * (
         b[_RB[0]] * b[_TWIST_P + _HALF] - b[_RB[1]] * b[_TWIST_W + _HALF]
     )
-    value = cos_b * (b[y] - b[y + 2] + path) + s * sin_b * (b[z] - b[z + 2] + eps)
+    value = b[_COS] * (b[y] - b[y + 2] + path) + s * b[_SIN] * (b[z] - b[z + 2] + eps)
     y, z = y + _HALF, z + _HALF
-    rate = cos_b * (b[y] - b[y + 2] + path_rate) + s * sin_b * (b[z] - b[z + 2] + eps_rate)
+    rate = b[_COS] * (b[y] - b[y + 2] + path_rate) + s * b[_SIN] * (b[z] - b[z + 2] + eps_rate)
     return value, rate
 
 
 @kernel
-def _phase(b: np.ndarray, side: int, cos_b: float, sin_b: float) -> float:
-    """Phase of a mesh [mesh periods]."""
-    pitch = _TWO_PI * b[_RB[0]] / b[_TEETH[0]]
-    shift = b[_F_A] * sin_b / (cos_b * pitch)
-    turned = b[_TEETH[0]] * b[_ANGLE] / _TWO_PI
-    return turned + shift if side == 0 else turned - shift + b[_STAGGER]
+def _impact(b: np.ndarray, phase: float) -> float:
+    """Force [N] of the meshing impact."""
+    into = (phase - math.floor(phase)) / b[_IMPACT_DURATION]
+    return 0.5 * b[_IMPACT] * (1.0 - cosine(_TWO_PI * into)) if into < 1.0 else 0.0
 
 
 @kernel
-def _normal_force(
-    b: np.ndarray, side: int, cos_b: float, sin_b: float, deflection: float, rate: float
-) -> float:
+def _normal_force(b: np.ndarray, side: int, deflection: float, rate: float) -> float:
     """Normal force [N] of a mesh; negative on the coast side."""
     coast = -b[_BACKLASH] - deflection
     if deflection <= 0.0 and coast <= 0.0:
         return 0.0
     s = 1.0 if deflection > 0.0 else -1.0
     depth = deflection if deflection > 0.0 else coast
-    phase = _phase(b, side, cos_b, sin_b)
+    phase = b[_PHASE_RATE] * b[_ANGLE] + b[_PHASE_LEFT + side]
     force, tangent = force_law.force_and_tangent(b, _TABLE[side], phase, depth)
-    mass = 1.0 / (b[_RB[0]] ** 2 / b[_INERTIAS[0]] + b[_RB[1]] ** 2 / b[_INERTIAS[1]])
-    g = min(1.0, depth / b[_TRANSITION])
+    g = min(1.0, depth * b[_PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
     if b[_IMPACT] > 0.0 and s > 0.0:
-        into = (phase - math.floor(phase)) / b[_IMPACT_DURATION]
-        if into < 1.0:
-            force += 0.5 * b[_IMPACT] * g * (1.0 - cosine(_TWO_PI * into))
-    damping = 2.0 * b[_ZETA] * math.sqrt(tangent * mass)
+        force += g * _impact(b, phase)
+    damping = 2.0 * b[_ZETA] * math.sqrt(tangent * b[_PATH_MASS])
     return s * max(0.0, force + s * damping * g * rate)
 
 
 @kernel
-def _meshes(b: np.ndarray) -> tuple[float, float, float, float, float, float, float]:
-    """cos(beta_b), sin(beta_b), eps_z [m], deflections [m] and normal forces [N] of both meshes."""
-    cos_b, sin_b = cosine(b[_BETA]), sine(b[_BETA])
+def _meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
+    """eps_z [m], deflections [m] and normal forces [N] of both meshes."""
     eps, eps_rate = _axial_offset(b)
-    left, left_rate = _deflection(b, 0, cos_b, sin_b, eps, eps_rate)
-    right, right_rate = _deflection(b, 1, cos_b, sin_b, eps, eps_rate)
-    force_left = _normal_force(b, 0, cos_b, sin_b, left, left_rate)
-    force_right = _normal_force(b, 1, cos_b, sin_b, right, right_rate)
-    return cos_b, sin_b, eps, left, right, force_left, force_right
+    left, left_rate = _deflection(b, 0, eps, eps_rate)
+    right, right_rate = _deflection(b, 1, eps, eps_rate)
+    force_left = _normal_force(b, 0, left, left_rate)
+    force_right = _normal_force(b, 1, right, right_rate)
+    return eps, left, right, force_left, force_right
 
 
 @kernel
-def _derivatives(
-    b: np.ndarray, dx: np.ndarray, cos_b: float, sin_b: float, left: float, right: float
-) -> None:
+def _derivatives(b: np.ndarray, dx: np.ndarray, left: float, right: float) -> None:
     """Derivatives of all states under the normal forces of both meshes."""
     for i in range(_HALF):
         dx[i] = b[i + _HALF]
     for gear in range(2):
         sign = -1.0 if gear == 0 else 1.0
         first = 2 * gear
-        mass, inertia, rb = b[_MASSES[gear]], b[_INERTIAS[gear]], b[_RB[gear]]
+        per_mass, per_inertia, rb = b[_PER_MASS[gear]], b[_PER_INERTIA[gear]], b[_RB[gear]]
         y, z, twist = _Y + first, _Z + first, _TWIST_P + first
         bend = b[_K_Y[gear]] * (b[y] - b[y + 1])
         bend += b[_C_Y[gear]] * (b[y + _HALF] - b[y + 1 + _HALF])
         stretch = b[_K_Z[gear]] * (b[z] - b[z + 1])
         stretch += b[_C_Z[gear]] * (b[z + _HALF] - b[z + 1 + _HALF])
         torsion = b[_K_T[gear]] * b[twist] + b[_C_T[gear]] * b[twist + _HALF]
-        dx[y + _HALF] = (b[_F_Y[first]] - bend + sign * cos_b * left) / mass
-        dx[y + 1 + _HALF] = (b[_F_Y[first + 1]] + bend + sign * cos_b * right) / mass
-        force_left = b[_F_Z[first]] - stretch + sign * sin_b * left
-        force_right = b[_F_Z[first + 1]] + stretch - sign * sin_b * right
+        path_left, path_right = sign * b[_COS] * left, sign * b[_COS] * right
+        dx[y + _HALF] = (b[_F_Y[first]] - bend + path_left) * per_mass
+        dx[y + 1 + _HALF] = (b[_F_Y[first + 1]] + bend + path_right) * per_mass
+        force_left = b[_F_Z[first]] - stretch + sign * b[_SIN] * left
+        force_right = b[_F_Z[first + 1]] + stretch - sign * b[_SIN] * right
         tau, drag = b[_TAU[gear]], 0.0
         if gear == 0:
             hold = 0.25 * b[_RESTRAINT] * (b[z] + b[z + 1])
             force_left -= hold + b[_AXIAL_DRAG] * b[z + _HALF]
             force_right -= hold + b[_AXIAL_DRAG] * b[z + 1 + _HALF]
-            w = b[_ANGLE + _HALF]
-            drag = 0.5 * b[_DRAG] * w / math.sqrt(1.0 + w * w)
-        dx[z + _HALF] = force_left / mass
-        dx[z + 1 + _HALF] = force_right / mass
+            if b[_DRAG] > 0.0:
+                w = b[_ANGLE + _HALF]
+                drag = 0.5 * b[_DRAG] * w / math.sqrt(1.0 + w * w)
+        dx[z + _HALF] = force_left * per_mass
+        dx[z + 1 + _HALF] = force_right * per_mass
         share = b[_SHARE[gear]]
-        turn_left = (share * tau - drag + torsion + sign * rb * cos_b * left) / inertia
-        turn_right = ((1.0 - share) * tau - drag - torsion + sign * rb * cos_b * right) / inertia
+        turn_left = (share * tau - drag + torsion + rb * path_left) * per_inertia
+        turn_right = ((1.0 - share) * tau - drag - torsion + rb * path_right) * per_inertia
         dx[twist + _HALF] = turn_right - turn_left
         if gear == 0:
             dx[_ANGLE + _HALF] = turn_left
@@ -406,9 +429,16 @@ def _derivatives(
 
 
 @kernel
+def _rates(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    """Derivatives of all states, after `_derive`."""
+    _, _, _, left, right = _meshes(b)
+    _derivatives(b, dx, left, right)
+
+
+@kernel
 def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    cos_b, sin_b, _, _, _, left, right = _meshes(b)
-    _derivatives(b, dx, cos_b, sin_b, left, right)
+    _derive(b)
+    _rates(b, t, dx)
 
 
 @kernel
@@ -418,10 +448,9 @@ def _motions(b: np.ndarray) -> None:
         b[_S_Y[i]], b[_V_Y[i]] = b[_Y + i], b[_Y + _HALF + i]
         b[_S_Z[i]], b[_V_Z[i]] = b[_Z + i], b[_Z + _HALF + i]
     for o in range(0, _HALF + 1, _HALF):
-        wheel = (b[_RB[0]] * b[_ANGLE + o] - b[_APPROACH + o]) / b[_RB[1]]
         at = _PHI if o == 0 else _W
         b[at[0]] = b[_ANGLE + o] + (1.0 - b[_SHARE[0]]) * b[_TWIST_P + o]
-        b[at[1]] = wheel + (1.0 - b[_SHARE[1]]) * b[_TWIST_W + o]
+        b[at[1]] = _wheel(b, o // _HALF) + (1.0 - b[_SHARE[1]]) * b[_TWIST_W + o]
 
 
 @kernel
@@ -430,38 +459,46 @@ def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
     for i in range(4):
         b[_A_Y[i]] = dx[_Y + _HALF + i]
         b[_A_Z[i]] = dx[_Z + _HALF + i]
-    wheel = (b[_RB[0]] * dx[_ANGLE + _HALF] - dx[_APPROACH + _HALF]) / b[_RB[1]]
+    wheel = (b[_RB[0]] * dx[_ANGLE + _HALF] - dx[_APPROACH + _HALF]) * b[_PER_WHEEL_RB]
     b[_A[0]] = dx[_ANGLE + _HALF] + (1.0 - b[_SHARE[0]]) * dx[_TWIST_P + _HALF]
     b[_A[1]] = wheel + (1.0 - b[_SHARE[1]]) * dx[_TWIST_W + _HALF]
 
 
 @kernel
-def _out(b: np.ndarray, t: float) -> None:
+def _results(b: np.ndarray, t: float) -> None:
+    """Write all outputs, after `_derive`."""
     _motions(b)
-    cos_b, sin_b, eps, left, right, force_left, force_right = _meshes(b)
+    eps, left, right, force_left, force_right = _meshes(b)
     b[_OFFSET], b[_DEFLECTION[0]], b[_DEFLECTION[1]] = eps, left, right
     b[_FORCE[0]], b[_FORCE[1]] = force_left, force_right
     b[_TE] = b[_APPROACH] + 0.5 * (b[_RB[0]] * b[_TWIST_P] - b[_RB[1]] * b[_TWIST_W])
     dx = b[_SCRATCH : _SCRATCH + _STATES]
-    _derivatives(b, dx, cos_b, sin_b, force_left, force_right)
+    _derivatives(b, dx, force_left, force_right)
     _accelerations(b, dx)
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    _derive(b)
+    _results(b, t)
 
 
 @kernel
 def _indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
     """Contact of each mesh: deflection on the drive side, and past the backlash."""
-    cos_b, sin_b = cosine(b[_BETA]), sine(b[_BETA])
+    _derive(b)
     eps, eps_rate = _axial_offset(b)
     for side in range(2):
-        deflection, _ = _deflection(b, side, cos_b, sin_b, eps, eps_rate)
+        deflection, _ = _deflection(b, side, eps, eps_rate)
         z[2 * side], z[2 * side + 1] = deflection, deflection + b[_BACKLASH]
 
 
-_advance = steppers.body_stepper(_rhs, _out, _d)
+_advance = steppers.body_stepper(_rates, _results, _d)
 
 
 @kernel
 def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    _derive(b)
     status = _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
     left = force_law.inside(b, _TABLE[0], b[_DEFLECTION[0]])
     right = force_law.inside(b, _TABLE[1], b[_DEFLECTION[1]])

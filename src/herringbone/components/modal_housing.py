@@ -71,8 +71,10 @@ def _port(seat: str, axis: str) -> list[Variable]:
     ]
 
 
-# Tables: number of modes, angular frequency, damping ratio, shapes by dof, modal accelerations.
-_TABLE_SIZE = 1 + MODES * (2 + _N + 1)
+# Tables: number of modes, angular frequency, damping ratio, shapes by dof, modal accelerations,
+# partial sums of a degree of freedom.
+_PARTIAL = 12
+_TABLE_SIZE = 1 + MODES * (2 + _N + 1) + _PARTIAL
 STEPS = 24
 """Steps whose propagators are kept, for masters that come back to a step."""
 # Work: slots filled so far, step of each slot, slots of propagators (by entry, then by mode), room
@@ -118,6 +120,7 @@ _OMEGA = _COUNT + 1
 _ZETA = _OMEGA + MODES
 _SHAPES = _ZETA + MODES
 _ACCELERATIONS = _SHAPES + _N * MODES
+_SUMS = _ACCELERATIONS + MODES
 
 
 @kernel
@@ -155,21 +158,36 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 def _seats(b: np.ndarray) -> None:
     """Write the motion of the seats from that of the modes.
 
-    Even and odd modes are summed apart, so that two can be added at a time.
+    Every fourth mode is summed apart, so that additions go side by side. The sums are then stored,
+    which lets the compiler keep them together in the loop.
     """
-    pairs = (_count(b) + 1) // 2
+    sums = b[_SUMS : _SUMS + _PARTIAL]
+    fours = (_count(b) + 3) // 4
     for k in range(_N):
         row = b[_SHAPES + k * MODES : _SHAPES + (k + 1) * MODES]
-        s_even, s_odd, v_even, v_odd, a_even, a_odd = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(pairs):
-            even, odd = 2 * i, 2 * i + 1
-            s_even += row[even] * b[even]
-            s_odd += row[odd] * b[odd]
-            v_even += row[even] * b[MODES + even]
-            v_odd += row[odd] * b[MODES + odd]
-            a_even += row[even] * b[_ACCELERATIONS + even]
-            a_odd += row[odd] * b[_ACCELERATIONS + odd]
-        b[_S[k]], b[_V[k]], b[_A[k]] = s_even + s_odd, v_even + v_odd, a_even + a_odd
+        s_0, s_1, s_2, s_3 = 0.0, 0.0, 0.0, 0.0
+        v_0, v_1, v_2, v_3 = 0.0, 0.0, 0.0, 0.0
+        a_0, a_1, a_2, a_3 = 0.0, 0.0, 0.0, 0.0
+        for four in range(fours):
+            i = 4 * four
+            s_0 += row[i] * b[i]
+            s_1 += row[i + 1] * b[i + 1]
+            s_2 += row[i + 2] * b[i + 2]
+            s_3 += row[i + 3] * b[i + 3]
+            v_0 += row[i] * b[MODES + i]
+            v_1 += row[i + 1] * b[MODES + i + 1]
+            v_2 += row[i + 2] * b[MODES + i + 2]
+            v_3 += row[i + 3] * b[MODES + i + 3]
+            a_0 += row[i] * b[_ACCELERATIONS + i]
+            a_1 += row[i + 1] * b[_ACCELERATIONS + i + 1]
+            a_2 += row[i + 2] * b[_ACCELERATIONS + i + 2]
+            a_3 += row[i + 3] * b[_ACCELERATIONS + i + 3]
+        sums[0], sums[1], sums[2], sums[3] = s_0, s_1, s_2, s_3
+        sums[4], sums[5], sums[6], sums[7] = v_0, v_1, v_2, v_3
+        sums[8], sums[9], sums[10], sums[11] = a_0, a_1, a_2, a_3
+        b[_S[k]] = (sums[0] + sums[2]) + (sums[1] + sums[3])
+        b[_V[k]] = (sums[4] + sums[6]) + (sums[5] + sums[7])
+        b[_A[k]] = (sums[8] + sums[10]) + (sums[9] + sums[11])
 
 
 @kernel

@@ -48,14 +48,15 @@ def _reduce(x: float) -> tuple[int, float, float]:
 def _sine(x: float, low: float) -> float:
     z = x * x
     v = z * x
-    r = _S2 + z * (_S3 + z * (_S4 + z * (_S5 + z * _S6)))
+    r = _S2 + z * (_S3 + z * _S4) + z * (z * z) * (_S5 + z * _S6)
     return x - ((z * (0.5 * low - v * r) - low) - v * _S1)
 
 
 @kernel
 def _cosine(x: float, low: float) -> float:
     z = x * x
-    r = z * (_C1 + z * (_C2 + z * (_C3 + z * (_C4 + z * (_C5 + z * _C6)))))
+    square = z * z
+    r = z * (_C1 + z * (_C2 + z * _C3)) + square * square * (_C4 + z * (_C5 + z * _C6))
     half = 0.5 * z
     w = 1.0 - half
     return w + (((1.0 - w) - half) + (z * r - x * low))
@@ -85,6 +86,20 @@ def cosine(x: float) -> float:
     if quadrant == 2:
         return -_cosine(high, low)
     return _sine(high, low)
+
+
+@kernel
+def sine_and_cosine(x: float) -> tuple[float, float]:
+    """Sine and cosine of x [rad], the same bits as `sine` and `cosine`."""
+    quadrant, high, low = _reduce(x)
+    s, c = _sine(high, low), _cosine(high, low)
+    if quadrant == 0:
+        return s, c
+    if quadrant == 1:
+        return c, -s
+    if quadrant == 2:
+        return -s, -c
+    return -c, s
 
 
 @kernel

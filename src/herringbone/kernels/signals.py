@@ -63,7 +63,7 @@ def store_node(b: np.ndarray, first: int, count: int, node: int) -> None:
 @kernel
 def all_finite(b: np.ndarray, first: int, count: int) -> bool:
     """True if no value of a range is NaN or infinite."""
-    for i in range(first, first + count):
-        if b[i] - b[i] != 0.0:
-            return False
-    return True
+    bad = 0
+    for i in range(first, first + count):  # to the end, so that several are looked at together
+        bad |= b[i] - b[i] != 0.0
+    return bad == 0

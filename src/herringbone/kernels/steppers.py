@@ -60,9 +60,10 @@ def body_stepper(
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
     ) -> int:
-        for i in range(inputs):
-            monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)
-            w[kept + i] = b[n + i * STRIDE]
+        if degree > 0:
+            for i in range(inputs):
+                monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)
+                w[kept + i] = b[n + i * STRIDE]
         intervals = max(degree, 1)
         count = max(1, math.ceil(h / (intervals * micro_step) - 1e-9))
         total = intervals * count
@@ -93,8 +94,9 @@ def body_stepper(
             if (k + 1) % count == 0:
                 out(b, t + (k + 1) * hs)
                 store_node(b, first_output, outputs, (k + 1) // count)
-        for i in range(inputs):
-            b[n + i * STRIDE] = w[kept + i]
+        if degree > 0:
+            for i in range(inputs):
+                b[n + i * STRIDE] = w[kept + i]
         return 0 if all_finite(b, 0, n) else NOT_FINITE
 
     return step
