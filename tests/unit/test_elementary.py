@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from herringbone.kernels.elementary import cosine, exponential, sine
+from herringbone.kernels.elementary import cosine, exponential, sine, sine_and_cosine
 
 needs_extended = pytest.mark.skipif(
     np.finfo(np.longdouble).nmant <= 52, reason="no extended precision on this platform"
@@ -39,6 +39,11 @@ def worst_ulp(function, reference, points: np.ndarray) -> float:
 )
 def test_error_is_at_most_one_ulp(function, reference, points):
     assert worst_ulp(function, reference, points) <= 1.0  # the docstring's claim
+
+
+def test_sine_and_cosine_together_have_the_same_bits():
+    points = ANGLES.tolist()
+    assert [sine_and_cosine(x) for x in points] == [(sine(x), cosine(x)) for x in points]
 
 
 def test_exact_values():

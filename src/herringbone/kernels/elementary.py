@@ -2,7 +2,8 @@
 
 Method and coefficients: W. J. Cody and W. Waite, Software Manual for the Elementary Functions
 (1980), argument reduction in three parts; minimax polynomials as published in FDLIBM 5.3
-(Sun Microsystems 1993, freely distributable), k_sin.c, k_cos.c, e_exp.c.
+(Sun Microsystems 1993, freely distributable), k_sin.c, k_cos.c, e_exp.c. Sine's and cosine's are
+summed in two parts, which need not wait for each other.
 Error at most 1 ulp for |x| <= 1e6 (sine, cosine) and -708 <= x <= 709 (exponential).
 """
 

@@ -1,0 +1,158 @@
+"""Variables of the gear mesh: with the values of the shipped pair."""
+
+import math
+
+from herringbone.components.ports import HALVES, flange_body
+from herringbone.core import Variable, input_, local, output, parameter, state
+from herringbone.core.units import RATES
+
+GEARS = ("pinion", "wheel")
+_MODULE, _PRESSURE_ANGLE, _HELIX_ANGLE = 3.5e-3, math.radians(20.0), math.radians(30.0)
+_PINION_TEETH, _WHEEL_TEETH = 27, 81
+_TRANSVERSE_ANGLE = math.atan(math.tan(_PRESSURE_ANGLE) / math.cos(_HELIX_ANGLE))
+_BASE_HELIX_ANGLE = math.asin(math.sin(_HELIX_ANGLE) * math.cos(_PRESSURE_ANGLE))
+_BASE_RADIUS = tuple(
+    0.5 * z * _MODULE / math.cos(_HELIX_ANGLE) * math.cos(_TRANSVERSE_ANGLE)
+    for z in (_PINION_TEETH, _WHEEL_TEETH)
+)
+_SHAFT_DAMPING_RATIO = 0.02
+_DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3
+"""Nominal deflection [m, rad], shaft speed [rad/s] and angular frequency of vibration [rad/s]."""
+_MASS = {"pinion": 6.500, "wheel": 47.739}
+_INERTIA = {"pinion": 7.380e-3, "wheel": 0.5813}
+_SHAFT = {  # gap shaft: y [N/m], z [N/m], rotation [N m/rad]
+    "pinion": (4.192e9, 1.671e10, 7.637e6),
+    "wheel": (5.774e10, 1.732e11, 8.220e8),
+}
+
+
+def _shaft_damping(gear: str) -> tuple[float, float, float]:
+    """2 % of the local critical damping of the two halves against each other."""
+    bodies = (_MASS[gear], _MASS[gear], _INERTIA[gear])
+    return tuple(
+        2.0 * _SHAFT_DAMPING_RATIO * math.sqrt(k * m / 2.0)
+        for k, m in zip(_SHAFT[gear], bodies, strict=True)
+    )
+
+
+def _states() -> list[Variable]:
+    bodies = [
+        state(f"{axis}_{i + 1}", "m", f"{axis} of {half}", nominal=_DEFLECTION_SIZE)
+        for axis in "yz"
+        for i, half in enumerate(HALVES)
+    ]
+    rotations = [
+        state("angle", "rad", "angle of the pinion's left half", steady="rotating"),
+        state("pinion_twist", "rad", "pinion, right half ahead of left half",
+              nominal=_DEFLECTION_SIZE),
+        state("approach", "m", "rb1 theta1 - rb2 theta3 of the left halves",
+              nominal=_DEFLECTION_SIZE),
+        state("wheel_twist", "rad", "wheel, right half ahead of left half",
+              nominal=_DEFLECTION_SIZE),
+    ]  # fmt: skip
+    positions = bodies + rotations
+    return positions + [
+        state(
+            f"der({v.name})",
+            RATES[v.unit],
+            f"rate of {v.name}",
+            nominal=_SPEED_SIZE if v.name == "angle" else _FREQUENCY_SIZE * v.nominal,
+        )
+        for v in positions
+    ]
+
+
+def _ports() -> list[Variable]:
+    ports = []
+    for half in HALVES:
+        for axis in "yz":
+            force = f"{half}.f_{axis}"
+            ports += [
+                input_(force, "N", f"force on {half} along {axis}"),
+                output(f"{half}.s_{axis}", "m", f"position of {half} along {axis}", nodes=True),
+                output(f"{half}.v_{axis}", "m/s", f"velocity of {half} along {axis}", nodes=True),
+                output(
+                    f"{half}.a_{axis}",
+                    "m/s2",
+                    f"acceleration of {half} along {axis}",
+                    feedthrough=(force,),
+                ),
+            ]
+    for gear in GEARS:
+        ports += flange_body(gear)
+    return ports
+
+
+def _results() -> list[Variable]:
+    meshes = [
+        v
+        for side in ("left", "right")
+        for v in (
+            output(f"mesh_{side}.force", "N", f"normal force of the {side} mesh"),
+            output(f"mesh_{side}.deflection", "m", f"normal deflection of the {side} mesh"),
+        )
+    ]
+    return [
+        *meshes,
+        output("transmission_error", "m", "mean of the halves' rb1 theta_pinion - rb2 theta_wheel"),
+        output("axial_offset", "m", "eps_z: apex of the pinion against that of the wheel"),
+        local("time_outside_table", "s", "time with a mesh loaded outside its table, drive side"),
+    ]
+
+
+def _gear_parameters(gear: str, teeth: int, base_radius: float) -> list[Variable]:
+    k_y, k_z, k_t = _SHAFT[gear]
+    c_y, c_z, c_t = _shaft_damping(gear)
+    p = parameter
+    return [
+        p(f"{gear}.number_of_teeth", "1", "number of teeth", teeth, minimum=1),
+        p(f"{gear}.base_radius", "m", "base radius", base_radius, minimum=1e-6),
+        p(f"{gear}.mass", "kg", "mass of one half", _MASS[gear], minimum=1e-9),
+        p(f"{gear}.inertia", "kg.m2", "inertia of one half", _INERTIA[gear], minimum=1e-12),
+        p(f"{gear}.shaft_stiffness_y", "N/m", "gap shaft, bending and shear", k_y, minimum=0),
+        p(f"{gear}.shaft_stiffness_z", "N/m", "gap shaft, tension", k_z, minimum=0),
+        p(f"{gear}.shaft_stiffness_t", "N.m/rad", "gap shaft, torsion", k_t, minimum=0),
+        p(f"{gear}.shaft_damping_y", "N.s/m", "gap shaft, bending and shear", c_y, minimum=0),
+        p(f"{gear}.shaft_damping_z", "N.s/m", "gap shaft, tension", c_z, minimum=0),
+        p(f"{gear}.shaft_damping_t", "N.m.s/rad", "gap shaft, torsion", c_t, minimum=0),
+        p(f"{gear}.torque_share_left", "1", "left half's share of the flange torque", 0.5,
+          minimum=0, maximum=1),
+    ]  # fmt: skip
+
+
+def _mesh_parameters() -> list[Variable]:
+    p = parameter
+    return [
+        p("base_helix_angle", "rad", "base helix angle beta_b", _BASE_HELIX_ANGLE,
+          minimum=-1.2, maximum=1.2),
+        p("mesh_damping_ratio", "1", "zeta of the mesh damping", 0.1, minimum=0),
+        p("damping_transition", "m", "deflection over which the damping rises", 5e-7,
+          minimum=1e-12),
+        p("backlash", "m", "normal backlash", 180e-6, minimum=0),
+        p("stagger", "1", "right half ahead of left half, mesh periods", 0.0),
+        p("symmetry_deviation", "m", "f_A: axial offset of the chevron's apex", 0.0),
+        p("symmetry_constant", "1", "c0: constant share of f_A", 0.4),
+        p("symmetry_pinion", "1", "c1: share of f_A that turns with the pinion", 0.3),
+        p("symmetry_wheel", "1", "c2: share of f_A that turns with the wheel", 0.3),
+        p("symmetry_pinion_phase", "rad", "phi1", 0.0),
+        p("symmetry_wheel_phase", "rad", "phi2", 1.0),
+        p("impact_force", "N", "peak of the meshing impact, 0: off", 0.0, minimum=0),
+        p("impact_duration", "1", "length of the impact, mesh periods", 0.2,
+          minimum=1e-6, maximum=1),
+        p("pinion_restraint", "N/m", "axial stiffness of the pinion against ground, 0: it floats",
+          0.0, minimum=0),
+        p("pinion_axial_drag", "N.s/m", "axial drag of each pinion half against ground", 50.0,
+          minimum=0),
+        p("drag_torque", "N.m", "drag torque on the pinion", 0.0, minimum=0),
+        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4),
+    ]  # fmt: skip
+
+
+VARIABLES = (
+    *_states(),
+    *_ports(),
+    *_results(),
+    *_gear_parameters("pinion", _PINION_TEETH, _BASE_RADIUS[0]),
+    *_gear_parameters("wheel", _WHEEL_TEETH, _BASE_RADIUS[1]),
+    *_mesh_parameters(),
+)
