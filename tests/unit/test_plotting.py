@@ -7,6 +7,8 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from support_result import make_foreign_result, make_result
 
 from herringbone.core import Outcome, OutcomeKind, ParameterError
@@ -69,6 +71,42 @@ def test_spectra_mark_the_mesh_orders(rig):
     places = [text.get_position()[0] for text in axes.texts]
     assert places == pytest.approx([450.0 * k for k in range(1, 7)], rel=1e-4)
     assert axes.lines[0].get_ydata().max() == pytest.approx(12.0, rel=0.05)
+
+
+def test_spectra_have_one_legend_in_the_title_line(rig):
+    figure = spectra(rig)
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    halves = ["pinion left", "pinion right", "wheel left", "wheel right"]
+    assert entries == [*halves, "mesh left", "mesh right"]
+    assert not any(axes.get_legend() for axes in figure.axes)
+    colours = {line.get_label(): line.get_color() for a in figure.axes for line in a.lines}
+    assert len({colours[entry] for entry in entries}) == len(entries)
+    first = figure.axes[0].get_tightbbox()
+    assert figure.legends[0].get_window_extent().y0 > first.y1
+
+
+def test_spectra_tell_their_resolution(rig):
+    """160 ms make lines; the 8 ms of a short run make a point every 125 Hz."""
+    for result, resolution, step in ((rig, 6.25, None), (make_result(t_end=0.01), 124.7, 2)):
+        for axes in panels(spectra(result)):
+            assert axes.get_xlabel() == f"frequency (resolution {resolution:.3g} Hz) [Hz]"
+            (line, *_) = axes.lines
+            assert line.get_markevery() == step
+            assert line.get_marker() == ("o" if step else "None")
+            if step:
+                assert line.get_xdata()[step] == pytest.approx(resolution, abs=0.1)
+
+
+@pytest.mark.parametrize("system", ["test_rig", "gearbox"])
+def test_every_panel_of_the_overview_has_a_legend_beside_its_title(system):
+    figure = overview(make_result(system))
+    FigureCanvasAgg(figure).draw()
+    for axes in figure.axes[:4]:
+        name = axes.get_title(loc="left")
+        title = next(t for t in axes.findobj(Text) if t.get_text() == name)
+        legend = axes.get_legend().get_window_extent()
+        assert not legend.overlaps(title.get_window_extent())
+        assert not any(legend.overlaps(text.get_window_extent()) for text in axes.texts)
 
 
 def test_spectra_of_a_run_up_have_no_orders(rig):

@@ -6,14 +6,21 @@ from collections.abc import Callable
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from herringbone.analysis.operating_point import by_half, instance, mesh_forces, shaft_torques
+from herringbone.analysis.operating_point import by_half, instance, shaft_torques
 from herringbone.core import OutcomeKind
 from herringbone.plotting.columns import generic_overview
-from herringbone.plotting.panels import close_up, headline, spectrum_panel, time_panel
+from herringbone.plotting.panels import (
+    close_up,
+    headline,
+    mesh_columns,
+    spectrum_panel,
+    time_panel,
+)
 from herringbone.plotting.style import COLOURS, draw_line, legend, new_figure, styled
 from herringbone.result import TIME, Result
 
 _R_MIN = 30.0 / math.pi
+_ABOVE_ORDERS = 0.06
 Panel = Callable[[Axes], None]
 
 
@@ -32,7 +39,7 @@ def _panels(result: Result) -> dict[str, Panel]:
     found: dict[str, Panel] = {}
     if shaft_torques(result):
         found["Torque and speed"] = lambda axes: _torque_and_speed(axes, result)
-    elif mesh := mesh_forces(result):
+    elif mesh := mesh_columns(result):
         found["Mesh forces"] = lambda axes: time_panel(
             axes, result, mesh, "normal force", unit="N", rows=close_up(result), mean=True
         )
@@ -62,11 +69,14 @@ def _draw(result: Result, panels: dict[str, Panel]) -> Figure:
         axes.set_visible(False)
     for axes, (title, draw) in zip(grid.flat, panels.items(), strict=False):
         draw(axes)
-        axes.set_title(title, pad=14.0 if title.startswith("Spectrum") else None)
+        orders = title.startswith("Spectrum")  # they stand above the panel, the title above them
+        axes.set_title(title, pad=14.0 if orders else None)
         if title.startswith(("Bearing", "Mesh")):
             legend(axes, 2)
         elif title.startswith("Seat"):
             legend(axes, 4)
+        elif orders:
+            legend(axes, 2, lift=_ABOVE_ORDERS)
     return figure
 
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
-from herringbone.analysis.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.operating_point import mesh_forces, run_mesh_frequency, steady_part
 from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.core import OutcomeKind
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
@@ -23,6 +23,8 @@ DECADES = 3.5
 _CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100
 _MOST_MARKS = 9
 _PADDING = 2
+_FEW_BINS = 60
+"""A spectrum of fewer independent frequencies shows them as points."""
 _LARGE = 1e6
 
 
@@ -36,6 +38,11 @@ def headline(result: Result, what: str) -> str:
 def half_name(half: str) -> str:
     """`pinion_left` -> `pinion left`; other names stay."""
     return half.replace("_", " ") if half in HALF_STYLE else half
+
+
+def mesh_columns(result: Result) -> dict[str, str]:
+    """Columns of the normal forces of the meshes, by the names that `HALF_STYLE` knows."""
+    return {f"mesh_{side}": column for side, column in mesh_forces(result).items()}
 
 
 def close_up(result: Result) -> slice:
@@ -136,6 +143,9 @@ def spectrum_panel(
 ) -> None:
     """Amplitude spectra of the steady part, 0 to 3 kHz, with the mesh orders marked.
 
+    The label of the abscissa tells the resolution; if it is coarse, points tell it, too: what lies
+    between them is interpolated.
+
     Args:
         axes: to draw in.
         result: of a run.
@@ -157,10 +167,14 @@ def spectrum_panel(
     highest = min(HIGHEST, float(spectrum.frequency[-1]))
     shown = spectrum.frequency <= highest
     frequency, amplitude = spectrum.frequency[shown], spectrum.amplitude[shown]
+    axes.set_xlabel(f"frequency (resolution {spectrum.resolution:.3g} Hz) [Hz]")
+    coarse = highest / spectrum.resolution < _FEW_BINS
+    marks = {"marker": "o", "markersize": 3.0, "markevery": _PADDING} if coarse else {}
     top = float(amplitude.max())
     for i, name in enumerate(columns):
         height = np.maximum(amplitude[:, i], top * 10.0 ** -(DECADES + 1.0))
-        draw_line(axes, frequency, height, label=half_name(name), **HALF_STYLE.get(name, {}))
+        style = {**HALF_STYLE.get(name, {}), **marks}
+        draw_line(axes, frequency, height, label=half_name(name), **style)
     if top > 0.0:
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-DECADES, top * 1.6)

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from herringbone.analysis.operating_point import (
     by_half,
     instance,
-    mesh_forces,
     run_mesh_frequency,
     steady_part,
 )
@@ -24,6 +23,7 @@ from herringbone.plotting.panels import (
     close_up,
     headline,
     mark_orders,
+    mesh_columns,
     spectrum_panel,
     time_panel,
 )
@@ -109,7 +109,7 @@ def spectra(result: Result) -> Figure:
         shown += [row] if row else []
     if not shown:
         raise ParameterError(f"system '{result.info.system}' records no bearing forces")
-    if len(shown[0]) == 2 and (mesh := mesh_forces(result)):
+    if len(shown[0]) == 2 and (mesh := mesh_columns(result)):
         shown[0].append(("mesh force", mesh, 1.0, "N"))
     part, frequency = steady_part(result), run_mesh_frequency(result)
     what = f"Amplitude spectra, {part.begin:.3g} to {part.end:.3g} s"
@@ -122,9 +122,7 @@ def spectra(result: Result) -> Figure:
             axes.set_visible(False)
         for axes, (label, columns, factor, unit) in zip(axes_row, row, strict=False):
             spectrum_panel(axes, result, columns, label, factor=factor, unit=unit)
-            if label == "mesh force":
-                legend(axes, 2, lift=0.07)
-    figure_legend(figure, panels[-1][0])
+    figure_legend(figure, *panels.flat)
     return figure
 
 

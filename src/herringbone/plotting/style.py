@@ -13,6 +13,7 @@ from typing import Any, ParamSpec
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -23,6 +24,8 @@ HALF_STYLE: dict[str, dict[str, Any]] = {  # right halves dashed: they often cov
     "pinion_right": {"color": "#56B4E9", "linestyle": (0, (4, 2))},
     "wheel_left": {"color": "#D55E00"},
     "wheel_right": {"color": "#E69F00", "linestyle": (0, (4, 2))},
+    "mesh_left": {"color": "#009E73"},
+    "mesh_right": {"color": "#CC79A7", "linestyle": (0, (4, 2))},
 }
 MARKER_COLOUR = "#666666"
 _RC: dict[Any, Any] = {
@@ -127,7 +130,13 @@ def depths(values: np.ndarray) -> np.ndarray:
 
 
 def legend(axes: Axes, columns: int = 1, lift: float = 0.0) -> None:
-    """Legend above a panel, right of its title, so that it covers no data."""
+    """Legend above a panel, right of its title, so that it covers no data.
+
+    Args:
+        axes: the panel.
+        columns: of the legend.
+        lift: share of the panel's height by which it stands higher, above what else is there.
+    """
     if not axes.lines:
         return
     axes.legend(
@@ -148,8 +157,14 @@ def legend_beside(axes: Axes) -> None:
         axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0)
 
 
-def figure_legend(figure: Figure, axes: Axes) -> None:
-    """One legend for panels with the same signals, in the figure's title line."""
-    handles, labels = axes.get_legend_handles_labels()
-    if handles:
-        figure.legend(handles, labels, loc="upper right", ncols=len(labels), borderaxespad=0.3)
+def figure_legend(figure: Figure, *panels: Axes) -> None:
+    """One legend for panels that share their signals, in the figure's title line."""
+    entries: dict[str, Artist] = {}
+    for axes in panels:
+        handles, labels = axes.get_legend_handles_labels()
+        entries |= dict(zip(labels, handles, strict=True))
+    if entries:
+        figure.legend(
+            list(entries.values()), list(entries), loc="upper right", ncols=len(entries),
+            borderaxespad=0.3,
+        )  # fmt: skip
