@@ -28,6 +28,7 @@ MEMORY = np.dtype(
         ("get_state", np.int64),
         ("set_state", np.int64),
         ("free_state", np.int64),
+        ("get_derivatives", np.int64),
         ("count", np.int64),
         ("elements", np.int64),
         ("values", np.int64),
@@ -58,6 +59,9 @@ _EXCHANGE = types.int32(
 )
 _STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
 _STATE = types.int32(_MEMORY, types.int64)
+_DERIVATIVES = types.int32(
+    _MEMORY, types.CPointer(types.uint32), types.size_t, types.int64, types.int64
+)
 _UNKNOWN_SIZE = 1  # bounds are not checked
 _ENDED = 256  # added to the status of a step
 _INT32, _DOUBLE, _BOOLEAN = ir.IntType(32), ir.DoubleType(), ir.IntType(8)
@@ -75,6 +79,8 @@ def _at(typing_context, address):  # noqa: ANN001, ANN202
 
 _exchange = c_call("address", "address", "count", "address", "count")
 """fmi3SetFloat64 or fmi3GetFloat64."""
+_derivatives = c_call("address", "address", "count", "address", "address", "count")
+"""fmi3GetOutputDerivatives."""
 
 
 @intrinsic
@@ -224,3 +230,17 @@ def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2FreeFMUstate."""
     part = carray(memory, 1)[0]
     return state_call(part.free_state, part.instance, handle)
+
+
+@c_function(_DERIVATIVES)
+def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
+    """fmi2GetRealOutputDerivatives, of scalars; the others' number of values is refused."""
+    part = carray(memory, 1)[0]
+    given = carray(references, _UNKNOWN_SIZE)
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    reference = carray(_at(part.references), part.count, np.uint32)
+    for i in range(count):
+        reference[i] = element[given[i]].reference
+    return _derivatives(
+        part.get_derivatives, (part.instance, part.references, count, orders, values, count)
+    )

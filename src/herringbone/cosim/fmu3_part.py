@@ -20,6 +20,7 @@ _FUNCTIONS = {
     "get_state": "fmi3GetFMUState",
     "set_state": "fmi3SetFMUState",
     "free_state": "fmi3FreeFMUState",
+    "get_derivatives": "fmi3GetOutputDerivatives",
 }
 _EXCHANGE = CFUNCTYPE(c_int, c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double))
 _set_real = _EXCHANGE(fmi3_calls.set_real.address)
@@ -70,11 +71,17 @@ class Fmu3Part(FmuPart):
 
     @property
     def addresses(self) -> Addresses:
-        """Addresses of the adapters; the component is their memory."""
+        """Addresses of the adapters; the component is their memory.
+
+        FMI 3.0 has no input derivatives.
+        """
         functions = [fmi3_calls.set_real, fmi3_calls.get_real, fmi3_calls.do_step]
         if self.model.coSimulation.canGetAndSetFMUstate:
             functions += [fmi3_calls.get_state, fmi3_calls.set_state, fmi3_calls.free_state]
-        return Addresses(self._memory.ctypes.data, *(f.address for f in functions))
+        found = Addresses(self._memory.ctypes.data, *(f.address for f in functions))
+        if int(self.model.coSimulation.maxOutputDerivativeOrder) > 0:
+            found = found._replace(get_derivatives=fmi3_calls.get_derivatives.address)
+        return found
 
     def _write(self, kind: str, reference: int, value: float | str) -> None:
         if kind == "Float64":
