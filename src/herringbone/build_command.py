@@ -23,7 +23,13 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         metavar=_SET,
         help="resource file that a native FMU carries instead of its own; may be repeated",
     )
-    sub.add_argument("-o", "--output", type=Path, help="folder to copy the FMUs to")
+    sub.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        help="folder to copy the FMUs to, as COMPONENT.fmu, with --fmi 3 as COMPONENT_fmi3.fmu; "
+        "files of these names are replaced",
+    )
 
 
 def add_platform_options(sub: argparse.ArgumentParser) -> None:

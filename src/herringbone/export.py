@@ -24,6 +24,11 @@ in parallel on held inputs; the limit is about 3e-6 s."""
 _log = logging.getLogger(__name__)
 
 
+def fmu_file_name(model: str, fmi: int) -> str:
+    """File name of an FMU: MODEL.fmu, FMI 3.0: MODEL_fmi3.fmu, so that both fit into one folder."""
+    return f"{model}.fmu" if fmi == 2 else f"{model}_fmi{fmi}.fmu"
+
+
 def build_fmus(
     components: Iterable[str] = (),
     folder: Path | None = None,
@@ -37,7 +42,8 @@ def build_fmus(
 
     Args:
         components: names; all components if none is given.
-        folder: where they are copied to; if not given they stay in the cache.
+        folder: where they are copied to, as `fmu_file_name` says; if not given they stay in the
+            cache.
         native: FMUs without Python, instead of Python FMUs.
         platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
         fmi: FMI version of native FMUs, 2 or 3.
@@ -62,7 +68,10 @@ def build_fmus(
         return fmus
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [Path(shutil.copyfile(file, folder / file.name)) for file in fmus]
+        return [
+            Path(shutil.copyfile(file, folder / fmu_file_name(name, fmi)))
+            for name, file in built.items()
+        ]
     except OSError as error:
         raise ResourceError(
             f"cannot write to {folder}: {error.strerror}; choose another folder"

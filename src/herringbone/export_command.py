@@ -24,7 +24,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--native", action="store_true", help="an .ssp file with native FMUs")
     add_platform_options(sub)
     sub.add_argument(
-        "-o", "--output", type=Path, help="file; SYSTEM.ssp or SYSTEM.fmu if not given"
+        "-o",
+        "--output",
+        type=Path,
+        help="file; if not given SYSTEM.ssp, with --as-fmu SYSTEM.fmu, and with --fmi 3 "
+        "SYSTEM_fmi3.fmu",
     )
 
 
@@ -35,7 +39,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         HerringboneError: something about the options is wrong, or the export fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.export import PARALLEL_STEP, export_ssp  # noqa: PLC0415
+    from herringbone.export import PARALLEL_STEP, export_ssp, fmu_file_name  # noqa: PLC0415
     from herringbone.system_fmu import export_fmu  # noqa: PLC0415
 
     name = Path(options.system).stem
@@ -47,7 +51,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
         file = export_fmu(
             options.system,
-            options.output or Path(f"{name}.fmu"),
+            options.output or Path(fmu_file_name(name, options.fmi)),
             outside=options.outside,
             scene=options.scene,
             values=values,

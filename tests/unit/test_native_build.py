@@ -8,12 +8,14 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmpy.model_description import read_model_description
 from fmpy.validation import validate_fmu
 
 from herringbone.cli import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.paths import resources_folder
+from herringbone.export import build_fmus
 from herringbone.fmi import kind
 from herringbone.fmi.native import (
     PLATFORMS,
@@ -132,7 +134,7 @@ def test_all_platforms_in_one_small_file(fmi, tmp_path, capsys):
     arguments = ["--native", "--platforms", "all", "--fmi", str(fmi), "-o", str(tmp_path)]
     assert main(["build", "gear_mesh", *arguments]) == 0
     said = capsys.readouterr().out.splitlines()
-    file = tmp_path / "gear_mesh.fmu"
+    file = tmp_path / {2: "gear_mesh.fmu", 3: "gear_mesh_fmi3.fmu"}[fmi]
     assert said[0] == str(file)
     assert said[1] == "built, not run: x86_64-darwin, aarch64-darwin"
     assert validate_fmu(str(file)) == []
@@ -145,6 +147,13 @@ def test_all_platforms_in_one_small_file(fmi, tmp_path, capsys):
     assert folders == {p.name if fmi == 3 else p.folder for p in PLATFORMS.values()}
     assert "x86_64-darwin (built, not run)" in documentation
     assert "x86_64-linux (built" not in documentation
+
+
+def test_both_fmi_versions_fit_into_one_folder(tmp_path):
+    for fmi in build.VERSIONS:
+        build_fmus(["shaft_coupling"], tmp_path, native=True, fmi=fmi)
+    found = {file.name: read_model_description(file).fmiVersion for file in tmp_path.iterdir()}
+    assert found == {"shaft_coupling.fmu": "2.0", "shaft_coupling_fmi3.fmu": "3.0"}
 
 
 def test_resources_lie_in_the_file(native_fmus):
