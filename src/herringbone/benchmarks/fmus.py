@@ -1,6 +1,7 @@
-"""Start and size of the native FMUs."""
+"""Start and size of the native FMUs of all components, and of whole systems."""
 
 import statistics
+import tempfile
 import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +9,9 @@ from pathlib import Path
 
 from herringbone.fmi.host import Host
 from herringbone.fmi.native import PLATFORMS, build_native_fmus, find_compiler
+from herringbone.system_fmu import export_fmu
 
+SYSTEMS = ("gearbox", "test_rig")
 _RESOURCES = "resources/"
 
 
@@ -17,7 +20,7 @@ class NativeFmu:
     """A native FMU that was measured.
 
     Attributes:
-        name: component.
+        name: component or system.
         start_seconds: to instantiate and initialise, the median of the repeats.
         bytes: size of the packed file without its resources.
         platforms: for which it has a binary.
@@ -30,17 +33,21 @@ class NativeFmu:
 
 
 def measure(repeats: int = 20) -> list[NativeFmu]:
-    """Start and size of all native FMUs, with all platforms that can be built here.
+    """Start and size of native FMUs with all platforms that can be built here.
 
     Raises:
         HerringboneError: native FMUs cannot be built, or one does not initialise.
     """
     platforms = tuple(name for name, platform in PLATFORMS.items() if find_compiler(platform))
-    fmus = build_native_fmus(platforms=platforms)
-    return [
-        NativeFmu(name, _start_seconds(name, file, repeats), _size(file), platforms)
-        for name, file in fmus.items()
-    ]
+    with tempfile.TemporaryDirectory() as folder:
+        fmus = build_native_fmus(platforms=platforms)
+        for system in SYSTEMS:
+            file = Path(folder) / f"{system}.fmu"
+            fmus[system] = export_fmu(system, file, platforms=platforms)
+        return [
+            NativeFmu(name, _start_seconds(name, file, repeats), _size(file), platforms)
+            for name, file in fmus.items()
+        ]
 
 
 def _start_seconds(name: str, file: Path, repeats: int) -> float:
