@@ -45,6 +45,18 @@ def test_value_that_is_not_finite_is_refused_at_once(name, value, started):
     assert host.values(signal.name) == before
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_every_real_is_called_by_its_name(name, started):
+    host = started(name)
+    reals = [v for v in host.model.modelVariables if v.type == "Real" and "der(" not in v.name]
+    assert len(reals) >= len(COMPONENTS[name].declaration.variables)
+    for v in reals:
+        with pytest.raises(FMICallException):
+            host.slave.setReal([v.valueReference], [float("nan")])
+        (said,) = host.messages()
+        assert said.startswith(f"part.{v.name} = nan {v.unit}: ")
+
+
 def test_fixed_parameter_is_refused_after_initialisation(started):
     host = started("drive_motor")
     with pytest.raises(ParameterError, match=r"inertia = 1 kg\.m2: a fixed parameter cannot be se"):

@@ -17,27 +17,31 @@
 #include "rotor.h"
 
 
-#define NODES(name, unit) \
-    {name, unit, 0, -1e300, 1e300, 1, 0}, {name ".node1", unit, 0, -1e300, 1e300, 1, 0}, \
-    {name ".node2", unit, 0, -1e300, 1e300, 1, 0}, {name ".node3", unit, 0, -1e300, 1e300, 1, 0}, \
-    {name ".node4", unit, 0, -1e300, 1e300, 1, 0}
+#define NODES \
+    {0, -1e300, 1e300, 1, 0, 0}, {0, -1e300, 1e300, 1, 0, 1}, {0, -1e300, 1e300, 1, 0, 2}, \
+    {0, -1e300, 1e300, 1, 0, 3}, {0, -1e300, 1e300, 1, 0, 4}
 static const HbReal reals[] = {
-    {"phi", "rad", 0, -1e300, 1e300, 1, 0},
-    {"w", "rad/s", 0, -1e300, 1e300, 100, 0},
-    {"counter[1]", "s", 0, -1e300, 1e300, 10, 0},
-    {NULL, NULL, 0, -1e300, 1e300, 1, 0},
-    {"other[1]", "1", 0, -1e300, 1e300, 20, 0},
-    {NULL, NULL, 0, -1e300, 1e300, 1, 0},
-    NODES("tau", "N.m"),
-    NODES("flange.phi", "rad"),
-    NODES("flange.w", "rad/s"),
-    NODES("torque", "N.m"),
-    {"flange.a", "rad/s2", 0, -1e300, 1e300, 1, 0},
-    {"steps", "1", 0, -1e300, 1e300, 1, 0},
-    {"inertia", "kg.m2", 2, 1e-9, 1e9, 1, 0},
-    {"ratio", "1", 1, -1e9, 1e9, 1, 0},
-    {"interface_degree", "1", 0, 0, 4, 1, 1},
+    {0, -1e300, 1e300, 1, 0, 0},
+    {0, -1e300, 1e300, 100, 0, 0},
+    {0, -1e300, 1e300, 10, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0},
+    {0, -1e300, 1e300, 20, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0},
+    NODES,
+    NODES,
+    NODES,
+    NODES,
+    {0, -1e300, 1e300, 1, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0},
+    {2, 1e-9, 1e9, 1, 0, 0},
+    {1, -1e9, 1e9, 1, 0, 0},
+    {0, 0, 4, 1, 1, 0},
 };
+static const char names[] = "phi\0" "w\0" "counter[1]\0" "\0" "other[1]\0" "\0" "tau\0"
+                            "flange.phi\0" "flange.w\0" "torque\0" "flange.a\0" "steps\0"
+                            "inertia\0" "ratio\0" "interface_degree\0";
+static const char units[] = "rad\0" "rad/s\0" "s\0" "\0" "1\0" "\0" "N.m\0" "rad\0" "rad/s\0"
+                            "N.m\0" "rad/s2\0" "1\0" "kg.m2\0" "1\0" "1\0";
 static const uint8_t access_of[] = {
     HB_STATE, HB_STATE, HB_ELEMENT, HB_HIDDEN, HB_ELEMENT, HB_HIDDEN,
     HB_INPUT, HB_INPUT, HB_INPUT, HB_INPUT, HB_INPUT,
@@ -169,7 +173,8 @@ const HbComponent hb_component = {
     .name = "rotor", .token = "{token}", .sources = SOURCES,
     .states = STATES, .visible_states = 2, .first_input = TAU, .inputs = 1, .first_output = PHI_OUT,
     .node_outputs = 3, .mutable_size = INERTIA, .first_table = GAIN, .size = SIZE, .work = 1,
-    .degree = DEGREE, .reals = reals, .access = access_of, .extents = extents, .rates = rates,
+    .degree = DEGREE, .reals = reals, .names = names, .units = units, .access = access_of,
+    .extents = extents, .rates = rates,
     .texts_count = 2, .texts = texts, .step = step, .rhs = rhs, .out = out, .load = load,
     .refusals_count = 2, .refusals = refusals, .exchanged_count = 4, .exchanged = exchanged,
     .vectors_count = 2, .vectors = vectors, .indicators_count = 1, .indicators = indicators,

@@ -15,14 +15,17 @@ from herringbone.fmi.native.platforms import Platform, own_platform
 SOURCES = Path(__file__).parent
 """Folder of the wrapper's C files."""
 _FLAGS = (
-    "-std=c11", "-O2", "-g0", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off",
+    "-std=c11", "-Os", "-g0", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off",
     "-ffunction-sections", "-fdata-sections", "-fno-stack-protector", "-U_FORTIFY_SOURCE",
 )  # fmt: skip
-_LINK = {
-    "so": ("-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
-    "dll": ("-Wl,--gc-sections",),
-    "dylib": ("-Wl,-dead_strip",),
+_NO_UNWINDING = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")  # nothing is thrown
+_SYSTEM = {
+    "so": (*_NO_UNWINDING, "-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
+    "dll": ("-D__USE_MINGW_ANSI_STDIO=0", "-rtlib=none", "-Wl,--gc-sections"),
+    "dylib": (*_NO_UNWINDING, "-Wl,-dead_strip"),
 }
+"""What differs by system. Windows: its own printf, and nothing of the compiler's library, which
+would be a third of the file; functions there need their tables for unwinding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +83,7 @@ def compile_library(
         FmuError: the compiler failed.
     """
     headers = Path(fmpy.__file__).parent / "c-code"
-    link = list(_LINK[platform.extension])
+    link = list(_SYSTEM[platform.extension])
     if platform.extension == "dylib":
         link.append(f"-Wl,-install_name,@rpath/{library.name}")
     command = [

@@ -30,10 +30,10 @@ enum HbAccess {
 
 /* A real variable; the nodes of a signal are variables too ("X.node1"). */
 typedef struct {
-    const char *name, *unit; /* name is NULL for a hidden state */
     double start, minimum, maximum;
     double nominal; /* of a state; 1 otherwise */
     uint8_t whole;  /* a parameter that takes whole numbers only */
+    uint8_t node;   /* number of a signal's node, 1 ...; 0: the variable itself */
 } HbReal;
 
 /* A column of a resource file. */
@@ -87,6 +87,9 @@ typedef struct {
 
     /* Entries 0 ... first_table - 1 of the block. */
     const HbReal *reals;
+    /* Of the entries that are no nodes, "" for hidden states: one text behind the other, as pointers
+       would have to be relocated whenever the library is loaded. */
+    const char *names, *units;
     const uint8_t *access;  /* HbAccess */
     const uint8_t *extents; /* FMI 3: length of the array variable that starts here; 0: none does.
                                A signal with nodes is the scalar X and the array X.node[4], a state

@@ -41,7 +41,9 @@ def component_source(used: UsedStates) -> str:
         "#include <stddef.h>",
         '#include "component.h"',
         _ENTRY_POINTS,
-        _array("HbReal reals", _reals(block)),
+        _array("HbReal reals", _reals(declaration, block)),
+        _texts("names", (v.name if v else "" for v in _unlike_nodes(declaration, block))),
+        _texts("units", (v.unit if v else "" for v in _unlike_nodes(declaration, block))),
         _array("uint8_t access", _access(block, states)),
         _array("uint8_t extents", _extents(used)),
         _array("uint32_t rates", _rates(declaration, block)),
@@ -67,6 +69,8 @@ def component_source(used: UsedStates) -> str:
         "work": max(declaration.work, 1),
         "degree": declaration.index["interface_degree"],
         "reals": "reals",
+        "names": "names",
+        "units": "units",
         "access": "access",
         "extents": "extents",
         "rates": "rates",
@@ -103,9 +107,18 @@ def _array(name: str, entries: Iterable[object]) -> str:
     )
 
 
+def _texts(name: str, texts: Iterable[str]) -> str:
+    """Texts one behind the other, each with its end."""
+    rows = "".join(f'    "{_escaped(text)}\\0"\n' for text in texts)
+    return f"static const char {name}[] =\n{rows};\n"
+
+
+def _escaped(text: str) -> str:
+    return text.encode("ascii").decode().replace("\\", "\\\\").replace('"', '\\"')
+
+
 def _string(text: str) -> str:
-    escaped = text.encode("ascii").decode().replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'
+    return f'"{_escaped(text)}"'
 
 
 def _number(value: float) -> str:
@@ -114,10 +127,9 @@ def _number(value: float) -> str:
     return float(value).hex()
 
 
-def _real(variable: Variable) -> str:
+def _real(variable: Variable, node: int) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
-    words = [_string(variable.name), _string(variable.unit), *map(_number, numbers)]
-    return f"{{{', '.join(words)}, {int(variable.whole)}}}"
+    return f"{{{', '.join(map(_number, numbers))}, {int(variable.whole)}, {node}}}"
 
 
 def _block(used: UsedStates) -> list[Variable | None]:
@@ -127,9 +139,26 @@ def _block(used: UsedStates) -> list[Variable | None]:
     return [reals.get(i) for i in range(declaration.first_table)]
 
 
-def _reals(block: list[Variable | None]) -> Iterable[str]:
-    for variable in block:
-        yield _real(variable) if variable else "{NULL, NULL, 0.0, 0.0, 0.0, 1.0, 0}"
+def _nodes(declaration: Declaration) -> dict[int, int]:
+    """Number of the node, 1 to 4, by index in the block."""
+    return {
+        declaration.index[variable.name] + node: node
+        for variable in declaration.variables
+        if variable.nodes
+        for node in range(1, NODES + 1)
+    }
+
+
+def _unlike_nodes(declaration: Declaration, block: list[Variable | None]) -> list[Variable | None]:
+    nodes = _nodes(declaration)
+    return [variable for index, variable in enumerate(block) if index not in nodes]
+
+
+def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[str]:
+    nodes = _nodes(declaration)
+    for index, variable in enumerate(block):
+        node = nodes.get(index, 0)
+        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0}"
 
 
 def _access(block: list[Variable | None], states: Container[int]) -> Iterable[str]:

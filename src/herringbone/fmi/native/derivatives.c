@@ -33,7 +33,7 @@ static Status set_input_derivative(Instance *instance, uint32_t reference, int32
                                    double value) {
     if (!is_input(reference))
         return instance_unknown(instance, "input", &reference, 1);
-    const char *name = hb_component.reals[reference].name;
+    const char *name = real_name(reference);
     if (order < 1 || order > HIGHEST_ORDER)
         return instance_fail(instance, STATUS_ERROR,
                              "%s.%s: derivative of order %d; orders 1 to %d are known",
@@ -41,7 +41,7 @@ static Status set_input_derivative(Instance *instance, uint32_t reference, int32
     if (!isfinite(value))
         return instance_fail(instance, STATUS_ERROR,
                              "%s.%s: derivative %g; it must be finite", instance->name, name,
-                             isnan(value) ? NAN : value);
+                             message_number(value));
     double degree = instance->block[hb_component.degree];
     if (degree != 0.0)
         return instance_fail(instance, STATUS_ERROR,
@@ -107,8 +107,7 @@ Status instance_get_output_derivatives(Instance *instance, const uint32_t refere
         if (orders[i] != 1)
             return instance_fail(instance, STATUS_ERROR,
                                  "%s.%s: derivative of order %d; order 1 is known",
-                                 instance->name, hb_component.reals[references[i]].name,
-                                 (int)orders[i]);
+                                 instance->name, real_name(references[i]), (int)orders[i]);
         values[i] = output_derivative(instance, references[i]);
     }
     return STATUS_OK;

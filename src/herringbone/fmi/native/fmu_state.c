@@ -204,11 +204,15 @@ static const char *take(const char **at, const char *end) {
 }
 
 static Texts *take_texts(const char **at, const char *end) {
-    const char *values[hb_component.texts_count + 1];
-    for (uint32_t k = 0; k < hb_component.texts_count; k++)
-        if (!(values[k] = take(at, end)))
+    Texts *texts = texts_new();
+    for (uint32_t k = 0; texts && k < hb_component.texts_count; k++) {
+        const char *text = take(at, end);
+        if (!text || !texts_put(texts, k, text)) {
+            texts_release(texts);
             return NULL;
-    return texts_new(values);
+        }
+    }
+    return texts;
 }
 
 /* An instance for co-simulation has no modes of model exchange, and the other way round. */

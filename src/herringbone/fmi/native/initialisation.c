@@ -9,7 +9,7 @@
 Status instance_set_time(Instance *instance, double time, const char *what) {
     if (!isfinite(time))
         return instance_fail(instance, STATUS_ERROR, "%s: %s %g s; it must be finite",
-                             instance->name, what, isnan(time) ? NAN : time);
+                             instance->name, what, message_number(time));
     instance->now.time = time;
     return STATUS_OK;
 }
@@ -129,16 +129,19 @@ Status instance_read_resources(Instance *instance) {
     uint32_t count = hb_component.texts_count;
     if (count == 0 || instance->now.tables)
         return STATUS_OK;
-    char *files[count];
-    int64_t shape[2 * count];
-    memset(files, 0, sizeof files);
+    char **files = calloc(count, sizeof *files);
+    int64_t *shape = calloc(2 * (size_t)count, sizeof *shape);
     Numbers numbers = {NULL, 0};
-    Status status = read_files(instance, files, shape, &numbers);
+    Status status = files && shape ? read_files(instance, files, shape, &numbers)
+                                   : instance_fail(instance, STATUS_ERROR, "%s: out of memory",
+                                                   instance->name);
     if (status == STATUS_OK)
         status = make_tables(instance, &numbers, shape, files);
     free(numbers.values);
-    for (uint32_t k = 0; k < count; k++)
+    for (uint32_t k = 0; files && k < count; k++)
         free(files[k]);
+    free(files);
+    free(shape);
     return status;
 }
 

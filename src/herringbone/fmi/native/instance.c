@@ -42,7 +42,8 @@ static size_t previous_length(void) {
 
 static bool allocate(Instance *instance) {
     size_t saved = slopes_length() + previous_length();
-    size_t length = saved + hb_component.size + hb_component.work + hb_component.states + 1;
+    size_t length = saved + hb_component.size + hb_component.work + hb_component.states +
+                    hb_component.indicators_count + 1;
     instance->slopes = calloc(length, sizeof(double));
     if (!instance->slopes)
         return false;
@@ -50,6 +51,7 @@ static bool allocate(Instance *instance) {
     instance->block = instance->previous + previous_length();
     instance->work = instance->block + hb_component.size;
     instance->rates = instance->work + hb_component.work;
+    instance->indicators = instance->rates + hb_component.states;
     return true;
 }
 

@@ -52,7 +52,8 @@ typedef struct {
     double *slopes;   /* input derivatives for the next step: [inputs][HIGHEST_ORDER] */
     double *previous; /* outputs and locals at the start of the last step */
     double *block, *work;
-    double *rates; /* derivatives of the states */
+    double *rates;      /* derivatives of the states */
+    double *indicators; /* work space for event indicators */
 
     double *direction; /* of directional derivatives; NULL until one is asked for */
 } Instance;
@@ -80,6 +81,11 @@ Status instance_read_resources(Instance *instance);
 /* Compute outdated outputs; outdated derivatives of the states. */
 Status instance_refresh(Instance *instance);
 Status instance_refresh_rates(Instance *instance);
+
+/* reals.c: what messages call a real, "" for a hidden state; the node is "" or ".node1" ... */
+const char *real_name(uint32_t reference);
+const char *real_node(uint32_t reference);
+const char *real_unit(uint32_t reference);
 
 /* values.c: reals and Strings by value reference. */
 Status instance_get(Instance *instance, const uint32_t references[], size_t count,

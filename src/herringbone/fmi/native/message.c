@@ -1,5 +1,6 @@
 #include "message.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +9,10 @@ static void cut(char *text, size_t length) {
     while (length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80)
         length--;
     text[length] = '\0';
+}
+
+double message_number(double value) {
+    return value == value ? value : NAN; /* mingw's isnan is a function of its math library */
 }
 
 void message_write_list(Message *message, const char *format, va_list arguments) {

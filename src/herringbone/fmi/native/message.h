@@ -14,6 +14,9 @@ typedef struct {
     char text[1024];
 } Message;
 
+/* A number as messages show it: a NaN without its sign. */
+double message_number(double value);
+
 void message_write(Message *message, const char *format, ...) PRINTF_LIKE(2, 3);
 void message_write_list(Message *message, const char *format, va_list arguments);
 

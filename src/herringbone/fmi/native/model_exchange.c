@@ -52,9 +52,8 @@ static Status check_finite(Instance *instance, const double numbers[], const cha
         if (!isfinite(numbers[k]))
             return instance_fail(instance, STATUS_DISCARD,
                                  "%s: %s%s = %g; reduce the integrator's step, or check the inputs",
-                                 instance->name, of,
-                                 hb_component.reals[hb_component.exchanged[k]].name,
-                                 isnan(numbers[k]) ? NAN : numbers[k]);
+                                 instance->name, of, real_name(hb_component.exchanged[k]),
+                                 message_number(numbers[k]));
     return STATUS_OK;
 }
 

@@ -11,7 +11,7 @@ imported: see `build`.
 
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -29,6 +29,8 @@ _TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
 _OPTIMISATION = 3
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
+_FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators"}
+"""Entry points that a simulation calls all the time; each of their functions is made for speed."""
 _UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
@@ -95,18 +97,33 @@ def entry_points(of: Component) -> dict[str, CFunc]:
 
 
 def _linked(kernels: dict[str, CFunc], target: llvm.TargetMachine, triple: str) -> llvm.ModuleRef:
-    """LLVM code of all entry points for a target; what they share is there once."""
-    whole = None
-    for symbol, compiled in kernels.items():
+    """LLVM code of all entry points for a target; what they share is there once.
+
+    What no step needs is marked to be made small rather than fast.
+    """
+    whole, fast = None, set[str]()
+    for symbol, compiled in sorted(kernels.items(), key=lambda item: item[0] not in _FAST):
         module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
         module.triple, module.data_layout = triple, str(target.target_data)
         entry = module.get_function(compiled.native_name)
         entry.name, entry.linkage, entry.visibility = symbol, "external", "hidden"
+        if symbol in _FAST:
+            fast |= {function.name for function in module.functions}
+        else:
+            _make_small(module, fast)
         if whole is None:
             whole = module
         else:
             whole.link_in(module)
     return whole
+
+
+def _make_small(module: llvm.ModuleRef, fast: Container[str]) -> None:
+    """Let all functions but the fast ones be small."""
+    for function in module.functions:
+        if not function.is_declaration and function.name not in fast:
+            function.add_function_attribute("optsize")
+            function.add_function_attribute("minsize")
 
 
 def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:

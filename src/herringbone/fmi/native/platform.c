@@ -12,6 +12,15 @@
 #endif
 #if defined _WIN32
 #include <windows.h>
+
+/* What compilers call of themselves comes from Windows: asked for here, before the linker looks into
+   the compiler's own library, which comes as a whole. */
+extern const char __imp_memcmp, __imp_memcpy, __imp_memmove, __imp_memset, __imp_strlen;
+__attribute__((used)) static const void *const of_windows[] = {
+    &__imp_memcmp, &__imp_memcpy, &__imp_memmove, &__imp_memset, &__imp_strlen};
+
+/* Start-up code of mingw for data of other libraries, of which nothing is used here. */
+void _pei386_runtime_relocator(void) {}
 #endif
 
 static bool is_utf8(const unsigned char *text, size_t length) {
@@ -35,10 +44,13 @@ static bool is_utf8(const unsigned char *text, size_t length) {
 
 static FILE *open_file(const char *path) {
 #if defined _WIN32
-    wchar_t wide[4096];
-    if (!MultiByteToWideChar(CP_UTF8, 0, path, -1, wide, sizeof wide / sizeof *wide))
-        return NULL;
-    return _wfopen(wide, L"rb");
+    int length = MultiByteToWideChar(CP_UTF8, 0, path, -1, NULL, 0);
+    wchar_t *wide = calloc((size_t)length + 1, sizeof *wide);
+    FILE *stream = wide && MultiByteToWideChar(CP_UTF8, 0, path, -1, wide, length)
+                       ? _wfopen(wide, L"rb")
+                       : NULL;
+    free(wide);
+    return stream;
 #else
     return fopen(path, "rb");
 #endif

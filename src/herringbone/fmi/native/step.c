@@ -7,29 +7,25 @@ static bool in_vector(uint32_t index) {
     return hb_component.access[index] == HB_HIDDEN || hb_component.access[index] == HB_ELEMENT;
 }
 
-/* Name of the first entry that is NaN or infinite, those of state vectors last; NULL if there is
+/* The first entry that is NaN or infinite, those of state vectors last; `first_table` if there is
    none. */
-static const char *first_not_finite(const Instance *instance, double *value, const char **unit) {
-    for (int last = 0; last < 2; last++) {
-        for (uint32_t i = 0; i < hb_component.first_table; i++) {
-            if (in_vector(i) == last && !isfinite(instance->block[i])) {
-                const HbReal *real = &hb_component.reals[i];
-                *value = isnan(instance->block[i]) ? NAN : instance->block[i];
-                *unit = real->name ? real->unit : "";
-                return real->name ? real->name : "hidden state";
-            }
-        }
-    }
-    return NULL;
+static uint32_t first_not_finite(const Instance *instance) {
+    for (int last = 0; last < 2; last++)
+        for (uint32_t i = 0; i < hb_component.first_table; i++)
+            if (in_vector(i) == last && !isfinite(instance->block[i]))
+                return i;
+    return hb_component.first_table;
 }
 
 static Status explain_failure(Instance *instance, double step_size) {
-    double value = NAN;
-    const char *unit = "", *name = first_not_finite(instance, &value, &unit);
+    uint32_t i = first_not_finite(instance);
+    bool found = i < hb_component.first_table;
+    const char *name = found ? real_name(i) : "result", *unit = found ? real_unit(i) : "";
     return instance_fail(instance, STATUS_DISCARD,
-                         "%s.%s = %g%s%s after a step of %g s; "
+                         "%s.%s%s = %g%s%s after a step of %g s; "
                          "reduce the communication step size, or check the inputs",
-                         instance->name, name ? name : "result", value, *unit ? " " : "", unit,
+                         instance->name, *name ? name : "hidden state", found ? real_node(i) : "",
+                         found ? message_number(instance->block[i]) : NAN, *unit ? " " : "", unit,
                          step_size);
 }
 
@@ -43,7 +39,7 @@ static Status refuse_step(Instance *instance, double time, double step_size) {
         return instance_set_time(instance, time, "communication point");
     return instance_fail(instance, STATUS_ERROR,
                          "%s: step size %g s; it must be 0 or positive, and finite",
-                         instance->name, isnan(step_size) ? NAN : step_size);
+                         instance->name, message_number(step_size));
 }
 
 static int32_t step(Instance *instance, double time, double step_size) {

@@ -13,20 +13,26 @@ void texts_release(Texts *texts) {
     free(texts);
 }
 
-static char *copy_text(const char *text) {
-    size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, text, size) : NULL;
+Texts *texts_new(void) {
+    Texts *texts = calloc(1, sizeof *texts + hb_component.texts_count * sizeof *texts->values);
+    if (texts)
+        texts->users = 1;
+    return texts;
 }
 
-Texts *texts_new(const char *const values[]) {
-    Texts *texts = calloc(1, sizeof *texts + hb_component.texts_count * sizeof *texts->values);
-    if (!texts)
-        return NULL;
-    texts->users = 1;
-    for (uint32_t k = 0; k < hb_component.texts_count; k++) {
-        texts->values[k] = copy_text(values[k]);
-        if (!texts->values[k]) {
+bool texts_put(Texts *texts, uint32_t index, const char *value) {
+    size_t size = strlen(value) + 1;
+    char *copy = malloc(size);
+    if (!copy)
+        return false;
+    texts->values[index] = memcpy(copy, value, size);
+    return true;
+}
+
+Texts *texts_start(void) {
+    Texts *texts = texts_new();
+    for (uint32_t k = 0; texts && k < hb_component.texts_count; k++) {
+        if (!texts_put(texts, k, hb_component.texts[k].start)) {
             texts_release(texts);
             return NULL;
         }
@@ -34,23 +40,19 @@ Texts *texts_new(const char *const values[]) {
     return texts;
 }
 
-Texts *texts_start(void) {
-    const char *values[hb_component.texts_count + 1];
-    for (uint32_t k = 0; k < hb_component.texts_count; k++)
-        values[k] = hb_component.texts[k].start;
-    return texts_new(values);
-}
-
 Texts *texts_share(Texts *texts) {
     texts->users++;
     return texts;
 }
 
-Texts *texts_with(Texts *texts, size_t index, const char *value) {
-    const char *values[hb_component.texts_count];
-    for (uint32_t k = 0; k < hb_component.texts_count; k++)
-        values[k] = k == index ? value : texts->values[k];
-    Texts *changed = texts_new(values);
+Texts *texts_with(Texts *texts, uint32_t index, const char *value) {
+    Texts *changed = texts_new();
+    for (uint32_t k = 0; changed && k < hb_component.texts_count; k++) {
+        if (!texts_put(changed, k, k == index ? value : texts->values[k])) {
+            texts_release(changed);
+            return NULL;
+        }
+    }
     if (changed)
         texts_release(texts);
     return changed;

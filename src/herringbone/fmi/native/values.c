@@ -47,9 +47,8 @@ Status instance_unknown(Instance *instance, const char *type, const uint32_t ref
 }
 
 static Status get_indicator(Instance *instance, uint32_t k, double *value) {
-    double indicators[hb_component.indicators_count];
-    hb_component.indicators(instance->block, instance->now.time, indicators);
-    *value = indicators[k];
+    hb_component.indicators(instance->block, instance->now.time, instance->indicators);
+    *value = instance->indicators[k];
     return STATUS_OK;
 }
 
@@ -96,9 +95,9 @@ static const char *kind_of(uint8_t access) {
 }
 
 static Status refuse_value(Instance *instance, uint32_t reference, double value, const char *why) {
-    const HbReal *real = &hb_component.reals[reference];
-    return instance_fail(instance, STATUS_ERROR, "%s.%s = %g %s: %s", instance->name, real->name,
-                         isnan(value) ? NAN : value, real->unit, why);
+    return instance_fail(instance, STATUS_ERROR, "%s.%s%s = %g %s: %s", instance->name,
+                         real_name(reference), real_node(reference), message_number(value),
+                         real_unit(reference), why);
 }
 
 static Status check_value(Instance *instance, uint32_t reference, double value) {
