@@ -63,9 +63,8 @@ def build_fmus(
         if native
         else build_python_fmus(names)
     )
-    fmus = list(built.values())
     if folder is None:
-        return fmus
+        return list(built.values())
     try:
         folder.mkdir(parents=True, exist_ok=True)
         return [
