@@ -23,7 +23,7 @@ from herringbone.fmi.native import PLATFORMS, build_native_fmus, own_platform
 from herringbone.fmi.native.compiler import require_compiler
 from herringbone.start import started
 
-STEP, COUNT, EVERY = 2e-6, 5000, 100
+STEP, COUNT, EVERY = 2e-6, 100_000, 1000
 MASTER = Path(__file__).with_name("jacobi.c")
 AARCH64_LIBC = Path("/usr/aarch64-linux-gnu")
 
