@@ -10,6 +10,7 @@ from lxml import etree
 
 from herringbone.core import FmuError, HerringboneError, ParameterError, StructureError
 from herringbone.cosim.ssp_read import read_ssp, read_stop_time
+from herringbone.cosim.ssp_structure import DescribedPart
 from herringbone.cosim.ssp_write import write_ssp
 from herringbone.cosim.system import PartSpec, System
 
@@ -175,6 +176,13 @@ def test_unconnected_outputs_are_connectors_and_inputs_are_not(ssp):
 def test_wrong_values_are_refused_in_writing(system, fmus, tmp_path, values, message):
     with pytest.raises(ParameterError, match=message):
         write_ssp(system.with_values(values), fmus, tmp_path / "x.ssp", step=1e-5, t_end=1.0)
+
+
+def test_value_of_an_fmu_3_is_refused_with_the_remedy(fmi3_fmus):
+    part = DescribedPart("load", fmi3_fmus["load_motor"], {"inertia": 0.1})
+    said = r"load\.inertia = 0\.1: SSP 1\.0 has no value of type Float64, .* replace this part by"
+    with pytest.raises(ParameterError, match=said):
+        list(part.typed_values())
 
 
 BINDING = (

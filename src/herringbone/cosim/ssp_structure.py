@@ -11,7 +11,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import PartVariable
-from herringbone.cosim.fmu_file import read_fmu
+from herringbone.cosim.fmu_file import is_fmi3, read_fmu
 from herringbone.cosim.fmu_variables import read_variables
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import record_names
@@ -61,6 +61,11 @@ class DescribedPart:
             if name not in types:
                 raise ParameterError(f"{self.name}: {self.file.name} has no variable '{name}'")
             kind = types[name]
+            if is_fmi3(self.model):
+                raise ParameterError(
+                    f"{self.name}.{name} = {value!r}: SSP 1.0 has no value of type {kind}, and its "
+                    "masters run FMI 2.0; replace this part by an FMU 2.0, or drop the value"
+                )
             if kind not in _TO_TEXT or (kind == "String") != isinstance(value, str):
                 raise ParameterError(
                     f"{self.name}.{name} = {value!r}: this {kind} has no place in an SSP 1.0 file"
