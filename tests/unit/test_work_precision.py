@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.step_ladder import FEWEST_STEPS, charted_algorithms, ladder
+from herringbone.analysis.variant_labels import variant_labels
 from herringbone.analysis.work_precision import Point, WorkPrecision
 from herringbone.chart_command import measure, table
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import ALGORITHMS, parse_algorithm
-from herringbone.plotting.work_precision import chart_picture, variant_labels, write_chart
+from herringbone.plotting.work_precision import chart_picture, write_chart
 
 CHEAP, GOOD = "jacobi:order=1,schedule=bodies_first", "li:degree=3,iterations=1"
 KEYS = {
@@ -117,21 +118,34 @@ def test_every_algorithm_is_charted():
     assert all(parse_algorithm(str(a)) == a for a in found)
 
 
+def test_labels_are_what_the_command_takes():
+    parallel = ("jacobi:order=1,schedule=parallel", "jacobi:order=2,schedule=parallel")
+    for algorithms in (tuple(map(str, charted_algorithms())), parallel, ("predict", CHEAP, GOOD)):
+        labels = variant_labels(algorithms)
+        assert all(parse_algorithm(labels[a]) == parse_algorithm(a) for a in algorithms)
+
+
 def test_labels_show_what_differs():
-    labels = variant_labels(
-        ("jacobi:order=1,schedule=parallel", "jacobi:order=2,schedule=parallel")
-    )
-    assert list(labels.values()) == ["jacobi order 1", "jacobi order 2"]
+    labels = variant_labels((CHEAP, "jacobi:order=2,schedule=bodies_first"))
+    assert list(labels.values()) == ["jacobi:order=1", "jacobi:order=2"]
     adaptive = f"{GOOD},tolerance=*"
     labels = variant_labels((GOOD, adaptive))
-    assert labels == {GOOD: "li degree 3", adaptive: "li adaptive"}
-    assert variant_labels(("predict", GOOD)) == {"predict": "predict", GOOD: "li degree 3"}
+    assert labels == {GOOD: "li:degree=3", adaptive: "li:tolerance=*"}
+    assert variant_labels(("predict", GOOD)) == {"predict": "predict", GOOD: "li:degree=3"}
+    thrice = "fixed_point:degree=3,sweeps=3"
+    assert variant_labels((thrice,)) == {thrice: "fixed_point:sweeps=3"}
+
+
+def test_axis_reaches_down_to_the_smallest_error():
+    points = (point(GOOD, 1e-6, 5.9e-9), point(GOOD, 2e-6, 0.0), point(GOOD, 5e-6, 1e-4))
+    axes = chart_picture(replace(chart(), points=points)).axes[0]
+    assert axes.get_ylim() == pytest.approx((1e-9, 1.0))
 
 
 def test_picture(tmp_path):
     figure = chart_picture(chart())
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["Pareto front", "jacobi order 1  (3.16 µs)", "li degree 3  (35.6 µs)"]
+    assert labels == ["Pareto front", "jacobi:order=1  (3.16 µs)", "li:degree=3  (35.6 µs)"]
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert texts.count("80 µs") == 2
     write_chart(chart(), tmp_path / "chart.png")
@@ -145,11 +159,17 @@ def test_legend_marks_what_the_table_marks():
     found = replace(chart(), points=(*points, failed))
     legend = chart_picture(found).legends[0]
     labels = [text.get_text() for text in legend.get_texts()]
-    assert labels[1:] == ["li degree 3  (>20 µs)", "jacobi order 1  (!1 µs)"]
+    assert labels[1:] == ["li:degree=3  (>20 µs)", "jacobi:order=1  (!1 µs)"]
     rows = [line.split() for line in table(found, []).splitlines()[3:5]]
     assert [row[3] for row in rows] == [">20.0", "!1.0"]
     explained = ["> no larger step was tried", "! the next larger one failed"]
     assert legend.get_title().get_text().splitlines()[1:] == explained
+
+
+def test_legend_has_room_for_the_longest_names():
+    points = tuple(point(str(a), 104e-6, 1e-4) for a in charted_algorithms())
+    figure = chart_picture(replace(chart(), points=points))
+    assert figure.legends[0].get_window_extent().x1 < figure.bbox.x1
 
 
 def test_table():

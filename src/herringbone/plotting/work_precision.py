@@ -1,6 +1,7 @@
 """The picture of a speed-accuracy chart: error against passes and against wall time."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpecFromSubplotSpec
 from PIL import Image
 
+from herringbone.analysis.variant_labels import variant_labels
 from herringbone.analysis.work_precision import MARKS, Point, WorkPrecision
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
@@ -24,8 +26,7 @@ _VARIANTS: tuple[dict[str, Any], ...] = (
     {"marker": "D", "linestyle": (0, (5, 1.5, 1, 1.5))},
     {"marker": "v", "linestyle": (0, (8, 2))},
 )
-_WIDTH, _ROW, _LEGEND = 12.6, 0.15, 2.95  # inch
-_LOWEST = 1e-7
+_WIDTH, _ROW, _LEGEND = 12.8, 0.15, 3.15  # inch
 _PALETTE = 96
 _PARTS = {
     "native": "native FMUs",
@@ -33,24 +34,6 @@ _PARTS = {
     "in-process": "parts in process, without FMU",
 }
 Cost = Callable[[Point], float]
-
-
-def variant_labels(algorithms: tuple[str, ...]) -> dict[str, str]:
-    """Short names: only the options in which variants of the same algorithm differ."""
-    options = {
-        a: dict(item.split("=", 1) for item in a.partition(":")[2].split(",") if item)
-        for a in algorithms
-    }
-    found = {}
-    for algorithm in algorithms:
-        family = algorithm.partition(":")[0]
-        values = options[algorithm]
-        others = [own for a, own in options.items() if a.partition(":")[0] == family]
-        differing = [k for k, v in values.items() if any(o.get(k) != v for o in others)]
-        shown = [f"{k} {values[k]}" for k in differing or list(values)[:1]]
-        shown = ["adaptive" if option == "tolerance *" else option for option in shown]
-        found[algorithm] = " ".join([family.replace("_", " "), ", ".join(shown)]).strip()
-    return found
 
 
 def _looks(algorithms: tuple[str, ...]) -> dict[str, dict[str, Any]]:
@@ -154,9 +137,14 @@ def _draw_errors(axes: Axes, found: WorkPrecision, cost: Cost, looks: dict[str, 
         f"{100 * LEVEL:g} %", (0.995, LEVEL), xycoords=("axes fraction", "data"),
         xytext=(0, 2), textcoords="offset points", ha="right", fontsize=8, color=MARKER_COLOUR,
     )  # fmt: skip
-    axes.set_ylim(_LOWEST, 1.0)
+    axes.set_ylim(_decade_below([p.worst for p in found.points if not p.failed]), 1.0)
     costs = [cost(p) for p in found.points if np.isfinite(cost(p))]
     axes.set_xlim(min(costs) / 1.7, max(costs) * 1.15)
+
+
+def _decade_below(errors: Sequence[float]) -> float:
+    """The power of ten below the smallest error that is not zero, and below LEVEL."""
+    return 10.0 ** math.floor(math.log10(min([0.1 * LEVEL, *(e for e in errors if e > 0.0)])))
 
 
 def _draw_failures(
