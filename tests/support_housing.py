@@ -1,10 +1,13 @@
 """A small housing for tests: exact numbers, all parts of the format."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
+from herringbone.components import modal_data
 from herringbone.components.ports import HALVES
+from herringbone.components.resource_loader import REPORT, read_numbers
 from herringbone.housing import Frame, ModalHousing, Point
 
 WHEEL_X, HALF_WIDTH = 0.2182, 0.107
@@ -48,3 +51,32 @@ def small_housing(modes: int = 20, seed: int = 3, **changes) -> ModalHousing:
         gram=gram @ gram.T,
     )
     return replace(housing, **changes)
+
+
+def read_modes(
+    modes: Path, shapes: Path, dofs: modal_data.Dofs, most: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Modes and shapes as the component reads them, with its refusals.
+
+    Args:
+        modes, shapes: the files.
+        dofs: (point, dof) pairs that are needed.
+        most: largest number of modes.
+
+    Returns:
+        frequency_hz (n,), damping_ratio (n,), shapes (len(dofs), n).
+
+    Raises:
+        ResourceError: see `read_numbers` and `collect`.
+    """
+    first, first_shape = read_numbers(modes, modal_data.MODE_COLUMNS)
+    second, second_shape = read_numbers(shapes, modal_data.shape_columns(dofs))
+    shape = np.array([*first_shape, *second_shape])
+    out, report = np.zeros(1 + most * (2 + len(dofs))), np.zeros(REPORT)
+    values = np.concatenate([first, second])
+    refusal = modal_data.collect(values, shape, modal_data.wanted_rows(dofs), most, out, 0, report)
+    if refusal:
+        raise modal_data.refusals(dofs, most)[refusal - 1].error([modes, shapes], report)
+    n = int(out[0])
+    frequency_hz, damping_ratio = out[1 : 1 + n], out[1 + most : 1 + most + n]
+    return frequency_hz, damping_ratio, out[1 + 2 * most :].reshape(len(dofs), most)[:, :n]

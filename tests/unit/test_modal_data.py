@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from support_housing import read_modes
 
-from herringbone.components.modal_data import read_modes
 from herringbone.core import ResourceError
 
 DOFS = (("pinion_left", "x"), ("wheel_right", "z"))

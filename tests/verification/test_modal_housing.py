@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from scipy.linalg import expm
+from support_housing import read_modes
 
-from herringbone.components.modal_data import read_modes
 from herringbone.components.modal_housing import MODAL_HOUSING, MODES, STEPS
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance

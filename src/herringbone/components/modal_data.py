@@ -134,35 +134,6 @@ def collect(
     return _MISSING + first_missing if missing else 0
 
 
-def read_modes(
-    modes: Path, shapes: Path, dofs: Dofs, most: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Read and check modes and shapes.
-
-    Args:
-        modes, shapes: the files.
-        dofs: (point, dof) pairs that are needed.
-        most: largest number of modes.
-
-    Returns:
-        frequency_hz (n,), damping_ratio (n,), shapes (len(dofs), n).
-
-    Raises:
-        ResourceError: see `read_numbers` and `collect`.
-    """
-    first, first_shape = read_numbers(modes, MODE_COLUMNS)
-    second, second_shape = read_numbers(shapes, shape_columns(dofs))
-    shape = np.array([*first_shape, *second_shape])
-    out, report = np.zeros(1 + most * (2 + len(dofs))), np.zeros(REPORT)
-    values = np.concatenate([first, second])
-    refusal = collect(values, shape, wanted_rows(dofs), most, out, 0, report)
-    if refusal:
-        raise refusals(dofs, most)[refusal - 1].error([modes, shapes], report)
-    n = int(out[0])
-    frequency_hz, damping_ratio = out[1 : 1 + n], out[1 + most : 1 + most + n]
-    return frequency_hz, damping_ratio, out[1 + 2 * most :].reshape(len(dofs), most)[:, :n]
-
-
 def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Read and check the table of modes.
 

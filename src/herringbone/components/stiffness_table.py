@@ -2,7 +2,8 @@
 
 Columns: side (left, right), load [N] (normal force of the own side), phase [mesh periods],
 stiffness [N/m] (secant, normal direction). At zero load, which a table may have, the stiffness is
-the limit; it is zero there if the unloaded flanks have a gap.
+the limit; it is zero there if the unloaded flanks have a gap. `read_stiffness_table` gives a table
+as arrays, off line, with the component's own refusals.
 """
 
 from pathlib import Path

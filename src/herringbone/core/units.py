@@ -1,10 +1,8 @@
-"""The units that variables may carry, as exponents of the SI base units."""
+"""The units that variables may carry, as exponents of kg, m, s and rad."""
 
 from typing import Final
 
 from herringbone.core.errors import StructureError
-
-BASE_UNITS: Final = ("kg", "m", "s", "rad")
 
 UNITS: Final[dict[str, dict[str, float]]] = {
     "1": {},

@@ -63,7 +63,6 @@ class SeatFile:
         path: the file.
         selections: seats in the order pinion_left, ..., then sensors.
         length, mass, time: of one unit of the file [m], [kg], [s].
-        units_given: False if the file leaves the units to their default.
         origin, rotation: frame of the gearbox in the file's coordinates and length unit.
         damping_ratio, damping_source: for modes without damping.
         valid_to_hz, boundary, source: for the data file; 0 Hz if not given.
@@ -76,7 +75,6 @@ class SeatFile:
     length: float
     mass: float
     time: float
-    units_given: bool
     origin: np.ndarray
     rotation: np.ndarray
     damping_ratio: float
@@ -124,7 +122,6 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
         path=path,
         selections=_selections(data),
         **factors,
-        units_given="units" in data,
         origin=_numbers(sections["frame"].get("origin", [0.0] * 3), (3,), "frame origin"),
         rotation=_numbers(
             sections["frame"].get("rotation", np.eye(3).tolist()), (3, 3), "frame rotation"

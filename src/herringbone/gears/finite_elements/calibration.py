@@ -1,7 +1,8 @@
 """Factor on the slices' compliance of teeth and foundations that finite elements ask for.
 
 Both slice methods against finite elements, each pair with its own factor, the same in the mean:
-amplitudes of the first two mesh harmonics over those of the finite elements.
+amplitudes of the first two mesh harmonics over those of the finite elements
+(`calibrate(...).harmonic_ratio`).
 
     pair, pinion torque           k N/m   slices: factor  H1    H2   coupled: factor  H1    H2
     FZG C spur 16/24, 200 N m    2.372e8          0.934  1.03  0.99           0.934  1.03  0.99
