@@ -37,9 +37,14 @@ _NATIVE: Final = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1
 _DERIVATIVES: Final = {"providesDirectionalDerivative": "true"}
 
 
-def identifier(component: Component) -> str:
-    """The guid of FMI 2.0, instantiation token of FMI 3.0."""
-    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}"))
+def identifier(component: Component, built_with: str = "") -> str:
+    """The guid of FMI 2.0, instantiation token of FMI 3.0.
+
+    Args:
+        component: the component.
+        built_with: see `UsedStates`.
+    """
+    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}{built_with}"))
 
 
 def model_description(component: Component, native: UsedStates | None = None) -> Element:
@@ -54,7 +59,7 @@ def model_description(component: Component, native: UsedStates | None = None) ->
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=component.name,
-        guid=identifier(component),
+        guid=identifier(component, native.built_with if native else ""),
         description=declaration.description,
         version=version("herringbone"),
         license="MIT",

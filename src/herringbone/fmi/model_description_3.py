@@ -47,7 +47,7 @@ def model_description_3(used: UsedStates) -> Element:
         "fmiModelDescription",
         fmiVersion="3.0",
         modelName=component.name,
-        instantiationToken=identifier(component),
+        instantiationToken=identifier(component, used.built_with),
         description=declaration.description,
         version=version("herringbone"),
         license="MIT",

@@ -45,10 +45,13 @@ class UsedStates:
     Attributes:
         component: whose they are.
         vectors: the state vectors; none if model exchange is not offered.
+        built_with: hash of what else the FMU is built with; "": of nothing but the package. The
+            guid tells such FMUs apart.
     """
 
     component: Component
     vectors: tuple[UsedVector, ...] = ()
+    built_with: str = ""
 
     def scalars(self) -> dict[int, Variable]:
         """Every state by index in the block, in the order of model exchange."""
@@ -64,19 +67,22 @@ class UsedStates:
         return found | {used.first: (used.array(), len(used.nominals)) for used in self.vectors}
 
 
-def used_states(component: Component, resources: Mapping[str, Path]) -> UsedStates:
+def used_states(
+    component: Component, resources: Mapping[str, Path], built_with: str = ""
+) -> UsedStates:
     """What the states of a component's model exchange are.
 
     Args:
         component: the component.
         resources: the files in the FMU's resources folder, by name.
+        built_with: see `UsedStates`.
 
     Raises:
         ResourceError: a file is missing or malformed.
     """
     declaration = component.declaration
     if not declaration.vectors or not interface.has_model_exchange(component):
-        return UsedStates(component)
+        return UsedStates(component, built_with=built_with)
     block = np.zeros(declaration.size)
     component.load(block, {text.name: resources[text.start] for text in declaration.texts})
     nominals = np.ones(declaration.hidden_states)
@@ -89,4 +95,4 @@ def used_states(component: Component, resources: Mapping[str, Path]) -> UsedStat
         count = int(block[in_table]) if vector.text else vector.capacity
         sizes = nominals[first - len(declaration.states) :][:count]
         used.append(UsedVector(vector, first, tuple(float(f"{size:.1e}") for size in sizes)))
-    return UsedStates(component, tuple(used))
+    return UsedStates(component, tuple(used), built_with)

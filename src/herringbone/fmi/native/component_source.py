@@ -55,7 +55,7 @@ def component_source(used: UsedStates) -> str:
     ]
     entries = {
         "name": _string(component.name),
-        "token": _string(identifier(component)),
+        "token": _string(identifier(component, used.built_with)),
         "sources": _string(content_hash()),
         "states": declaration.state_count,
         "visible_states": len(declaration.states),

@@ -28,6 +28,7 @@ class Model:
         argument: text for the factory.
         resources: the files that lie in the FMU's resources folder, by name.
         identity: what else decides on the kernels, such as the wiring of a system.
+        shipped: it is made of nothing but the package, so that its FMU is known as the component.
     """
 
     component: Component
@@ -35,6 +36,7 @@ class Model:
     argument: str
     resources: Mapping[str, Path]
     identity: str = ""
+    shipped: bool = False
 
     @property
     def name(self) -> str:
@@ -44,13 +46,19 @@ class Model:
     @cached_property
     def states(self) -> UsedStates:
         """The states that its FMU shows."""
-        return used_states(self.component, self.resources)
+        built_with = "" if self.shipped else self._hash(repr(self.component.declaration.variables))
+        return used_states(self.component, self.resources, built_with)
 
     @cached_property
     def key(self) -> str:
         """Hash of all that decides on the FMU, besides the sources of the package."""
+        source = component_source(self.states)
+        return self._hash(self.factory, self.argument, self.identity, source)
+
+    def _hash(self, *texts: str) -> str:
+        """Hash of texts and of the resources."""
         digest = hashlib.sha256()
-        for text in (self.factory, self.argument, self.identity, component_source(self.states)):
+        for text in texts:
             digest.update(text.encode() + b"\0")
         for name, file in sorted(self.resources.items()):
             digest.update(name.encode() + b"\0" + file.read_bytes())
@@ -73,7 +81,8 @@ def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Mode
     found = component(name)
     folder = resources_folder(name)
     if not files:
-        return Model(found, _REGISTRY, name, {f.name: f for f in sorted(folder.glob("*.csv"))})
+        shipped = {file.name: file for file in sorted(folder.glob("*.csv"))}
+        return Model(found, _REGISTRY, name, shipped, shipped=True)
     own = {text.name: folder / text.start for text in found.declaration.texts}
     if unknown := sorted(files.keys() - own.keys()):
         known = f"it has {', '.join(own)}" if own else "it has none"
