@@ -38,7 +38,7 @@ class RunInfo:
         notes: downgrades and other lines to read.
         steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
             "shortest", "median" and "longest" of the accepted ones [s].
-        energy: what the coupling did to the energy; None if the algorithm does not extrapolate.
+        energy: what the coupling did to the energy; None where no element has dampers.
         why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
         slow: bodies that step once in several macro steps, and in how many.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.

@@ -22,6 +22,8 @@ from herringbone.cosim.adaptive_plan import (
     WANTED,
     Adaptive,
 )
+from herringbone.cosim.energy_loop import is_watched
+from herringbone.cosim.energy_nodes import watch_nodes
 from herringbone.cosim.ladder import fitting_rung
 from herringbone.cosim.loop import (
     DONE,
@@ -152,6 +154,8 @@ def _complete(
     culprit = not_finite(plan, buffers.history)
     if culprit >= 0:
         return NOT_FINITE, 0, culprit
+    if is_watched(chunk.energy, ticks * chunk.h):
+        watch_nodes(chunk.energy, buffers.nodes, buffers.trial, ticks * chunk.h)
     _accept(nodes, buffers, adaptive, corrections, ticks * chunk.h)
     failed = _record(plan, adaptive, buffers.history, chunk, done + ticks)
     if failed >= 0:

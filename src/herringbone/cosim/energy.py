@@ -2,8 +2,12 @@
 
 It knows no component. A force that an element sends to a body, and the velocity that the same body
 sends to the same port of the element, make a pair whose product is a power. What the elements'
-dampers take follows from the forces' dependence on the velocities, measured in initialisation mode,
-where outputs follow inputs.
+dampers take follows from the forces' dependence on the velocities, and the forces at a motion that
+an element has not seen from that on the positions too; both are measured in initialisation mode,
+where outputs follow inputs. The equations stand in `energy_loop`.
+
+Every algorithm is watched. Left out are the forces on slow bodies, which are fitted afterwards, and
+elements that are bodies as well.
 """
 
 import math
@@ -13,70 +17,90 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core.energy_report import EnergyReport, Verdict
+from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.connection import Connection
-from herringbone.cosim.energy_loop import (
+from herringbone.cosim.energy_monitor import (
     INACCURATE_AT,
     NOTHING_WATCHED,
+    SLICES_IN_WINDOW,
     UNSTABLE_AT,
+    Watched,
     energy_monitor,
 )
 from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Plan, connected_outputs
+from herringbone.cosim.plan import connected_outputs
 from herringbone.cosim.rates import motion_of_force
 
 PERIODS = 5.0
 """Length of the window, in periods of the fastest bond."""
 UNKNOWN_WINDOW = 100
 """Length of the window [macro steps] where the bonds are not known."""
-_SHORTEST, _LONGEST = 20, 5000
-_CHANGE = 1e-3
+_VELOCITY_CHANGE = 1e-3
 """Difference of a velocity [m/s or rad/s]."""
+_POSITION_CHANGE = 1e-8
+"""Difference of a position [m or rad]."""
 _NOTHING = 1e-9
 
 
 @dataclass(frozen=True)
 class PowerPair:
-    """A force on a body and the body's velocity there.
+    """A force on a body and the body's motion there.
 
     Attributes:
         force: connection from the element to the body.
         velocity: connection from the body to the element.
+        position: likewise; None if the element takes no position.
     """
 
     force: Connection
     velocity: Connection
+    position: Connection | None
 
 
 def power_pairs(network: Network) -> tuple[PowerPair, ...]:
     """All pairs of force and velocity between elements and bodies, by their names."""
-    bodies = set(network.bodies)
+    bodies = {*network.bodies, *network.slow}
     by_input = {(c.target, c.input): c for c in network.connections}
     found = []
     for c in network.connections:
         motion = motion_of_force(c.output)
-        back = by_input.get((c.source, motion[1])) if motion else None
-        loads_body = c.source in network.elements and c.target in bodies
-        if loads_body and back is not None and back.source == c.target:
-            found.append(PowerPair(c, back))
+        if motion is None or c.source not in network.elements or c.target not in bodies:
+            continue
+        position, velocity = (by_input.get((c.source, name)) for name in motion)
+        if velocity is None or velocity.source != c.target:
+            continue
+        same = position is not None and position.source == c.target
+        found.append(PowerPair(c, velocity, position if same else None))
     return tuple(found)
 
 
-def pair_damping(network: Network, pairs: Sequence[PowerPair]) -> np.ndarray:
-    """-d force / d velocity, (pairs, pairs), by differences; in initialisation mode only."""
-    damping = np.zeros((len(pairs), len(pairs)))
-    for j, moved in enumerate(pairs):
-        name, element = moved.velocity.input, network.parts[moved.velocity.target]
-        rows = [i for i, pair in enumerate(pairs) if pair.force.source == moved.force.source]
+def pair_sensitivity(
+    network: Network, pairs: Sequence[PowerPair], moved: Sequence[Connection | None], change: float
+) -> np.ndarray:
+    """-d force / d motion, (pairs, pairs), by differences; in initialisation mode only.
+
+    Args:
+        network: parts and connections.
+        pairs: whose forces are looked at.
+        moved: a motion of each pair that an element takes; None for none.
+        change: of the motion.
+    """
+    found = np.zeros((len(pairs), len(pairs)))
+    for j, c in enumerate(moved):
+        if c is None:
+            continue
+        element = network.parts[c.target]
+        rows = [i for i, pair in enumerate(pairs) if pair.force.source == c.target]
         forces = [pairs[i].force.output for i in rows]
-        start = element.get([name])[0]
+        start = element.get([c.input])[0]
         values = []
-        for change in (_CHANGE, -_CHANGE):
-            element.set(name, start + change)
+        for moved_by in (change, -change):
+            element.set(c.input, start + moved_by)
             values.append(np.array(element.get(forces)))
-        element.set(name, start)
-        found = -(values[0] - values[1]) / (2.0 * _CHANGE)
-        damping[rows, j] = np.where(np.abs(found) > _NOTHING * np.abs(found).max(), found, 0.0)
-    return damping
+        element.set(c.input, start)
+        slope = -(values[0] - values[1]) / (2.0 * change)
+        found[rows, j] = np.where(np.abs(slope) > _NOTHING * np.abs(slope).max(), slope, 0.0)
+    return found
 
 
 class EnergyWatch:
@@ -84,52 +108,88 @@ class EnergyWatch:
 
     Args:
         network: parts and connections.
-        plan: of an algorithm whose bodies take extrapolated forces; None watches nothing.
-        step: macro step [s].
+        prepared: network laid out for the algorithm.
+        step: macro step, the largest one if it adapts itself [s].
         frequency: of the fastest bond [rad/s], None if it is not known.
     """
 
     def __init__(
-        self, network: Network, plan: Plan | None, step: float, frequency: float | None
+        self, network: Network, prepared: PreparedRun, step: float, frequency: float | None
     ) -> None:
-        self._network, self._plan, self._step = network, plan, step
+        self._network, self._prepared, self._step = network, prepared, step
         self._window = window_length(step, frequency)
-        self._pairs = power_pairs(network) if plan else ()
+        self._pairs = tuple(p for p in power_pairs(network) if p.force.source not in network.mixed)
         self.monitor = NOTHING_WATCHED
 
     def start(self) -> None:
-        """Measure the dampers, in initialisation mode; without dampers nothing is watched."""
-        network, pairs, plan = self._network, self._pairs, self._plan
-        damping = pair_damping(network, pairs)
-        if plan is None or not (np.diag(damping) > 0.0).any():
+        """Measure dampers and springs, in initialisation mode; without dampers, watch nothing."""
+        network, pairs, nodes = self._network, self._pairs, self._prepared.nodes
+        damping = pair_sensitivity(network, pairs, [p.velocity for p in pairs], _VELOCITY_CHANGE)
+        if not (np.diag(damping) > 0.0).any():
             self._pairs = ()
             return
+        late = nodes is None and (self._prepared.predicts or self._elements_late())
+        stiffness = pair_sensitivity(network, pairs, [p.position for p in pairs], _POSITION_CHANGE)
         self.monitor = energy_monitor(
-            _integers(self._place(pair.force) for pair in pairs),
-            _integers(self._place(pair.velocity) for pair in pairs),
-            _integers(int(plan.degree[pair.force.target]) for pair in pairs),
+            self._places(),
+            late,
+            stiffness,
             damping,
-            self._window,
+            self._window * self._step,
+            self._step,
+            nodes.degree if nodes else 1,
         )
 
-    def _place(self, c: Connection) -> int:
+    def _places(self) -> Watched:
+        pairs, prepared = self._pairs, self._prepared
+        forces = [self._output(pair.force) for pair in pairs]
+        unknown = prepared.nodes.unknown.tolist() if prepared.nodes else []
+        return Watched(
+            _integers(forces),
+            _integers(self._output(p.position) if p.position else -1 for p in pairs),
+            _integers(self._output(p.velocity) for p in pairs),
+            _integers(self._input(p.force) for p in pairs),
+            _integers(self._input(p.position) if p.position else -1 for p in pairs),
+            _integers(self._input(p.velocity) for p in pairs),
+            _integers(p.force.source for p in pairs),
+            _integers(prepared.input_degree(p.force.target) == 0 for p in pairs),
+            _integers(p.force.target not in self._network.slow for p in pairs),
+            _integers(unknown.index(f) if f in unknown else -1 for f in forces),
+        )
+
+    def _output(self, c: Connection) -> int:
         """Index of a connection's output."""
         names = connected_outputs(self._network)[c.source]
-        return int(self._plan.output_first[c.source]) + names.index(c.output)
+        return int(self._prepared.plan.output_first[c.source]) + names.index(c.output)
+
+    def _input(self, c: Connection) -> int:
+        """Index of a connection's input among all."""
+        names = [other.input for other in self._network.inputs(c.target)]
+        return int(self._prepared.plan.input_first[c.target]) + names.index(c.input)
+
+    def _elements_late(self) -> bool:
+        """True if an element may see other motions than those that a step ends with."""
+        plan = self._prepared.plan
+        return not all(
+            plan.at_end[pair.force.source] and plan.input_fresh[self._input(c)]
+            for pair in self._pairs
+            for c in (pair.velocity, pair.position)
+            if c is not None
+        )
 
     def report(self) -> EnergyReport | None:
         """What was found; None if nothing was watched."""
         if not self._pairs:
             return None
-        monitor, step = self.monitor, self._step
-        added, taken = float(monitor.sums[:-1].sum()), float(monitor.sums[-1])
+        monitor, count = self.monitor, len(self._pairs)
+        added, taken = float(monitor.sums[:count].sum()), float(monitor.sums[count])
         ratio = added / taken if taken > 0.0 and math.isfinite(added) else None
-        window = self._window * step
-        unstable, inaccurate = (int(monitor.counts[k]) for k in (UNSTABLE_AT, INACCURATE_AT))
-        if unstable >= 0:
-            return EnergyReport(Verdict.UNSTABLE, unstable * step, self._bond(), ratio, window)
-        if inaccurate >= 0:
-            return EnergyReport(Verdict.INACCURATE, inaccurate * step, None, ratio, window)
+        window = self._window * self._step
+        unstable, inaccurate = (float(monitor.clock[k]) for k in (UNSTABLE_AT, INACCURATE_AT))
+        if not math.isnan(unstable):
+            return EnergyReport(Verdict.UNSTABLE, unstable, self._bond(), ratio, window)
+        if not math.isnan(inaccurate):
+            return EnergyReport(Verdict.INACCURATE, inaccurate, None, ratio, window)
         return EnergyReport(Verdict.FINE, None, None, ratio, window)
 
     def _bond(self) -> str:
@@ -137,7 +197,7 @@ class EnergyWatch:
 
         The forces of one element are taken together: a rotating shaft carries power through it.
         """
-        added = self.monitor.at_flag[:-1]
+        added = self.monitor.at_flag[: len(self._pairs)]
         elements = np.array([pair.force.source for pair in self._pairs])
         worst = max(set(elements.tolist()), key=lambda e: added[elements == e].sum())
         force = self._pairs[int(np.argmax(np.where(elements == worst, added, -np.inf)))].force
@@ -157,4 +217,4 @@ def window_length(step: float, frequency: float | None) -> int:
     """
     if not frequency:
         return UNKNOWN_WINDOW
-    return int(np.clip(PERIODS * 2.0 * math.pi / (frequency * step), _SHORTEST, _LONGEST))
+    return max(SLICES_IN_WINDOW, int(PERIODS * 2.0 * math.pi / (frequency * step)))

@@ -9,6 +9,8 @@ Jacobian. After the last pass the parts are at the end of the step, and G - U is
 
 import numpy as np
 
+from herringbone.cosim.energy_loop import is_watched
+from herringbone.cosim.energy_nodes import watch_nodes
 from herringbone.cosim.loop import (
     DONE,
     LAST_GOOD,
@@ -127,6 +129,8 @@ def run_iterated(
         culprit = not_finite(plan, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
+        if is_watched(chunk.energy, h):
+            watch_nodes(chunk.energy, buffers.nodes, buffers.trial, h)
         for p in range(plan.component.size if row >= 0 else 0):
             fast = plan.slow.taken[p] < 0
             if fast and get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:

@@ -9,7 +9,7 @@ from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
 from herringbone.cosim.connection import Connection
 from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
-from herringbone.cosim.energy_loop import NOTHING_WATCHED, EnergyMonitor
+from herringbone.cosim.energy_monitor import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.network import Network
 from herringbone.cosim.rates import rates
 from herringbone.cosim.slow_plan import Slow, lay_out_slow
@@ -62,7 +62,7 @@ class Chunk(NamedTuple):
         start, count: first macro step and how many.
         records: one row per `every` macro steps of the run, row 0 at t0.
         every: macro steps per record.
-        energy: watches what the coupling adds, where the algorithm extrapolates.
+        energy: watches what the coupling adds.
     """
 
     t0: float

@@ -6,6 +6,8 @@ import numpy as np
 
 from herringbone.cosim.calls import do_step
 from herringbone.cosim.derivative_pass import set_derivatives, write_input
+from herringbone.cosim.energy_loop import book_step, is_watched
+from herringbone.cosim.energy_monitor import EnergyMonitor
 from herringbone.cosim.loop import (
     DONE,
     LAST_GOOD,
@@ -168,6 +170,31 @@ def _read_parts(
     return -1
 
 
+@inlined
+def _slip(prediction: Prediction, history: np.ndarray, index: int, known: int, h: float) -> float:
+    """Predicted output at the end of a step less the true one."""
+    return predicted(prediction, history, index, known, 1.0, h) - history[0, index]
+
+
+@kernel
+def _watch(
+    prediction: Prediction, monitor: EnergyMonitor, history: np.ndarray, known: int, h: float
+) -> None:
+    """Account for the energy of one macro step; arguments as of `energy_stages.watch_stages`."""
+    forces, taken = prediction.forces, monitor.taken
+    for i in range(monitor.force.size):
+        f, s = monitor.force[i], monitor.position[i]
+        start = 3.0 * (forces[1, f] - forces[2, f]) + forces[3, f]
+        bend = 4.5 * (forces[1, f] - 2.0 * forces[2, f] + forces[3, f])
+        rise = forces[3, f] - start - bend
+        if monitor.held[i]:
+            start, rise, bend = start + 0.5 * rise + 0.25 * bend, 0.0, 0.0
+        taken[0, i], taken[1, i], taken[2, i] = start, rise, bend
+        monitor.slip[0, i] = _slip(prediction, history, s, known, h) if s >= 0 else 0.0
+        monitor.slip[1, i] = _slip(prediction, history, monitor.velocity[i], known, h)
+    book_step(monitor, history, h)
+
+
 @kernel
 def run_predicted(
     plan: Plan, prediction: Prediction, history: np.ndarray, chunk: Chunk
@@ -189,4 +216,6 @@ def run_predicted(
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
+        if is_watched(chunk.energy, h):
+            _watch(prediction, chunk.energy, history, known, h)
     return DONE, chunk.start + chunk.count, -1

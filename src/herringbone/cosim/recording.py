@@ -43,7 +43,7 @@ class Recording:
         wall_seconds: wall time of the loop, without compilation and the first Jacobian.
         notes: downgrades and other lines that the user should read.
         steps: of an adaptive run, the lengths of its macro steps.
-        energy: what the coupling added, where the algorithm extrapolates.
+        energy: what the coupling added; None where no element has dampers.
         slow: bodies that step once in several macro steps, and in how many.
     """
 

@@ -74,8 +74,7 @@ def simulate(
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
-    plan = prepared.plan if prepared.extrapolates else None
-    watch = EnergyWatch(network, plan, grid.step, bond_frequency)
+    watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch)
     run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
     if loop is None:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from herringbone.cosim.energy_loop import watch_energy
+from herringbone.cosim.energy_loop import is_watched
+from herringbone.cosim.energy_stages import watch_stages
 from herringbone.cosim.loop import (
     DONE,
     NOT_FINITE,
@@ -46,5 +47,6 @@ def run_stages(plan: Plan, history: np.ndarray, order: int, chunk: Chunk) -> tup
         culprit = not_finite(plan, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
-        watch_energy(chunk.energy, history, n + 1, h)
+        if is_watched(chunk.energy, h):
+            watch_stages(plan.input_fresh, plan.at_end, chunk.energy, history, order, n + 1, h)
     return DONE, chunk.start + chunk.count, -1

@@ -14,6 +14,7 @@ import numpy as np
 from herringbone.core import ParameterError
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.network import Network
+from herringbone.cosim.node_plan import NodePlan
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
 from herringbone.cosim.recording import StepStatistics
@@ -75,6 +76,8 @@ class PreparedRun(ABC):
         notes: downgrades, and what they cost.
         problem: why the coupling cannot go on, if it cannot.
         culprit: `instance.variable` that is to blame for it, if one is.
+        nodes: of an iterated algorithm.
+        predicts: elements are evaluated before the bodies step.
     """
 
     plan: Plan
@@ -82,6 +85,8 @@ class PreparedRun(ABC):
     notes: tuple[str, ...]
     problem: str
     culprit: str = ""
+    nodes: NodePlan | None = None
+    predicts: bool = False
 
     @property
     def inner_outputs(self) -> bool:
@@ -100,11 +105,6 @@ class PreparedRun(ABC):
     @abstractmethod
     def kept_order(self, part: int) -> int:
         """Convergence order that is left with the derivatives that a part without nodes takes."""
-
-    @property
-    def extrapolates(self) -> bool:
-        """True if bodies take forces that are extrapolated from true ones: their error is seen."""
-        return False
 
     def grid(self, grid: Grid) -> Grid:
         """The grid in the units in which `run` counts."""

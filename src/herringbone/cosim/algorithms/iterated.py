@@ -73,7 +73,7 @@ class PreparedNodes(PreparedRun):
             network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
         )
         self._outputs = connected_outputs(network)
-        self.nodes = self._node_plan(degree)
+        self.nodes: NodePlan = self._node_plan(degree)
         self._same_unit = self._units_agree()
         self.jacobian = InterfaceJacobian(network, self.plan, self.nodes, self._outputs)
         self._buffers: Buffers | None = None

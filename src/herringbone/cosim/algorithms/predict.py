@@ -68,6 +68,8 @@ class Predict(Algorithm):
 class PreparedPrediction(PreparedRun):
     """A network laid out for predicted motions."""
 
+    predicts = True
+
     def __init__(self, network: Network) -> None:
         sources, bodies, elements = network.sources, network.bodies, network.elements
         stages = [s for s in (sources, bodies) if s] + [(e,) for e in elements]

@@ -44,16 +44,6 @@ class Prepared(PreparedRun):
         """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
         return self.full_order if self.plan.derivatives.order[part] else 1
 
-    @property
-    def extrapolates(self) -> bool:
-        """True if all elements are stepped after all bodies: their forces are those of their time.
-
-        Neither the parallel schedule nor Gauss-Seidel coupling has that; slow bodies take forces
-        that are fitted afterwards.
-        """
-        slow = self.plan.slow.parts.size > 0
-        return self.starter is None and not slow and bool(self.plan.at_end.any())
-
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth by the extrapolation over a step; parallel elements answer a step late."""
         degrees = [min(self.order, self.input_degree(c.target)) for c in loop.forces]
