@@ -32,18 +32,17 @@ RIG_STEPS = {
 }
 """Times the predicted limit."""
 OTHER_STEPS = {
-    GaussSeidel(1): ((37.2, 39.9, 41.8, 45.6, 53.2), 38.0),
-    GaussSeidel(2): ((18.4, 36.1, 38.7, 40.6, 44.3), 36.9),
-    Predict(): ((33.9, 66.4, 69.2, 71.2, 74.6), 67.8),
-    FixedPoint(2): ((105.0, 189.0, 214.2, 231.0, 294.0), 210.0),
-    FixedPoint(3): ((106.0, 192.0, 217.6, 234.6, 298.6), 213.3),
-    LI(2): ((188.0, 369.3, 384.3, 406.9, 452.2, 610.4, 678.2), 376.8),
-    LI(3): ((350.0, 686.9, 707.9, 735.9, 834.1, 855.1, 925.2, 1016.3), 700.9),
-    LI(4): ((464.0, 911.1, 948.3, 985.5, 1022.7, 1301.6), 929.7),
-    Jacobi(0, "parallel"): ((3.5, 6.8), 6.9),
+    GaussSeidel(1): (37.2, 39.9, 41.8, 45.6, 53.2),  # limit 38.0
+    GaussSeidel(2): (18.4, 36.1, 38.7, 40.6, 44.3),  # limit 36.9
+    Predict(): (33.9, 66.4, 69.2, 71.2, 74.6),  # limit 67.8
+    FixedPoint(2): (105.0, 189.0, 214.2, 231.0, 294.0),  # limit 210.0
+    FixedPoint(3): (106.0, 192.0, 217.6, 234.6, 298.6),  # limit 213.3
+    LI(2): (188.0, 369.3, 384.3, 406.9, 452.2, 610.4, 678.2),  # limit 376.8
+    LI(3): (350.0, 686.9, 707.9, 735.9, 834.1, 855.1, 925.2, 1016.3),  # limit 700.9
+    LI(4): (464.0, 911.1, 948.3, 985.5, 1022.7, 1301.6),  # limit 929.7
+    Jacobi(0, "parallel"): (3.5, 6.8),  # limit 6.9
 }
-"""Steps [us] around the limit and the bands that `herringbone stability` predicts [us], which
-stands beside them. The second but last steps of li lie in gaps between bands or beyond them."""
+"""Steps [us], with the predicted limit; those of li also in and between the bands beyond it."""
 ROTOR_STEPS = {
     Jacobi(0): (0.02, 0.05, 0.07, 0.09, 0.12, 0.2, 0.3),
     Jacobi(1): (0.2, 0.4, 0.45, 0.55, 0.6, 0.7),
@@ -120,7 +119,7 @@ def other_runs():
     network, instances = linear_network(rig())
     frequency = highest_frequency(network, instances)
     found = []
-    for algorithm, (steps, _) in OTHER_STEPS.items():
+    for algorithm, steps in OTHER_STEPS.items():
         amplification = Amplification(network, instances, algorithm)
         for step in (1e-6 * s for s in steps):
             growth = amplification.growth(step).radius - 1.0
