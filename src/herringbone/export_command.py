@@ -44,7 +44,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
 
     name = Path(options.system).stem
     if options.output:
-        check_writable(options.output.parent)
+        check_writable(options.output.parent, options.output)
     platforms = chosen_platforms(options)
     if options.as_fmu:
         if options.step is not None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import component
-from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.ssp_format import is_ssp
@@ -119,7 +119,10 @@ def open_parts(system: System, fmu: str) -> list[Part]:
 
 def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
     if spec.fmu is not None:
-        return open_fmu(spec.name, spec.fmu)
+        try:
+            return open_fmu(spec.name, spec.fmu)
+        except FmuError as error:
+            raise FmuError(f"{spec.name}: {error}") from error
     if str(spec.component) in files:
         return open_fmu(spec.name, files[str(spec.component)])
     return InProcessPart(Instance(component(str(spec.component)), spec.name))

@@ -17,8 +17,12 @@ def show(text: str) -> None:
     sys.stdout.write(text + "\n")
 
 
-def check_writable(folder: Path) -> None:
+def check_writable(folder: Path, file: Path | None = None) -> None:
     """Refuse before a run what would fail after it; leaves nothing behind.
+
+    Args:
+        folder: in which something is to be written.
+        file: the one that was asked for, if it was one.
 
     Raises:
         HerringboneError: the folder cannot be made or written.
@@ -29,5 +33,7 @@ def check_writable(folder: Path) -> None:
             pass
     except OSError as error:
         raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+            f"cannot write {file}: {error.strerror}; choose another file with -o"
+            if file
+            else f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
         ) from error

@@ -24,6 +24,8 @@ def read_fmu(file: Path) -> ModelDescription:
         FmuError: no file, no zip, unsafe names or XML, another FMI version or kind, no binary for
             this platform.
     """
+    if file.is_dir():
+        raise FmuError(f"{file} is a folder; give an .fmu file")
     if not file.is_file():
         raise FmuError(f"there is no file {file}")
     try:

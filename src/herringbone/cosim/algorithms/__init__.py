@@ -49,13 +49,18 @@ def parse_algorithm(text: str) -> Algorithm:
     for item in filter(None, options.split(",")):
         key, _, value = item.partition("=")
         if key not in types:
-            raise ParameterError(f"{name} has no option '{key}'; it has: {', '.join(types)}")
+            known = f"it has: {', '.join(types)}" if types else "it has none"
+            raise ParameterError(f"{name} has no option '{key}'; {known}")
         if key in values:
             raise ParameterError(f"{name}: option '{key}' is given twice")
         try:
             values[key] = types[key](value)
         except ValueError:
-            raise ParameterError(f"{name}:{key}={value} is no {types[key].__name__}") from None
+            number = "a whole number" if types[key] is int else "a number"
+            raise ParameterError(
+                f"{name}:{item}: it must be {number}, {kind.allowed(key)}; the default is "
+                f"{name}:{key}={getattr(kind, key):g}"
+            ) from None
     return kind(**values)
 
 
@@ -72,7 +77,7 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
         )
     if algorithm.adaptive and algorithm.tolerance != tolerance:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
-    check_tolerance(tolerance, "li: tolerance={:g};")
+    check_tolerance(tolerance, "li: tolerance={:g};", "; leave it out for a fixed step")
     return replace(algorithm, tolerance=tolerance)
 
 

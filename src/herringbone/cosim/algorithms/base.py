@@ -6,8 +6,8 @@ Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import fields
-from typing import ClassVar, Self
+from dataclasses import field, fields
+from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
 
@@ -18,6 +18,11 @@ from herringbone.cosim.node_plan import NodePlan
 from herringbone.cosim.plan import Chunk, Plan
 from herringbone.cosim.record import Grid, Record, UniformRecord
 from herringbone.cosim.recording import StepStatistics
+
+
+def option(default: float | str, allowed: str) -> Any:  # noqa: ANN401 (as dataclasses.field)
+    """A field of an algorithm: its default, and in words which values it may have."""
+    return field(default=default, metadata={"allowed": allowed})
 
 
 class Algorithm(ABC):
@@ -61,6 +66,20 @@ class Algorithm(ABC):
     def charted(cls) -> tuple[Self, ...]:
         """Variants that a speed-accuracy chart shows if none are named."""
         return (cls(),)
+
+    @classmethod
+    def allowed(cls, name: str) -> str:
+        """In words, which values an option may have."""
+        return next(f for f in fields(cls) if f.name == name).metadata["allowed"]  # type: ignore[arg-type]
+
+    def refuse(self, name: str) -> NoReturn:
+        """Say that an option has a value that it may not have.
+
+        Raises:
+            ParameterError: always.
+        """
+        value = getattr(self, name)
+        raise ParameterError(f"{self.name}: {name}={value}; it must be {self.allowed(name)}")
 
     def __str__(self) -> str:
         options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))  # type: ignore[arg-type]

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from herringbone.core import ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.jacobi import Jacobi
@@ -10,10 +11,19 @@ from herringbone.cosim.algorithms.li import LI
 AUTO = "auto"
 
 
-def choose_algorithm(parts: Sequence[Part]) -> tuple[Algorithm, str]:
+def choose_algorithm(
+    parts: Sequence[Part], tolerance: float | None = None
+) -> tuple[Algorithm, str]:
     """The most accurate algorithm that the parts allow, and a line that says why.
 
     li repeats steps: every part with inputs must save and restore its state. Otherwise jacobi.
+
+    Args:
+        parts: participants.
+        tolerance: for which the step is to be adapted, if it is; see `LI`.
+
+    Raises:
+        ParameterError: the step is to be adapted, but a part cannot repeat a step.
     """
     unable = [
         part.name
@@ -21,6 +31,11 @@ def choose_algorithm(parts: Sequence[Part]) -> tuple[Algorithm, str]:
         if not part.addresses.can_restore
         and any(v.causality == "input" for v in part.variables.values())
     ]
+    if unable and tolerance is not None:
+        raise ParameterError(
+            f"tolerance = {tolerance:g}: {', '.join(unable)} cannot save and restore its state, "
+            "as an adaptive step needs; leave the tolerance out"
+        )
     if unable:
         chosen, why = Jacobi(), f"{', '.join(unable)} cannot save and restore its state"
     else:

@@ -10,8 +10,7 @@ h w = 1.67.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
 from herringbone.cosim.network import Network
 
@@ -30,8 +29,8 @@ class FixedPoint(Algorithm):
         ParameterError: an option is out of its range.
     """
 
-    degree: int = 3
-    sweeps: int = 2
+    degree: int = option(3, "1, 2, 3 or 4")
+    sweeps: int = option(2, f"2 to {_MOST}")
 
     name: ClassVar[str] = "fixed_point"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
@@ -39,9 +38,9 @@ class FixedPoint(Algorithm):
 
     def __post_init__(self) -> None:
         if self.degree not in (1, 2, 3, 4):
-            raise ParameterError(f"fixed_point: degree={self.degree}; it must be 1, 2, 3 or 4")
+            self.refuse("degree")
         if not 2 <= self.sweeps <= _MOST:
-            raise ParameterError(f"fixed_point: sweeps={self.sweeps}; it must be 2 to {_MOST}")
+            self.refuse("sweeps")
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:

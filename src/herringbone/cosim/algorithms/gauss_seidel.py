@@ -19,8 +19,7 @@ Order q: degree of extrapolation and interpolation.
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.staged import Prepared, prepare_stages, refuse_mixed
 from herringbone.cosim.network import Network
@@ -37,16 +36,13 @@ class GaussSeidel(Algorithm):
         ParameterError: the order is out of its range.
     """
 
-    order: int = 2
+    order: int = option(2, "1 or 2 (held positions against newer ones are never stable)")
 
     name: ClassVar[str] = "gauss_seidel"
 
     def __post_init__(self) -> None:
         if self.order not in (1, 2):
-            raise ParameterError(
-                f"gauss_seidel: order={self.order}; it must be 1 or 2 "
-                "(held positions against newer ones are never stable)"
-            )
+            self.refuse("order")
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:

@@ -18,8 +18,7 @@ that costs one step of delay and a bond limit of h w < 4/3 zeta at order 0.
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Self
 
-from herringbone.core import ParameterError
-from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.staged import Prepared, prepare_stages
 from herringbone.cosim.network import Network
 
@@ -36,18 +35,18 @@ class Jacobi(Algorithm):
         ParameterError: an option is out of its range.
     """
 
-    order: int = 2
-    schedule: Literal["bodies_first", "parallel"] = "bodies_first"
+    order: int = option(2, "0, 1 or 2")
+    schedule: Literal["bodies_first", "parallel"] = option(
+        "bodies_first", "bodies_first or parallel"
+    )
 
     name: ClassVar[str] = "jacobi"
 
     def __post_init__(self) -> None:
         if self.order not in (0, 1, 2):
-            raise ParameterError(f"jacobi: order={self.order}; it must be 0, 1 or 2")
+            self.refuse("order")
         if self.schedule not in ("bodies_first", "parallel"):
-            raise ParameterError(
-                f"jacobi: schedule={self.schedule}; it must be bodies_first or parallel"
-            )
+            self.refuse("schedule")
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:

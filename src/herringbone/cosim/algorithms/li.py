@@ -20,12 +20,11 @@ with inner nodes.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive, check_sources
-from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
 from herringbone.cosim.network import Network
-from herringbone.cosim.tolerance import check_tolerance
+from herringbone.cosim.tolerance import SMALLEST_TOLERANCE, check_tolerance
 
 _MOST = 6
 _ORDERS = {1: 2, 2: 4, 3: 4, 4: 6}
@@ -45,9 +44,9 @@ class LI(Algorithm):
         ParameterError: an option is out of its range.
     """
 
-    degree: int = 3
-    iterations: int = 1
-    tolerance: float = 0.0
+    degree: int = option(3, "1, 2, 3 or 4")
+    iterations: int = option(1, f"1 to {_MOST}")
+    tolerance: float = option(0.0, f"between {SMALLEST_TOLERANCE:g} and 1, or 0 for a fixed step")
 
     name: ClassVar[str] = "li"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
@@ -56,9 +55,9 @@ class LI(Algorithm):
 
     def __post_init__(self) -> None:
         if self.degree not in _ORDERS:
-            raise ParameterError(f"li: degree={self.degree}; it must be 1, 2, 3 or 4")
+            self.refuse("degree")
         if not 1 <= self.iterations <= _MOST:
-            raise ParameterError(f"li: iterations={self.iterations}; it must be 1 to {_MOST}")
+            self.refuse("iterations")
         if self.tolerance != 0.0:
             check_tolerance(self.tolerance, "li: tolerance={:g};", ", or be 0 for a fixed step")
 
