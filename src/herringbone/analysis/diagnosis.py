@@ -4,6 +4,7 @@ The leading eigenvector of the amplification matrix is the motion; a bond's shar
 magnitude of its force times that of its relative velocity, divided by the sum over all bonds.
 """
 
+from bisect import bisect_left
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,9 +13,8 @@ from herringbone.analysis.amplification import GROWTH, Amplification
 from herringbone.analysis.bonds import Direction, bond_directions, motion_of
 from herringbone.analysis.linear_parts import linear_network
 from herringbone.analysis.stability import default_algorithms
-from herringbone.analysis.step_scan import unstable_bands
-from herringbone.components.registry import COMPONENTS
-from herringbone.core import HerringboneError
+from herringbone.analysis.step_scan import first_unstable
+from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import Diagnosis
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.network import Network
@@ -24,7 +24,11 @@ from herringbone.cosim.system import System
 _BELOW, _ABOVE = 20.0, 4.0
 """Steps are looked for down to this part of the given one, and up to so many times of it."""
 _FACTORS = (1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
+"""Of the damping, ascending."""
 _DAMPING_UNIT = {"N": "N.s/m", "N.m": "N.m.s/rad"}
+
+Linear = tuple[Network, Sequence[Instance]]
+"""Linear parts at their operating point."""
 
 
 def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | None:
@@ -40,8 +44,8 @@ def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | N
     if system.foreign_parts:
         return None
     try:
-        network, instances = linear_network(system)
-        amplification = Amplification(network, instances, algorithm)
+        linear = network, instances = linear_network(system)
+        amplification = Amplification(*linear, algorithm)
         growth = amplification.growth(step)
         if growth.radius <= 1.0 + GROWTH:
             return None
@@ -54,8 +58,8 @@ def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | N
     bonds = tuple((directions[i].name, float(shares[i])) for i in order)
     remedies = (
         _smaller_step(amplification, step),
-        *_other_algorithms(system, algorithm, step),
-        *_more_damping(system, algorithm, step, directions[order[0]]),
+        *_other_algorithms(linear, algorithm, step),
+        *_more_damping(linear, algorithm, step, directions[order[0]]),
     )
     return Diagnosis(
         str(algorithm), step, growth.radius - 1.0, growth.frequency, bonds, tuple(remedies)
@@ -80,54 +84,58 @@ def _shares(network: Network, directions: Sequence[Direction], outputs: np.ndarr
 
 
 def _smaller_step(amplification: Amplification, step: float) -> str:
-    bands = unstable_bands(amplification.growth, step / _BELOW, step)
-    if not bands or bands[0][0] <= step / _BELOW:
-        return f"no step down to {step / _BELOW:.3g} s is stable"
-    return f"a step below {bands[0][0]:.3g} s"
+    smallest = step / _BELOW
+    limit = first_unstable(amplification.growth, smallest, step)
+    if limit is None or limit <= smallest:
+        return f"no step down to {smallest:.3g} s is stable"
+    return f"a step below {limit:.3g} s"
 
 
-def _other_algorithms(system: System, algorithm: Algorithm, step: float) -> list[str]:
-    """The first algorithm with one pass and the first with several that are stable at the step."""
+def _other_algorithms(linear: Linear, algorithm: Algorithm, step: float) -> list[str]:
+    """One algorithm with several passes and one with one pass that are stable at the step.
+
+    Those that reach furthest are tried first.
+    """
     found: dict[bool, str] = {}
-    for other in default_algorithms():
+    for other in reversed(default_algorithms()):
         repeats = "rollback" in other.needs
         if repeats in found or str(other) == str(algorithm):
             continue
         try:
-            growth = Amplification(*linear_network(system), other).growth
-            if growth(step).radius <= 1.0 + GROWTH:
-                bands = unstable_bands(growth, step, _ABOVE * step)
-                limit = (
-                    f"below {bands[0][0]:.3g} s"
-                    if bands
-                    else f"up to {_ABOVE:g} times the step at least"
-                )
-                found[repeats] = f"{other}, stable {limit}"
+            growth = Amplification(*linear, other).growth
+            limit = first_unstable(growth, step, _ABOVE * step)
         except HerringboneError:
             continue
+        if limit is None:
+            found[repeats] = f"{other}, stable up to {_ABOVE:g} times the step at least"
+        elif limit > step:
+            found[repeats] = f"{other}, stable below {limit:.3g} s"
     return list(found.values())
 
 
 def _more_damping(
-    system: System, algorithm: Algorithm, step: float, direction: Direction
+    linear: Linear, algorithm: Algorithm, step: float, direction: Direction
 ) -> list[str]:
-    """The damping of a bond with which the step would be stable, if up to ten times is enough."""
-    instance, _, force = direction.name.partition(".")
-    part = system.part(instance)
-    declaration = COMPONENTS[str(part.component)].declaration
-    now = {
-        f"{instance}.{v.name}": float(part.values.get(v.name, v.start))
-        for v in declaration.parameters
-        if v.name.endswith("damping")
-    }
-    for factor in _FACTORS:
-        stronger = system.with_values({name: factor * value for name, value in now.items()})
-        growth = Amplification(*linear_network(stronger), algorithm).growth(step)
-        if growth.radius <= 1.0 + GROWTH:
-            unit = _DAMPING_UNIT.get(declaration.variable(force).unit, "")
-            needed = factor * direction.damping
-            return [
-                f"{instance} with at least about {needed:.3g} {unit} of damping at {force}, "
-                f"{factor:g} times as much"
-            ]
-    return []
+    """The damping of a bond with which the step would be stable, if up to ten times is enough.
+
+    The instances are left with other values: nothing else is to be asked of them afterwards.
+    """
+    name, _, force = direction.name.partition(".")
+    element = next(instance for instance in linear[1] if instance.name == name)
+    declaration = element.component.declaration
+    now = {v.name: element[v.name] for v in declaration.parameters if v.name.endswith("damping")}
+
+    def stable(factor: float) -> bool:
+        for parameter, value in now.items():
+            element.set(parameter, factor * value)
+        element.work[:] = 0.0
+        return Amplification(*linear, algorithm).growth(step).radius <= 1.0 + GROWTH
+
+    enough = bisect_left(_FACTORS, True, key=stable)
+    if enough == len(_FACTORS):
+        return []
+    factor, unit = _FACTORS[enough], _DAMPING_UNIT.get(declaration.variable(force).unit, "")
+    return [
+        f"{name} with at least about {factor * direction.damping:.3g} {unit} of damping at "
+        f"{force}, {factor:g} times as much"
+    ]

@@ -83,6 +83,15 @@ def first_unstable_near(growth: GrowthOf, limit: float) -> float:
     return np.inf if high is None else _crossing(growth, high / _FINE, high)
 
 
+def first_unstable(growth: GrowthOf, smallest: float, largest: float) -> float | None:
+    """First unstable step of a range [s], on the coarse scan alone; None if there is none.
+
+    Many times cheaper than all bands; a narrow one below can be missed.
+    """
+    found = _find_unstable(growth, smallest, _COARSE, largest)
+    return found if found in {None, smallest} else _crossing(growth, found / _COARSE, found)
+
+
 def _safe(growth: GrowthOf, step: float) -> Growth:
     """Growth; infinite where a part fails within one step."""
     try:
