@@ -1,10 +1,16 @@
 """Rows of recorded outputs, at communication points."""
 
+import os
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from herringbone.core import ParameterError
+
 _ROWS = 1024
+_GIB = 2.0**30
+_SHARE = 0.25
+"""Of the memory: the rows are copied into a table, and again where errors are taken."""
 
 
 class Grid(NamedTuple):
@@ -33,17 +39,34 @@ class Record(Protocol):
         """Time between rows, or its mean [s]."""
 
 
+def _check_room(rows: int, columns: int, grid: Grid) -> None:
+    needed = 8.0 * rows * columns
+    memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    if needed > _SHARE * memory:
+        raise ParameterError(
+            f"{rows} records of {columns} outputs, every {grid.every * grid.step:g} s, take "
+            f"{needed / _GIB:.3g} GiB, but this machine has {memory / _GIB:.3g} GiB of memory, of "
+            f"which they may take {100.0 * _SHARE:g} %; use a longer record_step (--record-step) "
+            "or a shorter t_end"
+        )
+
+
 class UniformRecord:
     """A row every so many macro steps.
 
     Args:
         grid: of the run.
         columns: recorded outputs.
+
+    Raises:
+        ParameterError: the rows do not fit into the memory of this machine.
     """
 
     def __init__(self, grid: Grid, columns: int) -> None:
         self._grid = grid
-        self.values = np.full((grid.count // grid.every + 1, columns), np.nan)
+        rows = grid.count // grid.every + 1
+        _check_room(rows, columns, grid)
+        self.values = np.full((rows, columns), np.nan)
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows after `done` macro steps."""

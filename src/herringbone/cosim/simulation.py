@@ -16,6 +16,9 @@ from herringbone.cosim.run import Progress, Run
 from herringbone.cosim.system import System
 from herringbone.cosim.transport import settle_derivatives
 
+MOST_STEPS = 1e12
+"""Macro steps of a run at the most: a month of the quickest ones."""
+
 
 def make_grid(t_end: float, step: float, record_step: float) -> Grid:
     """Communication points that hit the end exactly, and records at a whole number of them.
@@ -24,16 +27,33 @@ def make_grid(t_end: float, step: float, record_step: float) -> Grid:
     largest whole number of steps within `record_step`, at least every step.
 
     Raises:
-        ParameterError: a value is not positive and finite, or t_end < step.
+        ParameterError: a value is not positive and finite, t_end < step, or there are too many
+            steps to count.
     """
-    for name, value in (("step", step), ("t_end", t_end), ("record_step", record_step)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise ParameterError(f"{name} = {value:g} s: it must be positive and finite")
-    if t_end < step:
-        raise ParameterError(f"t_end = {t_end:g} s is shorter than one step of {step:g} s")
+    check_grid(t_end, step, record_step)
     count = math.ceil(t_end / step - 1e-9)
     step = t_end / count
     return Grid(step, count, max(1, math.floor(record_step / step + 1e-9)))
+
+
+def check_grid(t_end: float, step: float | None, record_step: float) -> None:
+    """Check what `make_grid` takes; a step may not be known yet.
+
+    Raises:
+        ParameterError: see `make_grid`.
+    """
+    for name, value in (("step", step), ("t_end", t_end), ("record_step", record_step)):
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise ParameterError(f"{name} = {value:g} s: it must be positive and finite")
+    if step is None:
+        return
+    if t_end < step:
+        raise ParameterError(f"t_end = {t_end:g} s is shorter than one step of {step:g} s")
+    if not t_end / step <= MOST_STEPS:
+        raise ParameterError(
+            f"t_end = {t_end:g} s in steps of {step:g} s makes {t_end / step:.3g} macro steps; "
+            f"use a longer step or a shorter t_end, for {MOST_STEPS:g} at the most"
+        )
 
 
 def simulate(
