@@ -75,8 +75,8 @@ static void test_values(void) {
     OK(fmi2Terminate(c));
     CHECK(get(c, W_OUT) > 0.0);
     OK(fmi2Reset(c));
-    CHECK(get(c, INERTIA) == 2.0 && get(c, W) == 0.0);
     OK(fmi2EnterInitializationMode(c));
+    CHECK(get(c, INERTIA) == 2.0 && get(c, W) == 0.0);
     OK(fmi2ExitInitializationMode(c));
     CHECK(get(c, STEPS) == 0.0);
     fmi2FreeInstance(c);
@@ -87,12 +87,13 @@ static void test_refused_values(void) {
     double value = 0;
     fmi2ValueReference unknown[] = {W, COUNTER + 1, GAIN, 4000000000u};
     double values[4];
+    OK(fmi2EnterInitializationMode(c));
     REFUSED(fmi2GetReal(c, unknown, 4, values), "no Real with value reference 4000000000");
     REFUSED(fmi2SetReal(c, unknown + 1, 1, &value), "no Real with value reference 3");
     REFUSED(set(c, TAU, NAN), "r.tau = nan N.m: it must be finite");
     REFUSED(set(c, INERTIA, INFINITY), "it must be finite");
     REFUSED(set(c, INERTIA, 0.0), "r.inertia = 0 kg.m2: it must lie between 1e-09 and 1e+09");
-    REFUSED(set(c, DEGREE, 5.0), "it must lie between 0 and 4");
+    REFUSED(set(c, DEGREE, 5.0), "r.interface_degree = 5: it must lie between 0 and 4");
     REFUSED(set(c, DEGREE, 1.5), "it must be a whole number");
     REFUSED(set(c, W_OUT, 1.0), "a continuous output cannot be set now");
     REFUSED(set(c, STEPS, 1.0), "a continuous local cannot be set now");
@@ -118,6 +119,10 @@ static void test_refused_values(void) {
 
 static void test_state_machine(void) {
     fmi2Component c = make("r");
+    fmi2String text;
+    fmi2ValueReference reals[] = {INERTIA}, texts[] = {INERTIAS};
+    REFUSED(fmi2GetReal(c, reals, 1, (double[1]){0}), "r: getReal before initialisation");
+    REFUSED(fmi2GetString(c, texts, 1, &text), "r: getString before initialisation");
     REFUSED(fmi2DoStep(c, 0, 1e-3, 1), "doStep before the end of initialisation");
     REFUSED(fmi2ExitInitializationMode(c), "exitInitializationMode before initialisation");
     REFUSED(fmi2Terminate(c), "terminate before initialisation");
@@ -367,14 +372,14 @@ static void test_work_space(void) {
 
 static void test_logging(void) {
     fmi2Component c = make("100%");
-    double value;
+    double value = 0.0;
     fmi2ValueReference bad = 999;
     fmi2String warnings[] = {"logStatusWarning"}, wrong[] = {"logNothing"}, all[] = {"logAll"};
-    REFUSED(fmi2GetReal(c, &bad, 1, &value), "logStatusError|100%%: there is no Real");
+    REFUSED(fmi2SetReal(c, &bad, 1, &value), "logStatusError|100%%: there is no Real");
     REFUSED(fmi2SetDebugLogging(c, fmi2True, 1, wrong), "no log category 'logNothing'");
     OK(fmi2SetDebugLogging(c, fmi2True, 1, warnings));
     told[0] = '\0';
-    CHECK(fmi2GetReal(c, &bad, 1, &value) == fmi2Error && told[0] == '\0');
+    CHECK(fmi2SetReal(c, &bad, 1, &value) == fmi2Error && told[0] == '\0');
     OK(fmi2SetDebugLogging(c, fmi2True, 1, all));
     OK(fmi2EnterInitializationMode(c));
     GIVES(fmi2OK, fmi2ExitInitializationMode(c), "logAll|100%%: read ");

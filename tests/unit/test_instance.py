@@ -50,11 +50,11 @@ def test_wrong_type_of_a_file_name(value):
     ("name", "value", "expected"),
     [
         ("inertia", 0.0, "motor.inertia = 0 kg.m2: it must lie between 1e-09 and inf"),
-        ("efficiency", 1.5, "motor.efficiency = 1.5 1: it must lie between 0.01 and 1"),
+        ("efficiency", 1.5, "motor.efficiency = 1.5: it must lie between 0.01 and 1"),
         ("torque_limit", -1.0, "motor.torque_limit = -1 N.m: it must lie between 0 and inf"),
-        ("interface_degree", 5, "motor.interface_degree = 5 1: it must lie between 0 and 4"),
-        ("interface_degree", -1, "motor.interface_degree = -1 1: it must lie between 0 and 4"),
-        ("interface_degree", 1.5, "motor.interface_degree = 1.5 1: it must be a whole number"),
+        ("interface_degree", 5, "motor.interface_degree = 5: it must lie between 0 and 4"),
+        ("interface_degree", -1, "motor.interface_degree = -1: it must lie between 0 and 4"),
+        ("interface_degree", 1.5, "motor.interface_degree = 1.5: it must be a whole number"),
     ],
 )
 def test_out_of_range(motor, name, value, expected):

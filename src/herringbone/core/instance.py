@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.core.component import Component
 from herringbone.core.errors import ParameterError, ResourceError
 from herringbone.core.paths import resources_folder
+from herringbone.core.units import quantity
 from herringbone.core.variable import NODES, Causality, Variable
 
 
@@ -132,7 +133,7 @@ def check_value(instance: str, variable: Variable, value: float) -> None:
     Raises:
         ParameterError: it is not.
     """
-    where = f"{instance}.{variable.name} = {value:g} {variable.unit}"
+    where = f"{instance}.{variable.name} = {quantity(value, variable.unit)}"
     if not math.isfinite(value):
         raise ParameterError(f"{where}: it must be finite")
     if variable.causality is Causality.PARAMETER and not (

@@ -41,6 +41,11 @@ RATES: Final = {
 """Units of the time derivatives of quantities that are states."""
 
 
+def quantity(value: float, unit: str) -> str:
+    """A value with its unit, for messages; the unit 1 is left out."""
+    return f"{value:g}" if unit == "1" else f"{value:g} {unit}"
+
+
 def base_exponents(unit: str) -> dict[str, float]:
     """SI base-unit exponents of a unit.
 

@@ -14,6 +14,7 @@ from herringbone.components.registry import component
 from herringbone.core import FmuError, Instance
 from herringbone.core.instance import check_value
 from herringbone.core.paths import content_hash
+from herringbone.core.units import quantity
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface, model_description, state
 from herringbone.fmi.guarded_slave import GuardedSlave
@@ -53,7 +54,7 @@ class ComponentSlave(GuardedSlave):
         self._owner = f"{self._component.name} {content_hash()}"
         self._tables = ""
         self._phase = _Phase.INSTANTIATED
-        self._outdated = False
+        self._outdated = True
         self._kernel = self._component.kernels.step
         self._read: tuple[list[int], Callable] = ([-1], tuple)
         self._written: list[int] = []
@@ -111,7 +112,10 @@ class ComponentSlave(GuardedSlave):
             self._tables = hashlib.sha256(tables.tobytes()).hexdigest()[:16]
 
     def _refresh(self) -> None:
-        """Compute states and outputs in initialisation mode."""
+        """Compute states and outputs in initialisation mode, before which there are none."""
+        if self._phase is _Phase.INSTANTIATED:
+            self._fail(f"{self.instance_name}: getReal before initialisation")
+            return
         self._outdated = False
         self._read_resources()
         self._component.start(self._instance.block)
@@ -172,7 +176,7 @@ class ComponentSlave(GuardedSlave):
         else:
             for vr, value in zip(vrs, values, strict=True):
                 self._attempt(self._set_checked, vr, value)
-        self._outdated = self._phase is _Phase.INITIALISATION
+        self._outdated = self._phase is not _Phase.STEPPING
 
     def _set_checked(self, vr: int, value: float) -> None:
         if vr not in self._references:
@@ -184,7 +188,7 @@ class ComponentSlave(GuardedSlave):
             self._values[vr] = value
         else:
             self._fail(
-                f"{self.instance_name}.{variable.name} = {value:g} {variable.unit}: "
+                f"{self.instance_name}.{variable.name} = {quantity(value, variable.unit)}: "
                 f"a {variable.variability} {variable.causality} cannot be set now"
             )
 
@@ -205,7 +209,7 @@ class ComponentSlave(GuardedSlave):
             else:
                 self._instance.set(self._texts[vr].name, value)
                 self._tables = ""
-        self._outdated = self._phase is _Phase.INITIALISATION
+        self._outdated = self._phase is not _Phase.STEPPING
 
     def _get_fmu_state(self) -> FmuState:
         texts = dict(self._instance.texts)
@@ -237,7 +241,7 @@ class ComponentSlave(GuardedSlave):
         self._saved[:] = saved.data
         self._phase = _Phase(saved.phase)
         self._time = saved.time
-        self._outdated = self._phase is _Phase.INITIALISATION
+        self._outdated = self._phase is not _Phase.STEPPING
 
     def _restore_resources(self, saved: FmuState) -> None:
         """Read the state's resources if none are read yet; otherwise they must be the same."""

@@ -72,6 +72,8 @@ static Status get_other(Instance *instance, uint32_t reference, double *value) {
 
 Status instance_get(Instance *instance, const uint32_t references[], size_t count,
                     double values[]) {
+    if (instance->now.phase == PHASE_INSTANTIATED)
+        return instance_refuse(instance, "getReal");
     Status worst = instance->outdated ? instance_refresh(instance) : STATUS_OK;
     const double *block = instance->block;
     for (size_t i = 0; i < count; i++) {
@@ -95,9 +97,11 @@ static const char *kind_of(uint8_t access) {
 }
 
 static Status refuse_value(Instance *instance, uint32_t reference, double value, const char *why) {
-    return instance_fail(instance, STATUS_ERROR, "%s.%s%s = %g %s: %s", instance->name,
+    const char *unit = real_unit(reference);
+    bool plain = strcmp(unit, "1") == 0;
+    return instance_fail(instance, STATUS_ERROR, "%s.%s%s = %g%s%s: %s", instance->name,
                          real_name(reference), real_node(reference), message_number(value),
-                         real_unit(reference), why);
+                         plain ? "" : " ", plain ? "" : unit, why);
 }
 
 static Status check_value(Instance *instance, uint32_t reference, double value) {
@@ -164,6 +168,8 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
 
 Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
                           const char *values[]) {
+    if (instance->now.phase == PHASE_INSTANTIATED)
+        return instance_refuse(instance, "getString");
     for (size_t i = 0; i < count; i++) {
         if (!is_text(references[i]))
             return instance_unknown(instance, "String", &references[i], 1);
