@@ -1,13 +1,12 @@
 """Running a system: from names and options to a result."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.diagnosis import diagnose
 from herringbone.analysis.monolithic import refuse_foreign_parts
 from herringbone.analysis.stability import fastest_bond, warn_if_unstable
-from herringbone.core import OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
@@ -20,7 +19,7 @@ from herringbone.cosim.algorithms import (
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress
-from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.simulation import check_grid, make_grid, simulate
 from herringbone.cosim.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
@@ -32,11 +31,11 @@ from herringbone.loading import (
     with_replacements,
 )
 from herringbone.result import Result
-from herringbone.run_result import decimated, make_result, with_error
+from herringbone.run_result import decimated, make_result, twin_error
 from herringbone.scenes import Scene
 from herringbone.start import started
 
-_TINY = 1e-12  # stands for a step [s] that is not yet known
+_SAME = 1.0 - 1e-6
 
 
 def run(
@@ -55,6 +54,7 @@ def run(
     values: Mapping[str, float | str] | None = None,
     reference: bool = False,
     progress: Progress | None = None,
+    recorded: Callable[[Result], None] | None = None,
 ) -> Result:
     """Run a system.
 
@@ -79,9 +79,11 @@ def run(
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: called with the simulated time reached and its end [s].
+        recorded: called with the result as soon as the run has ended; errors against the twin, and
+            why a run is unstable, are found after that, and are in the result that is returned.
 
     Returns:
-        The result; a run that ends early is an outcome of it, not an exception.
+        The result; a run that ends early or is unstable is an outcome of it, not an exception.
 
     Raises:
         HerringboneError: something about the input is wrong.
@@ -89,7 +91,7 @@ def run(
     structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
     chosen = with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = _asked_for(algorithm, tolerance)
-    make_grid(chosen.t_end, _TINY if step is None else step, chosen.record_step)
+    check_grid(chosen.t_end, step, chosen.record_step)
     structure, broken = with_replacements(structure, replace_parts or {})
     structure, notes = started(structure, chosen)
     if reference:
@@ -100,7 +102,7 @@ def run(
         if coupling is None:
             coupling, why = _chosen_for(parts, tolerance)
             notes.append(why)
-        step = coupling.start_step if step is None else step
+        asked, step = step, coupling.start_step if step is None else step
         notes += _stability_notes(structure, coupling, step, slow)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
         notes += _record_notes(record_step, coupling, grid)
@@ -108,12 +110,16 @@ def run(
         recording = simulate(
             structure, parts, coupling, grid, progress, bond_frequency=bond, slow=slow
         )
-    result = make_result(structure, chosen, coupling, fmu, recording, notes)
+    notes += _step_notes(asked, coupling, recording)
+    every = make_result(structure, chosen, coupling, fmu, recording, notes)
+    result = decimated(every, chosen.record_step) if reference else every
+    if recorded:
+        recorded(result)
+    if reference:
+        result = replace(result, error=twin_error(every, structure))
     if _unstable(recording):
         why_unstable = diagnose(structure, coupling, recording.step)
         result = replace(result, info=replace(result.info, why=why_unstable))
-    if reference:
-        result = decimated(with_error(result, structure), chosen.record_step)
     return result
 
 
@@ -127,7 +133,7 @@ def _asked_for(algorithm: str | Algorithm | None, tolerance: float | None) -> Al
 
 def _chosen_for(parts: Sequence[Part], tolerance: float | None) -> tuple[Algorithm, str]:
     """The algorithm that suits the parts, and why."""
-    found, why = choose_algorithm(parts)
+    found, why = choose_algorithm(parts, tolerance)
     return (found if tolerance is None else with_tolerance(found, tolerance)), why
 
 
@@ -152,9 +158,16 @@ def _record_notes(record_step: float | None, algorithm: Algorithm, grid: Grid) -
             f"{grid.step:g} s; use a shorter step for more"]  # fmt: skip
 
 
+def _step_notes(asked: float | None, algorithm: Algorithm, recording: Recording) -> list[str]:
+    """A line if the step that was asked for was shortened."""
+    used = recording.step
+    if asked is None or algorithm.adaptive or used >= _SAME * asked:
+        return []
+    return [f"step = {asked:g} s: shortened to {used:g} s, of which a whole number makes the end "
+            "of the run"]  # fmt: skip
+
+
 def _unstable(recording: Recording) -> bool:
     """True if a run diverged, or its coupling was seen to add energy without end."""
     energy = recording.energy
-    return recording.outcome.kind is OutcomeKind.DIVERGED or (
-        energy is not None and energy.verdict is Verdict.UNSTABLE
-    )
+    return recording.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)

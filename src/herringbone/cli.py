@@ -1,11 +1,12 @@
 """Command line: what `herringbone --help` shows."""
 
 import argparse
+import re
 import traceback
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import herringbone
 from herringbone import (
@@ -29,6 +30,7 @@ from herringbone.output import check_writable, say, show
 
 EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
+    OutcomeKind.UNSTABLE: 1,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
     OutcomeKind.COUPLING_FAILED: 1,
@@ -54,7 +56,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
+    """A parser whose errors are one line, and to which -1e-5 is a number and no option."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:  # noqa: ANN401 (argparse's own)
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong, and end with the exit code of bad input."""

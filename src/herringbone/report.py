@@ -8,6 +8,8 @@ from herringbone.core import HerringboneError
 from herringbone.result import Result
 from herringbone.summary import summary_text
 
+_TEXT, _SUMMARY = "summary.txt", "summary.json"
+
 
 def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Result:
     """Write results.csv, pictures, summary.txt and summary.json into a folder, made if needed.
@@ -26,7 +28,7 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
     """
     from herringbone.plotting import PICTURES, write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
-    text, summary = folder / "summary.txt", folder / "summary.json"
+    text, summary = folder / _TEXT, folder / _SUMMARY
     tables = [folder / "results.csv"]
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -38,14 +40,31 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
             result.to_parquet(tables[1])
         pictures = write_pictures(result, folder)
         result = replace(result, files=tuple(map(str, (*tables, text, summary, *pictures))))
-        text.write_text(summary_text(result), encoding="utf-8")
-        content = result.summary() | {
-            "parameters": dict(result.info.parameters),
-            "resources": dict(result.info.resources),
-        }
-        summary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
-        raise HerringboneError(
-            f"cannot write {error.filename or folder}: {error.strerror}; choose another folder"
-        ) from error
+        raise _refused(error, folder) from error
+    write_summary(result, folder)
     return result
+
+
+def write_summary(result: Result, folder: Path) -> None:
+    """Write summary.txt and summary.json into a folder.
+
+    Raises:
+        HerringboneError: a file cannot be written.
+    """
+    content = result.summary() | {
+        "parameters": dict(result.info.parameters),
+        "resources": dict(result.info.resources),
+    }
+    try:
+        (folder / _TEXT).write_text(summary_text(result), encoding="utf-8")
+        text = json.dumps(content, indent=2) + "\n"
+        (folder / _SUMMARY).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise _refused(error, folder) from error
+
+
+def _refused(error: OSError, folder: Path) -> HerringboneError:
+    return HerringboneError(
+        f"cannot write {error.filename or folder}: {error.strerror}; choose another folder"
+    )

@@ -1,7 +1,9 @@
 """The command `run`: a system, from its options to the report."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tqdm import tqdm
 
@@ -12,8 +14,11 @@ from herringbone.command_options import (
     assignments,
     start_values,
 )
-from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core import Outcome, OutcomeKind, ParameterError
 from herringbone.output import check_writable, say, show
+
+if TYPE_CHECKING:
+    from herringbone.result import Result
 
 _SLOW, _REPLACE = "INSTANCE=N,...", "INSTANCE=FILE.fmu"
 
@@ -55,7 +60,6 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
     from herringbone import api  # noqa: PLC0415 (numba: only when something runs)
-    from herringbone.report import write_report  # noqa: PLC0415
     from herringbone.summary import summary_text  # noqa: PLC0415
 
     check_writable(options.output or Path("results"))
@@ -65,6 +69,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         if (value := getattr(options, name)) is not None
     }
     with _Bar() as bar:
+        report = _Report(options, bar)
         result = api.run(
             options.system,
             **optional,
@@ -74,14 +79,47 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             slow=_multiples(options.slow),
             reference=options.reference,
             progress=bar.show,
+            recorded=report.write,
         )
-    name = Path(options.system).stem
-    folder = options.output or Path("results") / f"{name}-{result.info.scene}"
-    result = write_report(result, folder, parquet=options.parquet)
+    result = report.complete(result)
     show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message:
-        say(f"herringbone: {result.outcome.kind.value}: {result.outcome.message}")
+    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+        say(_ended(result.outcome))
     return result.outcome.kind
+
+
+def _ended(outcome: Outcome) -> str:
+    return f"herringbone: {outcome.kind.value}: {outcome.message}"
+
+
+class _Report:
+    """The files of a run: written when it ends, before anything more is found out about it."""
+
+    def __init__(self, options: argparse.Namespace, bar: "_Bar") -> None:
+        self._options, self._bar = options, bar
+        self._folder, self._files = Path(), ()
+
+    def write(self, result: "Result") -> None:
+        """Write all files."""
+        from herringbone.report import write_report  # noqa: PLC0415 (pandas)
+
+        name = Path(self._options.system).stem
+        self._folder = self._options.output or Path("results") / f"{name}-{result.info.scene}"
+        self._bar.close()
+        if result.outcome.kind is OutcomeKind.INTERRUPTED:
+            say(f"{_ended(result.outcome)}, and are being written to {self._folder}")
+        self._files = write_report(result, self._folder, parquet=self._options.parquet).files
+        if result.outcome.unstable:
+            self._bar.tell(f"results are in {self._folder}; looking for what grows, and remedies")
+
+    def complete(self, result: "Result") -> "Result":
+        """Add to the summary what was found out since; returns the result with its files."""
+        from herringbone.report import write_summary  # noqa: PLC0415 (pandas)
+
+        result = replace(result, files=self._files)
+        if result.error or result.info.why:
+            write_summary(result, self._folder)
+        return result
 
 
 def _multiples(text: str | None) -> dict[str, int]:
@@ -95,7 +133,7 @@ def _multiples(text: str | None) -> dict[str, int]:
 
 
 class _Bar:
-    """Progress bar of simulated milliseconds, on a terminal only."""
+    """Progress bar of simulated milliseconds, then a line on what goes on; on a terminal only."""
 
     def __enter__(self) -> "_Bar":
         self._bar: tqdm | None = None
@@ -112,6 +150,15 @@ class _Bar:
             )
         self._bar.update(1e3 * reached - self._bar.n)
 
-    def __exit__(self, *exception: object) -> None:
+    def tell(self, text: str) -> None:
+        """Show a line until the bar is closed."""
+        self.close()
+        self._bar = tqdm(desc=text, disable=None, bar_format="{desc}", leave=False)
+
+    def close(self) -> None:
+        """End the line."""
         if self._bar is not None:
             self._bar.close()
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()

@@ -89,22 +89,22 @@ def _resources(system: System) -> dict[str, str]:
     }
 
 
-def with_error(result: Result, system: System) -> Result:
-    """Errors against the monolithic twin at the communication points that were reached."""
+def twin_error(result: Result, system: System) -> dict[str, float] | None:
+    """Errors against the monolithic twin at the communication points that were reached.
+
+    By channel group; None without channels or macro steps.
+    """
     groups = {name: result.channel(name) for name in system.channels}
     columns = [column for names in groups.values() for column in names]
     time = result.data[TIME].to_numpy()
     if time.size < 2 or not columns:
-        return result
+        return None
     twin = pd.DataFrame(Twin(system).solve(time, columns), columns=columns)
     uneven = time if result.info.steps else None
-    return replace(
-        result,
-        error={
-            name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
-            for name, names in groups.items()
-        },
-    )
+    return {
+        name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
+        for name, names in groups.items()
+    }
 
 
 def decimated(result: Result, record_step: float) -> Result:

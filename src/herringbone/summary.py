@@ -22,7 +22,7 @@ from herringbone.analysis.operating_point import (
 )
 from herringbone.analysis.radiated_power import LABEL, radiated_power
 from herringbone.components.ports import HALVES
-from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core import ParameterError
 from herringbone.core.energy_report import EnergyReport
 from herringbone.result import TIME, Result, RunInfo
 
@@ -42,7 +42,7 @@ def summary_text(result: Result) -> str:
     sections = (
         _operating_point, _power, _seats, _spectral_lines, _radiation, _signals, _errors,
     )  # fmt: skip
-    if len(result.data) < 2 or result.outcome.kind is OutcomeKind.DIVERGED:
+    if len(result.data) < 2 or result.outcome.unstable:
         lines += ["", "No figures: the run left nothing that can be evaluated."]
         sections = ()
     for section in sections:
@@ -78,7 +78,9 @@ def _headline(result: Result) -> Iterator[str]:
     yield title
     yield "=" * len(title)
     if outcome.message:
-        yield outcome.message
+        yield from textwrap.wrap(
+            outcome.message, _WIDTH, break_long_words=False, break_on_hyphens=False
+        )
 
 
 def _steps(info: RunInfo) -> str:
@@ -166,13 +168,13 @@ def _seats(result: Result) -> Iterator[str]:
         for columns in forces:
             force = moments(result, columns[half]) if half in columns else None
             row += (
-                f"{round(force.mean, 1) + 0.0:>11.1f}{force.ac_rms:>11.3g}"
+                f" {round(force.mean, 1) + 0.0:>10.1f} {force.ac_rms:>10.3g}"
                 if force
                 else f"{'-':>11}" * 2
             )
         for columns in velocities:
             velocity = moments(result, columns[half]) if half in columns else None
-            row += f"{velocity.rms * _MM:>9.3g}" if velocity else f"{'-':>9}"
+            row += f" {velocity.rms * _MM:>8.3g}" if velocity else f"{'-':>9}"
         yield row
 
 
@@ -191,7 +193,7 @@ def _spectral_lines(result: Result) -> Iterator[str]:
             order = f" = {line.frequency / mesh:.2f} f_m" if mesh else ""
             channel = ".".join(line.column.split(".")[-2:])
             yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
-                   f"{line.amplitude * factor:>9.3g} {unit} at {channel}")  # fmt: skip
+                   f" {line.amplitude * factor:>8.3g} {unit} at {channel}")  # fmt: skip
             label = ""
 
 

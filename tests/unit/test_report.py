@@ -81,6 +81,14 @@ def test_row_of_a_half(rig):
     assert [row[i] for i in others] == pytest.approx([expected[i] for i in others], rel=6e-3)
 
 
+def test_large_numbers_stay_apart(rig):
+    data = rig.data.copy()
+    data[data.columns[1:]] *= -1.2345e13
+    text = summary_text(replace(rig, data=data))
+    assert len(numbers(line(text, "wheel right"))) == 7
+    assert all(len(row.split()) >= 5 for row in text.splitlines() if " Hz = " in row)
+
+
 def test_largest_lines(rig):
     row = line(summary_text(rig), "bearing force:")
     assert numbers(row)[:3] == pytest.approx([450.0, 1.0, 12.0], rel=2e-3)
@@ -108,8 +116,9 @@ def test_foreign_system_shows_its_signals():
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_run_without_figures_says_so(rig):
-    outcome = Outcome(OutcomeKind.DIVERGED, 0.1, "a.b", "a.b is not finite; use a smaller step")
+@pytest.mark.parametrize("kind", [OutcomeKind.DIVERGED, OutcomeKind.UNSTABLE])
+def test_a_run_without_figures_says_so(rig, kind):
+    outcome = Outcome(kind, 0.1, "a.b", "a.b is not finite; use a smaller step")
     text = summary_text(replace(rig, outcome=outcome))
     assert "a.b is not finite; use a smaller step" in text
     assert "No figures" in text

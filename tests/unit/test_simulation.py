@@ -223,7 +223,7 @@ def test_interrupt_ends_the_run_in_time(handler):
     assert time.perf_counter() - sent[0] < 0.5 + STEP_TIME
     outcome = recording.outcome
     assert outcome.kind is OutcomeKind.INTERRUPTED
-    assert outcome.message == f"interrupted at {outcome.time:g} s; results so far are kept"
+    assert outcome.message == f"stopped at {outcome.time:g} s; results so far are kept"
     assert 0 < recording.macro_steps < 100
     assert recording.time[-1] == pytest.approx(outcome.time)
     assert np.isfinite(recording.values).all()

@@ -58,6 +58,11 @@ def test_failures_are_kept():
     assert [row["error"]["bearing_force"] for row in found.rows()[4:6]] == [7.0, None]
 
 
+def test_an_unstable_run_is_a_failure_whatever_its_error():
+    assert point(CHEAP, 50e-6, 0.01, outcome="unstable").failed
+    assert not point(CHEAP, 50e-6, 0.01).failed
+
+
 def test_tolerances_make_one_curve():
     name = "li:degree=3,iterations=1,tolerance="
     points = [point(f"{name}{t:g}", h, t) for t, h in ((1e-3, 2e-5), (1e-4, 1e-5))]

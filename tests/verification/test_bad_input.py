@@ -164,9 +164,16 @@ def test_system_file(refused, tmp_path, text, said):
     [
         ("--step=0", "step = 0 s: it must be positive and finite"),
         ("--step=-1e-5", "step = -1e-05 s: it must be positive and finite"),
+        ("--step -1e-5", "step = -1e-05 s: it must be positive and finite"),
+        ("--t-end -.5", "t_end = -0.5 s: it must be positive and finite"),
+        ("--record-step -inf", "record_step = -inf s: it must be positive and finite"),
         ("--step=nan", "step = nan s: it must be positive and finite"),
         ("--t-end=inf", "t_end = inf s: it must be positive and finite"),
         ("--t-end=0", "t_end = 0 s: it must be positive and finite"),
+        ("--step=1e-30", "in steps of 1e-30 s makes 1e+27 macro steps; use a longer step or a"),
+        ("--t-end=1e30", "t_end = 1e+30 s in steps of 4e-05 s makes 2.5e+34 macro steps; use a"),
+        ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "1000000000001 records of "),
+        ("--t-end=1e6 --record-step=1e-6 --step=1e-6", "use a longer record_step (--record-step)"),
         ("--step=0.1", "t_end = 0.001 s is shorter than one step of 0.1 s"),
         ("--record-step=nan", "record_step = nan s: it must be positive and finite"),
         ("--scene=nope", "there is no scene 'nope'; test_rig has: loaded, runup, separation"),
@@ -175,7 +182,7 @@ def test_system_file(refused, tmp_path, text, said):
         ("--algorithm=jacobi:order=7", "jacobi: order=7; it must be 0, 1 or 2"),
         ("--algorithm=jacobi:order=two", "jacobi:order=two"),
         ("--tolerance=2", "li: tolerance=2; it must lie between 1e-08 and 1"),
-        ("--tolerance=0", "li: tolerance=0; it must lie between 1e-08 and 1"),
+        ("--tolerance=0", "it must lie between 1e-08 and 1; leave it out for a fixed step"),
         (
             "--slow=nope=2",
             "slow: nope=2: there is no instance 'nope'; drive_motor, load_motor, gear_mesh, "
@@ -187,11 +194,17 @@ def test_system_file(refused, tmp_path, text, said):
         ("--start=nope", "start = 'nope'; it must be one of equilibrium, ramp, rest"),
         ("--fmu=nope", "fmu = 'nope'; it must be one of auto, native, python, in-process"),
         ("--replace=nope=x.fmu", "has no part 'nope'"),
-        ("--replace=modal_housing=no.fmu", "there is no file no.fmu"),
+        ("--replace=modal_housing=no.fmu", "modal_housing: there is no file no.fmu"),
+        ("--replace=modal_housing=.", "modal_housing: . is a folder; give an .fmu file"),
     ],
 )
 def test_options(refused, option, said):
-    assert said in refused(option)
+    assert said in refused(*option.split())
+
+
+def test_file_that_cannot_be_exported(capsys):
+    assert main(["export", "gearbox", "-o", "/proc/x.ssp"]) == 2
+    assert "cannot write /proc/x.ssp: " in capsys.readouterr().err
 
 
 def test_unknown_system(refused):
@@ -231,7 +244,7 @@ def test_fmu_files(refused, tmp_path, names, before, version, said):
 def test_no_zip(refused, tmp_path):
     file = tmp_path / "x.fmu"
     file.write_text("not a zip")
-    assert f"{file} is not an FMU" in refused(f"--replace=modal_housing={file}")
+    assert f"modal_housing: {file} is not an FMU" in refused(f"--replace=modal_housing={file}")
 
 
 @pytest.mark.parametrize("folder", ["file", "file/below", "/proc/below"])
@@ -265,6 +278,54 @@ def test_step_beyond_the_limit(tmp_path, capsys, fmu):
     assert re.search(f"{summary['culprit']} {how} at {summary['t_reached']:g} s", line)
     assert "use a step below 5e-05 s or an algorithm with a higher limit" in line
     assert len(table) > 100
+
+
+UNSTABLE = ["run", "test_rig", "--t-end=0.005", "--step=1e-4", "--algorithm=jacobi"]
+"""Twice the limit of order 2: ten orders of magnitude in 50 steps, but nothing overflows."""
+
+
+def test_unstable_to_the_end(tmp_path, capsys):
+    """The run is no success, though it reaches its end: all files, but no figures."""
+    assert main([*UNSTABLE, "--fmu=in-process", "-o", str(tmp_path)]) == 1
+    out, err = capsys.readouterr()
+    assert len(err.splitlines()) == 1
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    bond, time = summary["culprit"], summary["energy"]["time"]
+    assert (summary["outcome"], summary["t_reached"]) == ("unstable", 0.005)
+    assert bond.startswith("bearing_supports.")
+    assert err.startswith(
+        f"herringbone: unstable: ran to the end, but the coupling is unstable from {time:.4g} s, "
+        f"most of all at {bond}: use a step below 0.0001 s or an algorithm with a higher limit"
+    )
+    assert "Why unstable" in out
+    assert "No figures" in out
+    assert "Pinion speed" not in out
+    assert out == (tmp_path / "summary.txt").read_text() + "\n"
+    assert all(Path(file).is_file() for file in summary["results"])
+    assert len(pd.read_csv(tmp_path / "results.csv", comment="#")) == 51
+
+
+def test_results_are_written_before_the_diagnosis(tmp_path, monkeypatch):
+    there = []
+
+    def diagnose(*arguments):
+        del arguments
+        there.extend(sorted(file.name for file in tmp_path.iterdir()))
+
+    monkeypatch.setattr("herringbone.api.diagnose", diagnose)
+    main([*UNSTABLE, "--fmu=in-process", "-o", str(tmp_path)])
+    assert {"overview.png", "results.csv", "summary.json", "summary.txt"} <= set(there)
+
+
+def test_a_shortened_step_is_noted(tmp_path, capsys):
+    command = ["run", "test_rig", "--t-end=1.5e-4", "--fmu=in-process", "--json"]
+    main([*command, "-o", str(tmp_path), "--step=4e-5"])
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["communication_step"] == pytest.approx(3.75e-5)
+    assert any("step = 4e-05 s: shortened to 3.75e-05 s" in note for note in summary["notes"])
+    main([*command, "-o", str(tmp_path), "--step=3.75e-5"])
+    notes = json.loads(capsys.readouterr().out)["notes"]
+    assert not any("shortened" in note for note in notes)
 
 
 @pytest.fixture(scope="module")
@@ -313,6 +374,12 @@ def test_foreign_housing_is_tested(tmp_path, capsys, stranger):
     main([*arguments, "--replace", f"modal_housing={file}"])
     notes = json.loads(capsys.readouterr().out)["notes"]
     assert any(f"{file} breaks the contract of housings: passivity: -" in note for note in notes)
+
+
+def test_foreign_housing_without_state_has_no_adaptive_step(refused, stranger):
+    line = refused("--tolerance=1e-3", f"--replace=modal_housing={stranger('NoState')}")
+    assert "tolerance = 0.001: modal_housing cannot save and restore its state" in line
+    assert "jacobi" not in line
 
 
 def test_foreign_housing_has_no_reference(refused, stranger):

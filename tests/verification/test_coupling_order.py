@@ -142,7 +142,7 @@ def energy(problem, recording):
 def growth(problem, algorithm, p, steps=4000):
     """Energy in the last eighth of a run over the energy at the start; infinite if it diverged."""
     recording = problem.run(algorithm, p / problem.w, steps * p / problem.w)
-    if recording.outcome.kind is not OutcomeKind.COMPLETED:
+    if not recording.outcome.reached_end:
         return math.inf
     with np.errstate(over="ignore"):
         found = energy(problem, recording)

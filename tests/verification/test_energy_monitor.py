@@ -78,7 +78,7 @@ def run(system, algorithm, step, t_end, frequency):
 def seen(found, growth, columns, mean, alternating):
     force = found.values[:, [found.names.index(name) for name in columns]]
     off = np.abs(force - mean).max(axis=1) > VISIBLE * alternating
-    end = np.inf if found.outcome.completed else found.outcome.time
+    end = np.inf if found.outcome.reached_end else found.outcome.time
     visible = float(found.time[np.argmax(off)]) if off.any() else end
     return Seen(growth, visible, found.energy.verdict, found.energy.time)
 

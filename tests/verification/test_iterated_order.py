@@ -199,7 +199,7 @@ def unstable_band(zeta, degree):
 def growth(problem, algorithm, p, steps, **more):
     """Largest energy of the relative motion in the last eighth over that of the start."""
     recording = problem.run(algorithm, p / problem.w, steps * p / problem.w, **more)
-    if not recording.outcome.completed:
+    if not recording.outcome.reached_end:
         return math.inf
     s1, v1, s2, v2 = columns(recording, MOTION).T
     energy = problem.stiffness * (s1 - s2) ** 2 + problem.reduced * (v1 - v2) ** 2

@@ -110,7 +110,7 @@ def test_limit_of_quadratic_extrapolation():
 
     def amplitude(h):
         recording = run_in_process(rig(), Jacobi(order=2), h, 0.15)
-        if not recording.outcome.completed:
+        if not recording.outcome.reached_end:
             return np.inf
         late = columns(recording, BEARING_Y)[-200:]
         return np.abs(late - late.mean(axis=0)).max()

@@ -10,7 +10,7 @@ import numpy as np
 from herringbone.analysis.spectra import mesh_frequency
 from herringbone.components.ports import HALVES
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core import ParameterError
 from herringbone.result import TIME, Result
 
 SETTLING_SHARE = 0.2
@@ -79,7 +79,7 @@ def steady_part(result: Result) -> SteadyPart:
     if count < 2:
         begin = float(time[0]) if count else 0.0
         return SteadyPart(slice(0, count), begin, begin, 0.0, steady=False)
-    first, steady = int(SETTLING_SHARE * count), result.outcome.kind is not OutcomeKind.DIVERGED
+    first, steady = int(SETTLING_SHARE * count), not result.outcome.unstable
     speed = signal(result, "gear_mesh", "pinion.w")
     if speed is not None and steady:
         outside = np.flatnonzero(np.abs(speed - speed[-1]) > SPEED_BAND * abs(speed[-1]))

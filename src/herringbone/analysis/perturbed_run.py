@@ -85,7 +85,7 @@ def _forces(
         run = simulate(system, parts, algorithm, make_grid(steps * step, step, step))
     except HerringboneError:  # no Jacobian where the values overflow
         return np.full((1, len(pairs)), np.inf)
-    if not run.outcome.completed:
+    if not run.outcome.reached_end:
         return np.full((1, len(pairs)), np.inf)
     columns = [run.names.index(f"{parts[c.source].name}.{c.output}") for c in pairs]
     return run.values[:, columns]

@@ -21,7 +21,7 @@ import numpy as np
 from herringbone.analysis.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.operating_point import steady_part
 from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum
-from herringbone.core import OutcomeKind, ParameterError
+from herringbone.core import ParameterError
 from herringbone.housing import ModalHousing
 from herringbone.result import Result
 
@@ -87,7 +87,7 @@ def radiated_power(result: Result, housing: ModalHousing | None = None) -> Radia
             "surface_gram.csv, as `herringbone housing build` makes them"
         )
     part = steady_part(result)
-    if result.outcome.kind is OutcomeKind.DIVERGED:
+    if result.outcome.unstable:
         raise ParameterError("the run diverged: no radiated power")
     if part.end - part.begin < FEWEST_SAMPLES / housing.valid_to_hz:
         raise ParameterError(f"{part.end - part.begin:g} s are too short for a radiated power")

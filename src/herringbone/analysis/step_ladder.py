@@ -96,7 +96,7 @@ class Reference:
 
     def errors(self, recording: Recording) -> dict[str, float]:
         """Relative error by channel group; infinite if the run ended early."""
-        if not recording.outcome.completed:
+        if not recording.outcome.reached_end:
             return dict.fromkeys(self.groups, math.inf)
         twin, time = self._at(recording.time)
         found = {}

@@ -32,7 +32,7 @@ class Point:
         wall_s: wall time of the loop, the shortest of the repeats [s].
         t_reached: simulated time reached [s].
         error: relative error by channel group [1]; infinite if the run ended early.
-        outcome: "completed", "diverged", "part_failed", "interrupted" or "refused".
+        outcome: "completed", "unstable", "diverged", "part_failed", "interrupted" or "refused".
     """
 
     algorithm: str
@@ -55,7 +55,7 @@ class Point:
 
     @property
     def failed(self) -> bool:
-        """True if the run ended early or its error exceeds the signal."""
+        """True if the run is unstable, ended early, or has an error that exceeds the signal."""
         return self.outcome != OutcomeKind.COMPLETED or not self.worst <= 1.0
 
     @property

@@ -9,6 +9,7 @@ class OutcomeKind(StrEnum):
 
     COMPLETED = "completed"
     INTERRUPTED = "interrupted"
+    UNSTABLE = "unstable"
     DIVERGED = "diverged"
     PART_FAILED = "part_failed"
     COUPLING_FAILED = "coupling_failed"
@@ -22,7 +23,8 @@ class Outcome:
     Attributes:
         kind: the way in which the run ended.
         time: simulated time that was reached [s].
-        culprit: `instance.variable` or instance that ended the run early; empty if none did.
+        culprit: `instance.variable` or instance that ended the run early, or whose coupling is
+            unstable; empty if there is none.
         message: one line that says what happened and what to do next; empty if completed.
     """
 
@@ -33,5 +35,15 @@ class Outcome:
 
     @property
     def completed(self) -> bool:
-        """True if the run reached its end."""
+        """True if the run reached its end, and its coupling was not seen to be unstable."""
         return self.kind is OutcomeKind.COMPLETED
+
+    @property
+    def reached_end(self) -> bool:
+        """True if the run reached its end, with whatever values."""
+        return self.kind in {OutcomeKind.COMPLETED, OutcomeKind.UNSTABLE}
+
+    @property
+    def unstable(self) -> bool:
+        """True if the values grew without bound, so that no figure of them means anything."""
+        return self.kind in {OutcomeKind.UNSTABLE, OutcomeKind.DIVERGED}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.core.energy_report import Verdict
 from herringbone.cosim.adaptive_loop import STEP_LIMIT
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -110,10 +111,10 @@ class Run:
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
         reached = done * self.grid.step
         if status == DONE:
-            finished = done == self.grid.count
-            kind = OutcomeKind.COMPLETED if finished else OutcomeKind.INTERRUPTED
-            message = "" if finished else f"interrupted at {reached:g} s; results so far are kept"
-            return Outcome(kind, reached, message=message)
+            if done == self.grid.count:
+                return self._outcome_at_end(reached)
+            message = f"stopped at {reached:g} s; results so far are kept"
+            return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
         if status in _PROBLEMS:
             return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
@@ -129,6 +130,18 @@ class Run:
             return Outcome(OutcomeKind.DIVERGED, reached, where, message)
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    def _outcome_at_end(self, reached: float) -> Outcome:
+        """Completed, unless the coupling was seen to add energy without end."""
+        energy = self.watch.report()
+        if energy is None or energy.verdict is not Verdict.UNSTABLE:
+            return Outcome(OutcomeKind.COMPLETED, reached)
+        bond = energy.bond or ""
+        message = (
+            f"ran to the end, but the coupling is unstable from {energy.time:.4g} s, most of all "
+            f"at {bond}: use a step below {self.grid.step:g} s or an algorithm with a higher limit"
+        )
+        return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
 
     def _diverged(self, culprit: int) -> tuple[str, float]:
         """The first input or output of a part that has diverged, or the output that feeds it."""
@@ -150,7 +163,7 @@ class Run:
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         times = self.record.times(done)
         values = self.record.values[: times.size]
-        if outcome.kind not in {OutcomeKind.COMPLETED, OutcomeKind.INTERRUPTED}:
+        if not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
             rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
             times, values = times[:rows], values[:rows]
         return Recording(

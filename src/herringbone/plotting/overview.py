@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from herringbone.analysis.operating_point import by_half, instance, shaft_torques
-from herringbone.core import OutcomeKind
 from herringbone.plotting.columns import generic_overview
 from herringbone.plotting.panels import (
     close_up,
@@ -86,7 +85,7 @@ def _torque_and_speed(axes: Axes, result: Result) -> None:
     time_panel(axes, result, names, "torque", unit="N m")
     legend(axes, 2)
     speed = f"{instance(result, 'gear_mesh')}.pinion.w"
-    if speed not in result.data or result.outcome.kind is OutcomeKind.DIVERGED:
+    if speed not in result.data or result.outcome.unstable:
         return
     right = axes.twinx()
     time = result.data[TIME].to_numpy()

@@ -10,7 +10,6 @@ from matplotlib.transforms import blended_transform_factory
 
 from herringbone.analysis.operating_point import mesh_forces, run_mesh_frequency, steady_part
 from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
-from herringbone.core import OutcomeKind
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result import TIME, Result
 
@@ -82,7 +81,7 @@ def time_panel(
         rows: part of the table that is shown, all if not given.
         mean: show the signal without its mean over the steady part, and the mean in the legend.
     """
-    diverged = result.outcome.kind is OutcomeKind.DIVERGED
+    diverged = result.outcome.unstable
     axes.set_ylabel(f"{label}{', AC' if mean and not diverged else ''} [{unit}]")
     axes.set_xlabel("time [s]" if rows is None else "time [ms]")
     if result.data.empty:
@@ -157,7 +156,7 @@ def spectrum_panel(
     part = steady_part(result)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel(f"{label} [{unit}]")
-    diverged = result.outcome.kind is OutcomeKind.DIVERGED
+    diverged = result.outcome.unstable
     if diverged or part.rows.stop - part.rows.start < FEWEST_SAMPLES:
         why = "the run diverged" if diverged else "too few records"
         axes.text(0.5, 0.5, f"no spectrum: {why}", ha="center", transform=axes.transAxes)
