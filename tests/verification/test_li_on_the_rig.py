@@ -8,9 +8,11 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pandas as pd
 import pytest
 from support_parts import columns, open_in_process, run_fmus_and_in_process
 
+import herringbone as hb
 from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.components.ports import HALVES
@@ -114,3 +116,15 @@ def test_python_fmus_give_the_same_bits(python_fmus):
     assert np.array_equal(columns(found, wanted.names), wanted.values)
     assert found.passes == wanted.passes
     assert found.rollbacks == wanted.rollbacks
+
+
+@pytest.mark.parametrize("algorithm", ["li:degree=3", "li:tolerance=0.001"])
+def test_bits_do_not_depend_on_how_fast_the_machine_is(algorithm, monkeypatch):
+    """The loop looks at the clock between chunks of macro steps; from rest, sizes still grow."""
+
+    def run(chunk_seconds):
+        monkeypatch.setattr("herringbone.cosim.run.CHUNK_SECONDS", chunk_seconds)
+        options = {"fmu": "in-process", "start": "rest", "t_end": 8e-3}
+        return hb.run("test_rig", algorithm=algorithm, **options).data
+
+    pd.testing.assert_frame_equal(run(1e-9), run(1.0), check_exact=True)

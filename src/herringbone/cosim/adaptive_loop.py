@@ -105,7 +105,7 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    update_scale(nodes, buffers, adaptive.group, adaptive.moments, adaptive.covered, h)
+    update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, h)
     state[BEFORE_THAT], state[BEFORE] = state[BEFORE], adaptive.rungs[rung]
     state[ACCEPTED] += 1
     adaptive.taken[rung] += 1
@@ -135,9 +135,7 @@ def _try(
         failed, _ = converge(plan, nodes, buffers, adaptive.corrections[rung], control, t, h)
     if failed >= 0:
         return failed, np.inf
-    error, culprit = step_error(
-        nodes, buffers, adaptive.group, adaptive.held, adaptive.squares, known
-    )
+    error, culprit = step_error(nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known)
     state[CULPRIT] = culprit
     return -1, error
 

@@ -23,7 +23,6 @@ class Adaptive(NamedTuple):
         ready: NONE ... OWN by rung.
         owed: corrections beyond the first, by rung, since its Jacobian.
         taken, rejected: macro steps by rung.
-        group: of each unknown, those of the same unit.
         held: 1 for unknowns that a body holds over a step.
         squares: room for one number per group.
         moments: of the forces, see `step_error.update_scale`.
@@ -43,7 +42,6 @@ class Adaptive(NamedTuple):
     owed: np.ndarray
     taken: np.ndarray
     rejected: np.ndarray
-    group: np.ndarray
     held: np.ndarray
     squares: np.ndarray
     moments: np.ndarray

@@ -66,6 +66,17 @@ def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
 
 
 @inlined
+def grow_scale(nodes: NodePlan, buffers: Buffers) -> None:
+    """The scale becomes the largest value of the same unit at communication points so far."""
+    for i in range(nodes.unknown.size):
+        size = abs(buffers.history[0, nodes.unknown[i]])
+        if size > buffers.scale[i]:
+            for k in range(nodes.unknown.size):
+                if nodes.group[k] == nodes.group[i]:
+                    buffers.scale[k] = size
+
+
+@inlined
 def converge(
     plan: Plan,
     nodes: NodePlan,
@@ -129,6 +140,7 @@ def run_iterated(
         culprit = not_finite(plan, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
+        grow_scale(nodes, buffers)
         if is_watched(chunk.energy, h):
             watch_nodes(chunk.energy, buffers.nodes, buffers.trial, h)
         for p in range(plan.component.size if row >= 0 else 0):

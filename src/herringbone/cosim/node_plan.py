@@ -15,6 +15,7 @@ class NodePlan(NamedTuple):
         node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
             part without them.
         get_state, set_state, free_state: addresses.
+        group: of each unknown; those of the same unit are one.
     """
 
     degree: int
@@ -27,6 +28,7 @@ class NodePlan(NamedTuple):
     get_state: np.ndarray
     set_state: np.ndarray
     free_state: np.ndarray
+    group: np.ndarray
 
 
 class Control(NamedTuple):

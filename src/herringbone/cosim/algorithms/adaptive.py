@@ -19,7 +19,7 @@ from herringbone.cosim.adaptive_plan import (
     WANTED,
     Adaptive,
 )
-from herringbone.cosim.algorithms.iterated import PreparedNodes
+from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
     CouplingError,
@@ -38,8 +38,6 @@ from herringbone.cosim.step_error import update_scale
 
 RESIDUAL_SHARE = 0.1
 """Share of the tolerance that the corrections may leave."""
-SMALLEST = 1e-3
-"""Size, in SI units, of a force that has not acted yet, for the differences of a Jacobian."""
 _STATE = 10
 
 
@@ -129,10 +127,9 @@ class PreparedAdaptive(PreparedNodes):
         )
 
     def _make_adaptive(self, buffers: Buffers) -> Adaptive:
-        nodes, parts = self.nodes, self.network.parts
+        nodes = self.nodes
         sources = [self.jacobian.owners[i] for i in nodes.unknown]
-        units = [parts[p].variables[name].unit for p, name in sources]
-        kinds = list(dict.fromkeys(units))
+        groups = int(nodes.group.max(initial=-1)) + 1
         held_by = {
             (c.source, c.output)
             for c in self.network.connections
@@ -148,10 +145,9 @@ class PreparedAdaptive(PreparedNodes):
             np.zeros((rungs, size, size)),
             np.full(rungs, NONE, dtype=np.int64),
             *(np.zeros(rungs, dtype=np.int64) for _ in range(3)),
-            np.array([kinds.index(unit) for unit in units], dtype=np.int64),
             np.array([source in held_by for source in sources], dtype=np.int64),
-            np.zeros(len(kinds)),
-            np.zeros((4, max(nodes.unknown.size, len(kinds)))),
+            np.zeros(groups),
+            np.zeros((4, max(nodes.unknown.size, groups))),
             np.zeros(1),
             np.zeros(1),
             np.zeros(_STATE, dtype=np.int64),
@@ -160,7 +156,7 @@ class PreparedAdaptive(PreparedNodes):
         adaptive.state[[WANTED, USED, ROWS]] = FIRST, FIRST, 1
         adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[FIRST]
         buffers.nodes[:] = buffers.history[0]
-        update_scale(nodes, buffers, adaptive.group, adaptive.moments, adaptive.covered, 0.0)
+        update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, 0.0)
         return adaptive
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
@@ -219,7 +215,7 @@ class PreparedAdaptive(PreparedNodes):
         adaptive = self._adaptive
         self.jacobians += 1
         self._buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
-        size = np.maximum(adaptive.moments[2, adaptive.group], SMALLEST)
+        size = np.maximum(adaptive.moments[2, self.nodes.group], SMALLEST)
         return self.jacobian.measure(self._buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
 
     def _fitted(self, rung: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from herringbone.cosim.algorithms.jacobian import (
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
 from herringbone.cosim.loop import COUPLING_FAILED, DONE
 from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import REFRESH, run_iterated
+from herringbone.cosim.node_loop import REFRESH, grow_scale, run_iterated
 from herringbone.cosim.node_plan import Buffers, Control, NodePlan
 from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
 
@@ -24,6 +24,8 @@ REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
 SLOW = 0.1
 """Contraction of a correction above which the Jacobian is computed again."""
+SMALLEST = 1e-3
+"""Size, in SI units, of a force that has not acted yet, for the differences of a Jacobian."""
 MOST_SWEEPS = 1000
 """Sweeps of a fixed point over an algebraic loop at the most."""
 PATIENCE = 50
@@ -74,7 +76,6 @@ class PreparedNodes(PreparedRun):
         )
         self._outputs = connected_outputs(network)
         self.nodes: NodePlan = self._node_plan(degree)
-        self._same_unit = self._units_agree()
         self.jacobian = InterfaceJacobian(network, self.plan, self.nodes, self._outputs)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
@@ -95,7 +96,17 @@ class PreparedNodes(PreparedRun):
             np.array(network.sources, dtype=np.int64),
             *node_references(parts, self._outputs, node_degrees),
             *(state[:, k].copy() for k in range(3)),
+            self._groups(unknown),
         )
+
+    def _groups(self, unknown: np.ndarray) -> np.ndarray:
+        """Numbers the units of the unknowns."""
+        units = [
+            str(part.variables[n].unit)
+            for part, names in zip(self.network.parts, self._outputs, strict=True)
+            for n in names
+        ]
+        return np.unique(np.array(units)[unknown], return_inverse=True)[1].astype(np.int64)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -184,7 +195,8 @@ class PreparedNodes(PreparedRun):
             self._buffers = self._make_buffers(history)
             if chunk.start > 0:  # the history holds equidistant points before the first step
                 self._buffers.spacing[0] = 1.0
-        self._update_scale()
+            self._buffers.scale[:] = SMALLEST
+            grow_scale(self.nodes, self._buffers)
         done, end = chunk.start, chunk.start + chunk.count
         if self._correction.size == 0 and (status := self._refresh(chunk)) != DONE:
             return status, done, -1
@@ -204,24 +216,6 @@ class PreparedNodes(PreparedRun):
                 status = self._refresh(chunk._replace(start=done))
             if status != DONE or done >= end:
                 return status, done, culprit
-
-    def _units_agree(self) -> np.ndarray:
-        """Which unknowns have the same unit, (unknowns, unknowns)."""
-        units = np.array(
-            [
-                str(part.variables[n].unit)
-                for part, names in zip(self.network.parts, self._outputs, strict=True)
-                for n in names
-            ]
-        )[self.nodes.unknown]
-        return units[:, None] == units[None, :]
-
-    def _update_scale(self) -> None:
-        """Sizes of the unknowns: the largest signal of the same unit so far."""
-        now = np.abs(self._buffers.history[0, self.nodes.unknown])
-        largest = np.where(self._same_unit, now, 0.0).max(axis=1, initial=0.0)
-        before = self._buffers.scale if self.jacobians else 1e-3
-        self._buffers.scale[:] = np.maximum(largest, before)
 
     def _refresh(self, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""
