@@ -271,3 +271,15 @@ def test_all_components_twice_in_one_process_are_not_confused(started):
         assert first == second
         scale = np.abs(wanted[:, 1:]).max(axis=0)
         assert (np.abs(np.array(first) - wanted[row, 1:]) <= 1e-9 * scale).all()
+
+
+def test_no_value_before_initialisation(fmus):
+    """Native FMUs say so at once, Python FMUs, whose host cannot be told, on initialisation."""
+    refused = pytest.raises(FmuError, match="part: getReal before initialisation")
+    with Host("part", fmus["drive_motor"]) as host, refused:
+        read_early(host)
+
+
+def read_early(host):
+    host.values("inertia")
+    host.initialise()

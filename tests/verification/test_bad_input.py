@@ -202,6 +202,11 @@ def test_options(refused, option, said):
     assert said in refused(*option.split())
 
 
+def test_check_of_a_folder(tmp_path, capsys):
+    assert main(["check", str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"herringbone: {tmp_path} is a folder; give an .fmu file\n"
+
+
 def test_file_that_cannot_be_exported(capsys):
     assert main(["export", "gearbox", "-o", "/proc/x.ssp"]) == 2
     assert "cannot write /proc/x.ssp: " in capsys.readouterr().err

@@ -17,6 +17,14 @@ _USABLE = re.compile(r"2\.0|3\.0(\.\d+)?")
 _VERSION = re.compile(rb'fmiVersion\s*=\s*["\']([^"\']*)["\']')
 
 
+def require_file(file: Path) -> None:
+    """Check that there is a file; raises FmuError."""
+    if file.is_dir():
+        raise FmuError(f"{file} is a folder; give an .fmu file")
+    if not file.is_file():
+        raise FmuError(f"there is no file {file}")
+
+
 def read_fmu(file: Path) -> ModelDescription:
     """Model description of an FMU 2.0 or 3.0 for co-simulation that runs on this platform.
 
@@ -24,10 +32,7 @@ def read_fmu(file: Path) -> ModelDescription:
         FmuError: no file, no zip, unsafe names or XML, another FMI version or kind, no binary for
             this platform.
     """
-    if file.is_dir():
-        raise FmuError(f"{file} is a folder; give an .fmu file")
-    if not file.is_file():
-        raise FmuError(f"there is no file {file}")
+    require_file(file)
     try:
         with zipfile.ZipFile(file) as archive:
             names = archive.namelist()

@@ -8,7 +8,7 @@ from fmpy.model_description import ModelDescription
 from fmpy.validation import validate_fmu
 
 from herringbone.core import FmuError
-from herringbone.cosim.fmu_file import read_fmu
+from herringbone.cosim.fmu_file import read_fmu, require_file
 from herringbone.cosim.fmu_variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
 
@@ -28,8 +28,7 @@ def check_fmu(path: Path) -> list[str]:
     Raises:
         FmuError: there is no such file.
     """
-    if not path.is_file():
-        raise FmuError(f"there is no file {path}")
+    require_file(path)
     try:
         description = read_fmu(path)
     except FmuError as error:
