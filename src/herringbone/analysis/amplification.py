@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
+from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.step_map import CHANGE, OTHER_CHANGE, linear_part, state_changes
 from herringbone.core import HerringboneError, Instance
@@ -24,6 +25,8 @@ from herringbone.cosim.loop import DONE, get_all
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import HISTORY, Chunk, record_names
 
+_BLAS = ThreadpoolController()
+"""Matrices of a few hundred rows: threads of BLAS would mostly wait for each other."""
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
@@ -103,7 +106,9 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        eigenvalues = np.linalg.eigvals(self.matrix(step))
+        matrix = self.matrix(step)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            eigenvalues = np.linalg.eigvals(matrix)
         eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
         sizes = np.abs(eigenvalues)
         if sizes.size == 0:
@@ -132,7 +137,9 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        eigenvalues, vectors = np.linalg.eig(self.matrix(step))
+        matrix = self.matrix(step)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            eigenvalues, vectors = np.linalg.eig(matrix)
         sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
         vector = vector / np.abs(vector / self._change[self._used]).max()
