@@ -264,3 +264,24 @@ def test_why_of_two_rotors_in_closed_form():
     assert found.frequency == pytest.approx(frequency / (2.0 * np.pi), rel=0.02)
     assert float(found.remedies[0].split()[3]) == pytest.approx(4.0 * zeta / frequency, rel=0.02)
     assert "times as much" in found.remedies[-1]
+
+
+def test_why_takes_few_matrices(monkeypatch):
+    """One linearisation; a coarse scan and a bisection for each thing that is printed."""
+    matrices, systems = [], []
+
+    class Counted(Amplification):
+        def growth(self, step):
+            matrices.append(step)
+            return super().growth(step)
+
+    def linearised(system):
+        systems.append(system)
+        return linear_network(system)
+
+    monkeypatch.setattr("herringbone.analysis.diagnosis.Amplification", Counted)
+    monkeypatch.setattr("herringbone.analysis.diagnosis.linear_network", linearised)
+    found = diagnose(two_rotors(0.02, 3.0), Jacobi(0), 8.0 * 0.02 / 3000.0)
+    assert len(found.remedies) == 4
+    assert len(systems) == 1
+    assert len(matrices) < 60

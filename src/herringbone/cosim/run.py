@@ -139,7 +139,8 @@ class Run:
         bond = energy.bond or ""
         message = (
             f"ran to the end, but the coupling is unstable from {energy.time:.4g} s, most of all "
-            f"at {bond}: use a step below {self.grid.step:g} s or an algorithm with a higher limit"
+            f"at {bond}: use a step below {self._step(self.grid.count):g} s or an algorithm with a "
+            "higher limit"
         )
         return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
 
