@@ -91,10 +91,12 @@ def _steps(info: RunInfo) -> str:
 
 
 def _energy(found: EnergyReport) -> str:
-    ratio = f", {found.ratio:.2g} of what the dampers take" if found.ratio is not None else ""
+    share = ""
+    if found.ratio is not None:
+        share = f": in the last {_time(found.window)} {found.ratio:.2g} times what the dampers take"
     when = f" from {_time(found.time)}" if found.time is not None else ""
     bond = f", most of all at {found.bond}" if found.bond else ""
-    return f"{found.verdict.value}{when}{bond}: added in the last {_time(found.window)}{ratio}"
+    return f"{found.verdict.value}{when}{bond}{share}"
 
 
 def _cost(result: Result) -> Iterator[str]:

@@ -17,8 +17,17 @@ from herringbone.analysis.bonds import highest_frequency
 from herringbone.analysis.diagnosis import diagnose
 from herringbone.analysis.linear_parts import linear_network
 from herringbone.analysis.step_scan import unstable_bands
+from herringbone.components.bearing_supports import BEARING_SUPPORTS
+from herringbone.components.in_process import InProcessPart
 from herringbone.core.energy_report import Verdict
-from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
+from herringbone.cosim.algorithms import (
+    LI,
+    FixedPoint,
+    GaussSeidel,
+    Jacobi,
+    Predict,
+    parse_algorithm,
+)
 from herringbone.cosim.energy import PERIODS
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.system_file import find_system, read_system
@@ -253,6 +262,82 @@ def test_why_names_the_bond_and_remedies_that_hold():
     growth = Amplification(*linear_network(rig()), Jacobi(1)).growth
     assert growth(0.98 * step).radius <= 1.0 + GROWTH < growth(1.02 * step).radius
     assert diagnose(rig(), Jacobi(1), 0.98 * step) is None
+
+
+WHY_AT = {
+    GaussSeidel(2): (39.0, 36.9),
+    Predict(): (70.0, 67.8),
+    FixedPoint(3): (220.0, 213.3),
+    LI(3): (735.0, 700.9),
+    Jacobi(0, "parallel"): (10.0, 6.9),
+}
+"""Step and predicted limit [us]."""
+KICK, RISEN = 1e-13, 1e9
+"""Velocities [m/s] that start a motion, and by what it rises: other motions fade meanwhile."""
+
+
+def growing_forces(algorithm, step, growth):
+    """Forces by name, less their equilibrium, at the end of a kicked run of the linear parts."""
+    _, instances = linear_network(rig())
+    random = np.random.default_rng(1)
+    for instance in instances:
+        for entry, v in enumerate(instance.component.declaration.states):
+            if v.unit == "m/s":
+                instance.block[entry] += KICK * random.uniform(-1.0, 1.0)
+    grid = make_grid(np.ceil(np.log(RISEN) / np.log1p(growth)) * step, step, step)
+    found = simulate(rig(), [InProcessPart(i) for i in instances], algorithm, grid)
+    return dict(zip(found.names, np.diff(found.values, axis=0)[-40:].T, strict=True))
+
+
+def leading_root(x):
+    """Eigenvalue per sample of the one motion, a pair or alone, that is left in samples."""
+    pair = np.linalg.lstsq(np.column_stack([x[1:-1], x[:-2]]), x[2:], rcond=None)[0]
+    return max(np.roots([1.0, *-pair]), key=abs)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("algorithm", WHY_AT, ids=str)
+def test_why_is_true_for_every_algorithm(algorithm):
+    """The motion is the one that runs of the same parts end with; the remedies are stable."""
+    step, limit = (1e-6 * t for t in WHY_AT[algorithm])
+    found = diagnose(rig(), algorithm, step)
+    forces = growing_forces(algorithm, step, found.growth)
+    root = leading_root(forces[found.bonds[0][0]])
+    assert np.abs(root) - 1.0 == pytest.approx(found.growth, rel=0.01)
+    assert abs(np.angle(root)) / (2.0 * np.pi * step) == pytest.approx(found.frequency, rel=1e-3)
+    sizes = {bond: np.ptp(forces[bond]) for bond, _ in found.bonds if bond.endswith(".f_y")}
+    assert {bond for bond, _ in found.bonds[:2]} == set(sorted(sizes, key=sizes.get)[-2:])
+    pinion = [share for bond, share in found.bonds if ".pinion_" in bond]
+    assert sum(pinion) > 0.9
+    assert pinion[0] == pytest.approx(pinion[1], rel=0.05)  # left and right are alike
+    assert found.sampled == (step > 200e-6)
+    assert_remedies_hold(found, algorithm, step, limit)
+
+
+def assert_remedies_hold(found, algorithm, step, limit):
+    """Steps and algorithms named are stable, and the step is the limit; so is the damping."""
+
+    def grows(other, at, system=None):
+        growth = Amplification(*linear_network(system or rig()), other).growth(at)
+        return growth.radius > 1.0 + GROWTH
+
+    below, *others = found.remedies
+    assert float(below.split()[3]) == pytest.approx(limit, rel=0.01)
+    assert not grows(algorithm, 0.99 * float(below.split()[3]))
+    for remedy in others:
+        if "times as much" in remedy:
+            factor = float(remedy.split(", ")[1].split()[0])
+            stronger = {
+                f"bearing_supports.{v.name}": factor * v.start
+                for v in BEARING_SUPPORTS.declaration.parameters
+                if v.name.endswith("damping")
+            }
+            assert not grows(algorithm, step, rig().with_values(stronger))
+            continue
+        name, _, reach = remedy.partition(", stable ")
+        reach = float(reach.split()[1]) if reach.startswith("below") else 4.0 * step
+        assert not grows(parse_algorithm(name), step)
+        assert not grows(parse_algorithm(name), 0.99 * reach)
 
 
 def test_why_of_two_rotors_in_closed_form():

@@ -81,6 +81,7 @@ class Amplification:
         self._counts = [part.declaration.state_count for part in self._parts]
         plan = algorithm.prepare(self.network).plan
         self._outputs = plan.output_reference.size
+        self._first = plan.output_first
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
         self._base = np.zeros((HISTORY, self._outputs))
         get_all(plan, self._base, self._records, 0)
@@ -131,8 +132,10 @@ class Amplification:
             self._used = _coupled(self._differences(step, everything))
         return self._differences(step, self._used)
 
-    def motion(self, step: float) -> np.ndarray:
-        """All connected outputs (n,), complex amplitudes of the fastest growing motion.
+    def motion(self, step: float) -> list[np.ndarray]:
+        """Complex amplitudes of each part's outputs in the fastest growing motion.
+
+        Connected outputs come first, in their order; then those that only the algorithm reads.
 
         Raises:
             HerringboneError: a part fails at this step.
@@ -152,7 +155,7 @@ class Amplification:
             for changes in (vector.real, vector.imag):
                 self._advance(prepared, step, history, dict(zip(self._used, changes, strict=True)))
                 found.append(history[0] - base)
-        return found[0] + 1j * found[1]
+        return np.split(found[0] + 1j * found[1], self._first[1:-1])
 
     @contextmanager
     def _prepared(self, step: float) -> Iterator[PreparedRun]:

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from herringbone.analysis.amplification import GROWTH, Amplification
-from herringbone.analysis.bonds import Direction, bond_directions, motion_of
+from herringbone.analysis.bonds import Direction, bond_directions, highest_frequency, motion_of
 from herringbone.analysis.linear_parts import linear_network
 from herringbone.analysis.stability import default_algorithms
 from herringbone.analysis.step_scan import first_unstable
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import Diagnosis
-from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.algorithms import LI, Algorithm
 from herringbone.cosim.network import Network
 from herringbone.cosim.plan import connected_outputs
 from herringbone.cosim.system import System
@@ -52,6 +52,7 @@ def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | N
         outputs = amplification.motion(step)
     except HerringboneError:
         return None
+    sampled = highest_frequency(network, instances) * step > np.pi
     directions = bond_directions(network, instances)
     shares = _shares(network, directions, outputs)
     order = np.argsort(-shares)
@@ -62,14 +63,21 @@ def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | N
         *_more_damping(linear, algorithm, step, directions[order[0]]),
     )
     return Diagnosis(
-        str(algorithm), step, growth.radius - 1.0, growth.frequency, bonds, tuple(remedies)
+        str(algorithm),
+        step,
+        growth.radius - 1.0,
+        growth.frequency,
+        sampled,
+        bonds,
+        tuple(remedies),
     )
 
 
-def _shares(network: Network, directions: Sequence[Direction], outputs: np.ndarray) -> np.ndarray:
-    """Share of each bond in a motion, from all connected outputs (complex amplitudes)."""
+def _shares(
+    network: Network, directions: Sequence[Direction], outputs: Sequence[np.ndarray]
+) -> np.ndarray:
+    """Share of each bond in a motion, from each part's outputs (complex amplitudes)."""
     names = connected_outputs(network)
-    first = np.concatenate(([0], np.cumsum([len(n) for n in names])))
     feeding = {(c.target, c.input): c for c in network.connections}
     found = []
     for direction in directions:
@@ -77,8 +85,8 @@ def _shares(network: Network, directions: Sequence[Direction], outputs: np.ndarr
         size = sum(d * d for _, d in direction.forces)
         for c, d in direction.forces:
             back = feeding[c.source, motion_of(c.output)[1]]
-            force += d * outputs[first[c.source] + names[c.source].index(c.output)] / size
-            velocity += d * outputs[first[back.source] + names[back.source].index(back.output)]
+            force += d * outputs[c.source][names[c.source].index(c.output)] / size
+            velocity += d * outputs[back.source][names[back.source].index(back.output)]
         found.append(abs(force) * abs(velocity))
     return np.array(found) / max(sum(found), 1e-300)
 
@@ -94,10 +102,10 @@ def _smaller_step(amplification: Amplification, step: float) -> str:
 def _other_algorithms(linear: Linear, algorithm: Algorithm, step: float) -> list[str]:
     """One algorithm with several passes and one with one pass that are stable at the step.
 
-    Those that reach furthest are tried first.
+    Those that reach furthest are tried first; the highest degree of li, which costs most, last.
     """
     found: dict[bool, str] = {}
-    for other in reversed(default_algorithms()):
+    for other in (*reversed(default_algorithms()), LI(degree=4)):
         repeats = "rollback" in other.needs
         if repeats in found or str(other) == str(algorithm):
             continue

@@ -84,12 +84,14 @@ def first_unstable_near(growth: GrowthOf, limit: float) -> float:
 
 
 def first_unstable(growth: GrowthOf, smallest: float, largest: float) -> float | None:
-    """First unstable step of a range [s], on the coarse scan alone; None if there is none.
+    """First unstable step of a range [s], on a coarse scan; None if there is none.
 
-    Many times cheaper than all bands; a narrow one below can be missed.
+    Many times cheaper than all bands; a narrow one can be missed, but not just below what is found.
     """
     found = _find_unstable(growth, smallest, _COARSE, largest)
-    return found if found in {None, smallest} else _crossing(growth, found / _COARSE, found)
+    if found in {None, smallest}:
+        return found
+    return first_unstable_near(growth, _crossing(growth, found / _COARSE, found))
 
 
 def _safe(growth: GrowthOf, step: float) -> Growth:

@@ -33,6 +33,10 @@ class EnergyReport:
     window: float
 
 
+_SHOWN = 0.005
+"""Smallest share that is shown."""
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """Why an algorithm is unstable at a step.
@@ -42,6 +46,8 @@ class Diagnosis:
         step: macro step [s].
         growth: of the fastest growing motion per macro step; 0.01 is 1 %.
         frequency: of that motion [Hz], at most half the rate of communication points.
+        sampled: a bond is faster than that: the motion may be a faster one, which shows at this
+            frequency at the communication points.
         bonds: names and shares, the largest first.
         remedies: one line each.
     """
@@ -50,15 +56,19 @@ class Diagnosis:
     step: float
     growth: float
     frequency: float
+    sampled: bool
     bonds: tuple[tuple[str, float], ...]
     remedies: tuple[str, ...]
 
     def lines(self) -> list[str]:
         """For people."""
-        shares = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in self.bonds[:3])
+        shares = ", ".join(
+            f"{name} {100.0 * share:.0f} %" for name, share in self.bonds[:3] if share > _SHOWN
+        )
+        seen = ", as seen at the communication points," if self.sampled else ""
         return [
-            f"{self.algorithm} at {self.step:.4g} s: a motion at {self.frequency:.0f} Hz grows by "
-            f"{100.0 * self.growth:.3g} % per step",
+            f"{self.algorithm} at {self.step:.4g} s: a motion at {self.frequency:.0f} Hz{seen} "
+            f"grows by {100.0 * self.growth:.3g} % per step",
             f"bonds: {shares}",
             *(f"({k}) {remedy}" for k, remedy in enumerate(self.remedies, 1)),
         ]
