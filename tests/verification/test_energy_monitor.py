@@ -170,6 +170,39 @@ def test_flags_around_the_limits(runs):
     assert not [s for s in stable if s.verdict is Verdict.UNSTABLE]
 
 
+@pytest.mark.parametrize(
+    ("zeta", "algorithm"),
+    [
+        (zeta, algorithm)
+        for zeta in (0.02, 0.1)
+        for algorithm in (GaussSeidel(2), Predict(), FixedPoint(2), FixedPoint(3), LI(2), LI(3))
+    ],
+    ids=str,
+)
+def test_two_rotors_are_flagged_beyond_the_limit_and_silent_below(zeta, algorithm):
+    """2 % to each side; below, until the motion has long died out to rounding."""
+    system = two_rotors(zeta, 3.0)
+    network, instances = linear_network(system)
+    frequency = highest_frequency(network, instances)
+    limit = unstable_bands(Amplification(network, instances, algorithm).growth, 1e-4, 4e-3)[0][0]
+    kicked = system.with_values({"left.speed": 1e-3})
+    below, beyond = (
+        run(kicked, algorithm, f * limit, 3000.0 * f * limit, frequency) for f in (0.98, 1.02)
+    )
+    assert below.energy.verdict is not Verdict.UNSTABLE
+    assert beyond.energy.verdict is Verdict.UNSTABLE
+
+
+def test_a_motion_that_died_out_is_left_alone():
+    """What rounding does in its place is neither growth nor false damping."""
+    kicked = two_rotors(0.02, 3.0).with_values({"left.speed": 1e-3})
+    found = run(kicked, GaussSeidel(2), 0.5 / 3000.0, 0.5, 3000.0)
+    torque = np.abs(found.values[:, found.names.index("coupling.flange_a.tau")])
+    assert torque[-100:].max() < 1e-12 * torque[:100].max()
+    assert found.energy.verdict is Verdict.FINE
+    assert found.energy.ratio is None
+
+
 @pytest.mark.slow
 def test_slow_growth_is_flagged_too():
     """On the rig also what grows by 0.1 to 0.5 % per step and becomes visible within 0.1 s."""
@@ -238,6 +271,29 @@ def test_shipped_scenes_are_left_alone(scene, algorithm):
     system = started(read_system("test_rig"), chosen)[0]
     found = run(system, algorithm, algorithm.start_step, min(chosen.t_end, 0.1), 14314.0)
     assert found.energy.verdict is not Verdict.UNSTABLE
+
+
+@pytest.mark.slow
+def test_a_flag_below_the_limit_under_load_is_no_false_alarm():
+    """Teeth that open at the start of a run-up have no stiffness: it then grows by 30 % per step.
+
+    The same step is stable under load; shorter ones are stable in the run-up too.
+    """
+    step = 209e-6
+    loaded = Amplification(*linear_network(rig()), FixedPoint(3)).growth(step)
+    assert loaded.radius <= 1.0 + GROWTH
+    assert run(rig(), FixedPoint(3), step, 0.1, 14314.0).energy.verdict is not Verdict.UNSTABLE
+    scene = read_scene(find_scene(find_system("test_rig"), "runup"))
+    system = started(read_system("test_rig"), scene)[0]
+    columns, _, alternating = accurate()
+    force = {}
+    for algorithm, h in ((LI(3), step / 5.0), (FixedPoint(3), 150e-6), (FixedPoint(3), step)):
+        found = run(system, algorithm, h, 0.1, 14314.0)
+        values = found.values[:, [found.names.index(name) for name in columns]]
+        force[h] = np.abs(values[found.time > 0.05]).max()
+        assert (found.energy.verdict is Verdict.UNSTABLE) == (h == step)
+    assert force[step] - force[step / 5.0] > VISIBLE * alternating
+    assert force[150e-6] - force[step / 5.0] < VISIBLE * alternating
 
 
 def test_nothing_is_said_without_dampers():

@@ -22,7 +22,7 @@ class EnergyReport:
         time: at which the verdict was reached [s]; None if fine.
         bond: element and force whose coupling added the most energy; None unless unstable.
         ratio: energy added by the coupling over energy taken by the dampers, in the last window;
-            None if the dampers took nothing, or if it is not finite.
+            None if the dampers took no more than rounding, or if it is not finite.
         window: length of the window [s].
     """
 

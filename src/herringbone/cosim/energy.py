@@ -22,6 +22,7 @@ from herringbone.cosim.connection import Connection
 from herringbone.cosim.energy_monitor import (
     INACCURATE_AT,
     NOTHING_WATCHED,
+    ROUNDED,
     SLICES_IN_WINDOW,
     UNSTABLE_AT,
     Watched,
@@ -183,7 +184,8 @@ class EnergyWatch:
             return None
         monitor, count = self.monitor, len(self._pairs)
         added, taken = float(monitor.sums[:count].sum()), float(monitor.sums[count])
-        ratio = added / taken if taken > 0.0 and math.isfinite(added) else None
+        moves = taken > monitor.sums[count + ROUNDED]
+        ratio = added / taken if moves and math.isfinite(added) else None
         window = self._window * self._step
         unstable, inaccurate = (float(monitor.clock[k]) for k in (UNSTABLE_AT, INACCURATE_AT))
         if not math.isnan(unstable):

@@ -10,11 +10,13 @@ slices of time seen; slices in a row beyond the bound of inaccuracy."""
 TIME, UNSTABLE_AT, INACCURATE_AT, LEAST = range(4)
 """Places in `EnergyMonitor.clock`: time seen [s]; times at which a flag was set [s], or NaN;
 smallest power of the dampers since the coupling added more than they take [W]."""
-COMMON, TOTAL, SPEED, SPEED_AT_END, ELASTIC, DRAG, DRAG_AT_END = range(7)
+COMMON, TOTAL, SPEED, SPEED_AT_END, ELASTIC, DRAG, DRAG_AT_END, TERMS = range(8)
 """Rows of `EnergyMonitor.state`, by pair: mean velocity that it has in common with the others of
 its element; sum of velocities in this window; velocity less its common mean, at the start and at
 the end of the step; elastic force at the start; what the dampers take of the force, at the start
-and at the end."""
+and at the end; sum of the magnitudes of the terms that make the force."""
+LENGTH, ROUNDED = 1, 2
+"""Places in `EnergyMonitor.now` and `sums` after what the dampers take."""
 SAMPLES_IN_WINDOW = 25
 """Macro steps of a window that are accounted for, if it has so many; five in each period of the
 fastest bond. Energies per step are quadratic in the motion: no sign is lost between samples."""
@@ -85,8 +87,8 @@ class EnergyMonitor(NamedTuple):
         rigid: projector of velocities onto those that cause no force, (pairs, pairs).
         rule: integration over a step, of an iterated algorithm.
         slice: length of a slice of time [s].
-        slices: ring of energies in slices of time, (slices, pairs + 2): added by each pair [J];
-            taken by the dampers [J]; length [s].
+        slices: ring of energies in slices of time, (slices, pairs + 3): added by each pair [J];
+            taken by the dampers [J]; length [s]; work that rounding of the forces can do [J].
         now: of the present slice, likewise.
         sums: of `slices`, likewise.
         at_flag: sums when instability was flagged.
@@ -181,11 +183,11 @@ def energy_monitor(
         rigid_motion(stiffness, damping),
         rule,
         window / SLICES_IN_WINDOW,
-        np.zeros((SLICES_IN_WINDOW, count + 2)),
-        np.zeros(count + 2),
-        np.zeros(count + 2),
-        np.zeros(count + 2),
-        np.zeros((7, count)),
+        np.zeros((SLICES_IN_WINDOW, count + 3)),
+        np.zeros(count + 3),
+        np.zeros(count + 3),
+        np.zeros(count + 3),
+        np.zeros((8, count)),
         np.zeros((3, count)),
         np.zeros((2, count)),
         np.zeros(count),

@@ -95,5 +95,5 @@ def watch_nodes(monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, h:
     for i in range(monitor.force.size):
         elastic = end[monitor.force[i]] + state[DRAG_AT_END, i]
         work = _work(monitor, nodes, trial, i, 0.5 * (state[ELASTIC, i] + elastic), h)
-        finish_pair(monitor, i, elastic, work, monitor.taken[0, i])
+        finish_pair(monitor, i, elastic, work, monitor.taken[0, i], h)
     end_step(monitor, h)
