@@ -58,7 +58,7 @@ def test_missing_file(tmp_path):
 
 
 def test_folder(tmp_path):
-    refused("there is no file", tmp_path)
+    refused("is a folder; give an .fmu file", tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", b"not a zip", b"PK\x03\x04 cut"])
