@@ -92,7 +92,7 @@ def measured(number, algorithm, step, expected, frequency):
     parts = [InProcessPart(i) for i in instances]
     count = int(np.clip(FOLDS / abs(expected), FEWEST, MOST))
     run = simulate(rig(number), parts, algorithm, make_grid(count * step, step, step))
-    assert run.outcome.completed
+    assert run.outcome.reached_end
     seats = [i for i, n in enumerate(run.names) if n.startswith(SEATS) and ".v_" in n]
     fast = np.diff(run.values[:, seats], n=2, axis=0)
     window, half = count // 4, count // 2
