@@ -63,6 +63,15 @@ def test_other_resources_make_another_fmu(tmp_path):
     assert registered_model("bench_controller").key == model.key
 
 
+def test_library_has_the_functions_of_its_version_alone(native_fmus, fmi3_fmus):
+    for version, other, fmus in ((2, 3, native_fmus), (3, 2, fmi3_fmus)):
+        with zipfile.ZipFile(fmus["drive_motor"]) as archive:
+            (name,) = (n for n in archive.namelist() if n.endswith(OWN.extension))
+            data = archive.read(name)
+        assert f"fmi{version}DoStep".encode() in data
+        assert f"fmi{other}DoStep".encode() not in data
+
+
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_library_needs_libc_alone(name, native_fmus, tmp_path):
     file = library(native_fmus[name], tmp_path)

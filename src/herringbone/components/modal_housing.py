@@ -112,7 +112,8 @@ _d = Declaration(
 )
 
 _START = _d.index[f"start.{_FORCES[0]}"]
-_S, _V, _A = (_d.indices(*(f"{seat}.{q}_{axis}" for seat, axis in _DOFS)) for q in "sva")
+_S, _V, _A = (_d.index[f"{_DOFS[0][0]}.{q}_{_DOFS[0][1]}"] for q in "sva")
+"""Motion of the first degree of freedom; the next ones follow, 2 STRIDE apart, accelerations 1."""
 _FIRST_INPUT, _FIRST_OUTPUT, _OUTPUTS = _d.first_input, _d.first_output, len(_d.node_outputs)
 _DEGREE = _d.index["interface_degree"]
 _COUNT = _d.first_table
@@ -185,9 +186,9 @@ def _seats(b: np.ndarray) -> None:
         sums[0], sums[1], sums[2], sums[3] = s_0, s_1, s_2, s_3
         sums[4], sums[5], sums[6], sums[7] = v_0, v_1, v_2, v_3
         sums[8], sums[9], sums[10], sums[11] = a_0, a_1, a_2, a_3
-        b[_S[k]] = (sums[0] + sums[2]) + (sums[1] + sums[3])
-        b[_V[k]] = (sums[4] + sums[6]) + (sums[5] + sums[7])
-        b[_A[k]] = (sums[8] + sums[10]) + (sums[9] + sums[11])
+        b[_S + 2 * STRIDE * k] = (sums[0] + sums[2]) + (sums[1] + sums[3])
+        b[_V + 2 * STRIDE * k] = (sums[4] + sums[6]) + (sums[5] + sums[7])
+        b[_A + k] = (sums[8] + sums[10]) + (sums[9] + sums[11])
 
 
 @kernel

@@ -22,10 +22,10 @@ def _kernel_cache() -> Iterator[None]:
     """Cache what is decorated inside in a folder that is named by the content of all sources.
 
     numba notices a change of the file that holds a cached function, but not of the files that hold
-    its callees.
+    its callees. Nor does it tell apart how hard it was asked to optimise.
     """
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder("kernels"))
+    config.CACHE_DIR = str(cache_folder("kernels") / f"optimised-{int(config.OPT)}")
     try:
         yield
     finally:

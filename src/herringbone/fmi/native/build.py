@@ -23,6 +23,11 @@ _ENVIRONMENT = {
     "NUMBA_DISABLE_INTEL_SVML": "1",
 }
 """What numba must be asked for before it is imported: code for any processor."""
+_KINDS: dict[str, dict[str, str]] = {
+    "fast": {},
+    "small": {"NUMBA_OPT": "1", "NUMBA_LOOP_VECTORIZE": "0", "NUMBA_SLP_VECTORIZE": "0"},
+}
+"""What else it is asked for: see `objects`. Unrolled loops cannot be rolled up again."""
 VERSIONS = (2, 3)
 """FMI versions that native FMUs are built for."""
 
@@ -77,12 +82,12 @@ def build_models(
         for model in models
     }
     missing = [model for model in models if not fmus[model.name].is_file()]
-    _make_libraries(missing, chosen)
+    _make_libraries(missing, chosen, fmi)
     for model in missing:
         fmu = fmus[model.name]
         fmu.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=fmu.parent) as scratch:
-            libraries = {platform: _library(model, platform) for platform in chosen}
+            libraries = {platform: _library(model, platform, fmi) for platform in chosen}
             pack_native(model, libraries, fmi, Path(scratch) / fmu.name).replace(fmu)
     return fmus
 
@@ -91,10 +96,10 @@ def _folder(model: Model) -> Path:
     return cache_folder("native") / f"{model.name}-{model.key}"
 
 
-def _library(model: Model, platform: Platform) -> Path:
-    """Where the library of a model lies in the cache."""
+def _library(model: Model, platform: Platform, fmi: int) -> Path:
+    """Where the library of a model for an FMI version lies in the cache."""
     compiler = require_compiler(platform)
-    folder = _folder(model) / f"{platform.name}-{compiler.name}"
+    folder = _folder(model) / f"{platform.name}-{compiler.name}-fmi{fmi}"
     return folder / f"{model.name}.{platform.extension}"
 
 
@@ -108,38 +113,62 @@ def _chosen(platforms: Sequence[str]) -> list[Platform]:
     return [own]
 
 
-def _make_libraries(models: list[Model], platforms: list[Platform]) -> None:
-    """Make the libraries that are not in the cache."""
-    missing = [p for p in platforms if any(not _library(m, p).is_file() for m in models)]
-    wanted = [m for m in models if any(not _library(m, p).is_file() for p in platforms)]
+def _kernels(model: Model, platform: Platform) -> Path:
+    """Where the object code of a model's kernels lies in the cache; FMI versions share it."""
+    return _folder(model) / f"{platform.name}.o"
+
+
+def _make_kernels(models: list[Model], platforms: list[Platform]) -> None:
+    """Make the object code that is not in the cache."""
+    missing = [p for p in platforms if any(not _kernels(m, p).is_file() for m in models)]
+    wanted = [m for m in models if any(not _kernels(m, p).is_file() for p in platforms)]
     if not wanted:
         return
     with tempfile.TemporaryDirectory(dir=cache_folder("native")) as scratch:
         folder = Path(scratch)
         _compile_kernels(folder, missing, wanted)
         for model in wanted:
+            for platform in missing:
+                file = folder / platform.name / f"{model.name}.o"
+                check_object(file.read_bytes(), platform, model.name)
+                target = _kernels(model, platform)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                file.replace(target)
+
+
+def _make_libraries(models: list[Model], platforms: list[Platform], fmi: int) -> None:
+    """Make the libraries that are not in the cache."""
+    missing = [p for p in platforms if any(not _library(m, p, fmi).is_file() for m in models)]
+    wanted = [m for m in models if any(not _library(m, p, fmi).is_file() for p in platforms)]
+    _make_kernels(wanted, missing)
+    with tempfile.TemporaryDirectory(dir=cache_folder("native")) as scratch:
+        folder = Path(scratch)
+        for model in wanted:
             description = folder / f"{model.name}.c"
             description.write_text(component_source(model.states), encoding="ascii")
             for platform in missing:
-                kernels = folder / platform.name / f"{model.name}.o"
-                check_object(kernels.read_bytes(), platform, model.name)
-                target = _library(model, platform)
+                kernels = _kernels(model, platform)
+                target = _library(model, platform, fmi)
                 library = folder / target.name
                 compiler = require_compiler(platform)
-                compile_library(compiler, platform, description, kernels, library)
+                compile_library(compiler, platform, description, kernels, library, fmi=fmi)
                 check_library(library.read_bytes(), platform, model.name)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 library.replace(target)
 
 
 def _compile_kernels(folder: Path, platforms: list[Platform], models: list[Model]) -> None:
-    command = [
-        sys.executable, "-m", "herringbone.fmi.native.objects", str(folder),
-        ",".join(p.name for p in platforms), models[0].factory, *(m.argument for m in models),
-    ]  # fmt: skip
-    run = subprocess.run(
-        command, capture_output=True, text=True, check=False, env={**os.environ, **_ENVIRONMENT}
-    )
+    for kind, asked in _KINDS.items():
+        command = [
+            sys.executable, "-m", "herringbone.fmi.native.objects", kind, str(folder),
+            ",".join(p.name for p in platforms), models[0].factory, *(m.argument for m in models),
+        ]  # fmt: skip
+        environment = {**os.environ, **_ENVIRONMENT, **asked}
+        run = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+        _refuse_failure(run, models)
+
+
+def _refuse_failure(run: subprocess.CompletedProcess[str], models: list[Model]) -> None:
     if run.returncode:
         names = ", ".join(model.name for model in models)
         lines = run.stderr.splitlines()

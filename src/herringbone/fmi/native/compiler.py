@@ -17,6 +17,7 @@ SOURCES = Path(__file__).parent
 _FLAGS = (
     "-std=c11", "-Os", "-g0", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off",
     "-ffunction-sections", "-fdata-sections", "-fno-stack-protector", "-U_FORTIFY_SOURCE",
+    "-fomit-frame-pointer", "-fno-ident",
 )  # fmt: skip
 _NO_UNWINDING = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")  # nothing is thrown
 _SYSTEM = {
@@ -68,7 +69,13 @@ def require_compiler(platform: Platform) -> Compiler:
 
 
 def compile_library(
-    compiler: Compiler, platform: Platform, description: Path, kernels: Path, library: Path
+    compiler: Compiler,
+    platform: Platform,
+    description: Path,
+    kernels: Path,
+    library: Path,
+    *,
+    fmi: int = 2,
 ) -> None:
     """Compile the wrapper with a component's description, and link it with the kernels.
 
@@ -78,6 +85,7 @@ def compile_library(
         description: C file from `component_source`.
         kernels: object file.
         library: file that is written.
+        fmi: FMI version, 2 or 3; the functions of the other one are left out.
 
     Raises:
         FmuError: the compiler failed.
@@ -88,12 +96,17 @@ def compile_library(
         link.append(f"-Wl,-install_name,@rpath/{library.name}")
     command = [
         *compiler.command, "-shared", "-s", *_FLAGS, f"-I{SOURCES}", f"-I{headers}",
-        *map(str, sorted(SOURCES.glob("*.c"))), str(description), str(kernels),
+        *map(str, _sources(fmi)), str(description), str(kernels),
         "-o", str(library), *link,
     ]  # fmt: skip
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode:
         raise FmuError(f"{compiler.name} for {platform.name} failed: {_reason(run.stderr)}")
+
+
+def _sources(fmi: int) -> list[Path]:
+    other = {2: "fmi3", 3: "fmi2"}[fmi]
+    return [file for file in sorted(SOURCES.glob("*.c")) if not file.name.startswith(other)]
 
 
 def _reason(said: str) -> str:

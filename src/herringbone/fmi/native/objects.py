@@ -1,17 +1,18 @@
-"""Object code of kernels: `python -m herringbone.fmi.native.objects FOLDER PLATFORMS FACTORY ...`.
+"""Object code of kernels: `python -m ...native.objects KIND FOLDER PLATFORMS FACTORY ...`.
 
 numba compiles each kernel behind a C signature; its LLVM code is taken, given another target, and
 optimised with every function but the entry points internal. LLVM then sees that no kernel ever
 reports an error, and drops all of numba's error path: nothing of Python remains. That is checked,
 see `symbols`.
 
-It runs in a process of its own, because numba must be asked for a generic processor before it is
-imported: see `build`.
+It runs in processes of their own, because numba must be asked for a generic processor before it is
+imported, and before that how hard it shall optimise: first with KIND `fast`, for the entry points
+that a simulation calls all the time, then with `small` for the others; see `build`.
 """
 
 import re
 import sys
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -30,15 +31,16 @@ _OPTIMISATION = 3
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
 _FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators"}
-"""Entry points that a simulation calls all the time; each of their functions is made for speed."""
+"""Entry points that a simulation calls all the time; what they call is made for speed."""
+_ANY_NAME = "k"  # LLVM appends a number
 _UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
 _TIME = types.float64
 
 
-def entry_points(of: Component) -> dict[str, CFunc]:
-    """The kernels of a component behind the C signatures of component.h, by symbol.
+def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
+    """The fast or the other kernels of a component behind their C signatures, by symbol.
 
     The optional ones, `start`, `load` and `indicators`, only if the component has them.
     """
@@ -93,24 +95,18 @@ def entry_points(of: Component) -> dict[str, CFunc]:
     return {
         symbol: cfunc(signature, error_model="numpy")(function)
         for symbol, (signature, function) in found.items()
+        if (symbol in _FAST) == fast
     }
 
 
 def _linked(kernels: dict[str, CFunc], target: llvm.TargetMachine, triple: str) -> llvm.ModuleRef:
-    """LLVM code of all entry points for a target; what they share is there once.
-
-    What no step needs is marked to be made small rather than fast.
-    """
-    whole, fast = None, set[str]()
-    for symbol, compiled in sorted(kernels.items(), key=lambda item: item[0] not in _FAST):
+    """LLVM code of entry points for a target; what they share is there once."""
+    whole = None
+    for symbol, compiled in kernels.items():
         module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
         module.triple, module.data_layout = triple, str(target.target_data)
         entry = module.get_function(compiled.native_name)
         entry.name, entry.linkage, entry.visibility = symbol, "external", "hidden"
-        if symbol in _FAST:
-            fast |= {function.name for function in module.functions}
-        else:
-            _make_small(module, fast)
         if whole is None:
             whole = module
         else:
@@ -118,54 +114,74 @@ def _linked(kernels: dict[str, CFunc], target: llvm.TargetMachine, triple: str) 
     return whole
 
 
-def _make_small(module: llvm.ModuleRef, fast: Container[str]) -> None:
-    """Let all functions but the fast ones be small."""
+def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:
+    """Let nothing but the entry points be seen from outside.
+
+    Their long names are dropped, as libraries for macOS keep them.
+    """
+    for item in (*module.functions, *module.global_variables):
+        if not item.is_declaration and item.name not in entries:
+            item.linkage, item.name = "internal", _ANY_NAME
+
+
+def _make_small(module: llvm.ModuleRef) -> None:
     for function in module.functions:
-        if not function.is_declaration and function.name not in fast:
+        if not function.is_declaration:
             function.add_function_attribute("optsize")
             function.add_function_attribute("minsize")
 
 
-def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:
-    """Let nothing but the entry points be seen from outside."""
-    for item in (*module.functions, *module.global_variables):
-        if not item.is_declaration and item.name not in entries:
-            item.linkage = "internal"
-
-
-def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
+def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine, *, fast: bool) -> None:
     options = llvm.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
-    options.slp_vectorization = True
+    options.slp_vectorization = options.loop_vectorization = options.loop_unrolling = fast
     builder = llvm.create_pass_builder(target, options)
     for _ in range(_PASSES):
         builder.getModulePassManager().run(module, builder)
 
 
-def object_code(kernels: dict[str, CFunc], platform: Platform) -> bytes:
-    """Object file with all entry points for a platform."""
-    target = llvm.Target.from_triple(platform.triple).create_target_machine(
+def _target(platform: Platform) -> llvm.TargetMachine:
+    return llvm.Target.from_triple(platform.triple).create_target_machine(
         cpu=platform.cpu, features="", opt=_OPTIMISATION, reloc="pic", codemodel="default"
     )
-    whole = _linked(kernels, target, platform.triple)
-    _internalise(whole, kernels)
-    whole.verify()
-    _optimise(whole, target)
-    return target.emit_object(whole)
 
 
-def main(folder: Path, platforms: list[Platform], factory: str, arguments: list[str]) -> None:
-    """Write FOLDER/PLATFORM/COMPONENT.o for the components that a factory makes."""
+def _optimised(kernels: dict[str, CFunc], platform: Platform, *, fast: bool) -> llvm.ModuleRef:
+    """LLVM code of entry points for a platform."""
+    target = _target(platform)
+    module = _linked(kernels, target, platform.triple)
+    _internalise(module, kernels)
+    if not fast:
+        _make_small(module)
+    module.verify()
+    _optimise(module, target, fast=fast)
+    return module
+
+
+def main(
+    kind: str, folder: Path, platforms: list[Platform], factory: str, arguments: list[str]
+) -> None:
+    """Write FOLDER/PLATFORM/COMPONENT for the components that a factory makes.
+
+    That is LLVM code (.bc) of the fast entry points or, with it, object code (.o) of all.
+    """
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
+    fast = kind == "fast"
     for argument in arguments:
         component = made_component(factory, argument)
-        kernels = entry_points(component)
+        kernels = entry_points(component, fast=fast)
         for platform in platforms:
-            file = folder / platform.name / f"{component.name}.o"
+            module = _optimised(kernels, platform, fast=fast)
+            file = folder / platform.name / f"{component.name}.bc"
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(object_code(kernels, platform))
+            if fast:
+                file.write_bytes(module.as_bitcode())
+            else:
+                whole = llvm.parse_bitcode(file.read_bytes())
+                whole.link_in(module)
+                file.with_suffix(".o").write_bytes(_target(platform).emit_object(whole))
 
 
 if __name__ == "__main__":
-    wanted = [platform_of(name) for name in sys.argv[2].split(",")]
-    main(Path(sys.argv[1]), wanted, sys.argv[3], sys.argv[4:])
+    wanted = [platform_of(name) for name in sys.argv[3].split(",")]
+    main(sys.argv[1], Path(sys.argv[2]), wanted, sys.argv[4], sys.argv[5:])
