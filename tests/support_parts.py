@@ -205,6 +205,9 @@ class CallbackPart:
         """Compute the outputs of the start."""
         self.out()
 
+    def failed(self):
+        """Nothing follows from it."""
+
     def messages(self):
         """Nothing is logged."""
         return []

@@ -87,7 +87,7 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
     declaration = _declaration(inside, network, instances, open_inputs, layout)
     places = _block_map(declaration, instances, layout.block_first)
     source = composite_source(
-        twin_source(inside.name, network, instances, layout),
+        twin_source(network, instances, layout),
         instances,
         layout.block_first,
         layout.state_first,
@@ -103,6 +103,7 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         indicators=module.system_indicators,
         indicator_count=sum(i.component.indicator_count for i in instances),
         nominals=_nominals(declaration, instances, layout.block_first),
+        longest_step=steppers.longest_step(declaration, MICRO_STEP),
     )
     return Composite(component, dict(_resources(instances)))
 
@@ -170,7 +171,7 @@ def _declaration(
             Text(
                 f"{i.name}.{t.name}",
                 t.description,
-                f"{i.name}/{Path(i.texts[t.name]).name}",
+                _packed_name(i, t.name),
                 t.columns,
             )
             for i in instances
@@ -286,5 +287,10 @@ def _loader(
 def _resources(instances: list[Instance]) -> Iterator[tuple[str, Path]]:
     for instance in instances:
         folder = resources_folder(instance.component.name)
-        for text in instance.texts.values():
-            yield f"{instance.name}/{Path(text).name}", folder / text
+        for name, text in instance.texts.items():
+            yield _packed_name(instance, name), folder / text
+
+
+def _packed_name(instance: Instance, text: str) -> str:
+    """Place of a resource file in the FMU, whatever the file was called."""
+    return f"{instance.name}/{text}.csv"

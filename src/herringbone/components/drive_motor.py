@@ -94,4 +94,10 @@ def _guess(block: np.ndarray) -> None:
     block[_SPEED] = block[_REFERENCE] = block[_SETPOINT]
 
 
-DRIVE_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__, guess=_guess)
+DRIVE_MOTOR = Component(
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    guess=_guess,
+    longest_step=steppers.longest_step(_d, "micro_step"),
+)

@@ -377,4 +377,5 @@ GEAR_MESH = Component(
     guess=_guess,
     indicators=_indicators,
     indicator_count=4,
+    longest_step=steppers.longest_step(_d, "micro_step"),
 )

@@ -1,6 +1,7 @@
 """In-process participant: an instance of a component behind the addresses of FMI functions."""
 
 import ctypes
+import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 
@@ -15,8 +16,9 @@ from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality
 from herringbone.kernels import fmi_calls
 
-_DO_STEP = '''"""Address of fmi2DoStep of {name}; generated, not to be edited."""
+_DO_STEP = '''"""Address of a component's fmi2DoStep; generated, not to be edited."""
 
+import numpy as np
 from numba import carray, types
 
 from herringbone.components.registry import COMPONENTS
@@ -29,7 +31,7 @@ step = COMPONENTS["{name}"].kernels.step
 @c_function(DO_STEP)
 def do_step(memory, time, step_size, no_set_before):
     whole = carray(memory, {block} + {work})
-    if step(whole[:{block}], whole[{block}:], time, step_size) == OK:
+    if 0.0 <= step_size < np.inf and step(whole[:{block}], whole[{block}:], time, step_size) == OK:
         return types.int32(OK)
     return types.int32(DISCARD)
 '''
@@ -40,7 +42,7 @@ def _do_step_address(component: str) -> int:
     """Address of a component's fmi2DoStep; a failed step is a discarded one."""
     declaration = COMPONENTS[component].declaration
     source = _DO_STEP.format(name=component, block=declaration.size, work=max(declaration.work, 1))
-    return load_generated(f"step_{component}", source).do_step.address
+    return load_generated("step", source).do_step.address
 
 
 @cache
@@ -138,10 +140,16 @@ class InProcessPart:
         self._refresh()
         self._start_time = None
 
+    def failed(self) -> None:
+        """Nothing to be told: it has nothing to free."""
+
     def messages(self) -> list[str]:
-        """What went wrong, if something did."""
+        """What went wrong, if something did; else what it takes."""
         found = self.instance.first_not_finite()
-        return [f"{self.name}.{found[0]} = {found[1]}"] if found else []
+        longest = self.instance.longest_step()
+        if found:
+            return [f"{self.name}.{found[0]} = {found[1]}"]
+        return [] if math.isinf(longest) else [f"it takes steps of at most {longest:g} s"]
 
     def close(self) -> None:
         """Nothing to free."""

@@ -76,4 +76,9 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
 
 
-LOAD_MOTOR = Component(_d, Kernels(_step, _rhs, _out), __doc__)
+LOAD_MOTOR = Component(
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    longest_step=steppers.longest_step(_d, "micro_step"),
+)

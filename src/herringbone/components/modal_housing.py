@@ -47,12 +47,14 @@ from herringbone.core import (
 from herringbone.kernels import modal
 from herringbone.kernels.jit import kernel
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
-from herringbone.kernels.steppers import NOT_FINITE
+from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG
 
 MODES = 64
 """Most modes that the component takes."""
 _USUAL_FORCE = 1e3
 """Force [N] along each degree of freedom, for the usual sizes of the modal coordinates."""
+_LONGEST_STEP = 1e6
+"""Longest step [s] of a housing whose modes would all take more."""
 _SLOWEST, _SMALLEST_SHAPE = 2.0 * math.pi * 10.0, 1e-6
 """What rigid modes [rad/s], and modes that do not move the seats [kg^-1/2], count as there."""
 _DOFS = tuple((seat, axis) for seat in HALVES for axis in "xyz")
@@ -200,12 +202,27 @@ def _out(b: np.ndarray, t: float) -> None:
 
 
 @kernel
+def _longest_step(b: np.ndarray) -> float:
+    """Step [s] in which no mode turns by more than `modal.LONGEST_PHASE`."""
+    longest = _LONGEST_STEP
+    for i in range(_count(b)):
+        w = b[_OMEGA + i]
+        longest = min(longest, modal.LONGEST_PHASE / max(w + 2.0 * b[_ZETA + i] * w, _SLOWEST))
+    return longest
+
+
+@kernel
 def _propagators(b: np.ndarray, w: np.ndarray, h: float) -> int:
-    """Place in the work space of the propagators of a step; the oldest ones make room."""
+    """Place in the work space of the propagators of a step; the oldest ones make room.
+
+    0 if the step is too long for them.
+    """
     filled = int(w[_FILLED])
     for k in range(min(filled, STEPS)):
         if w[_STEP_OF + k] == h:
             return _PROPAGATORS + k * _SLOT
+    if not h <= _longest_step(b):
+        return 0
     slot = filled % STEPS
     at = _PROPAGATORS + slot * _SLOT
     scratch = w[_SCRATCH:_POLYNOMIALS]
@@ -250,6 +267,8 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     degree = int(b[_DEGREE])
     intervals = max(degree, 1)
     at = _propagators(b, w, h / intervals)
+    if at == 0:
+        return TOO_LONG
     phi, forces = w[at : at + _SLOT], w[_POLYNOMIALS:]
     for node in range(1, intervals + 1):
         for k in range(_N):
@@ -305,4 +324,5 @@ MODAL_HOUSING = Component(
     load=_LOADER,
     start=_start,
     nominals=_nominals,
+    longest_step=_longest_step,
 )

@@ -159,10 +159,21 @@ _advance = sampler_stepper(
 
 
 @kernel
-def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+def _micro_step(b: np.ndarray) -> float:
     highest = max(b[_HIGH_PASS], b[_LOW_PASS], ANTI_ALIAS_CORNER * b[_RATE])
-    micro_step = min(b[_MICRO_STEP], 1.0 / (_STEPS_PER_PERIOD * highest))
-    return _advance(b, w, t, h, micro_step, int(b[_DEGREE]))
+    return min(b[_MICRO_STEP], 1.0 / (_STEPS_PER_PERIOD * highest))
 
 
-VELOCITY_SENSOR = Component(_d, Kernels(_step, _rhs, _out), __doc__, samples=True)
+@kernel
+def _longest_step(b: np.ndarray) -> float:
+    return steppers.MOST_MICRO_STEPS * _micro_step(b)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, w, t, h, _micro_step(b), int(b[_DEGREE]))
+
+
+VELOCITY_SENSOR = Component(
+    _d, Kernels(_step, _rhs, _out), __doc__, samples=True, longest_step=_longest_step
+)

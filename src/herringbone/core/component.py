@@ -1,5 +1,6 @@
 """A component: its declaration bound to the kernels that compute it."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,8 @@ from herringbone.core.declaration import Declaration
 class Kernels(NamedTuple):
     """The three compiled functions of a component, on its block `b` and work space `w`.
 
-    step(b, w, t, h) -> int: advance from t to t + h [s], any h >= 0; 0 is success.
+    step(b, w, t, h) -> int: advance from t to t + h [s], any 0 <= h <= `Component.longest_step`;
+        0 is success. A longer step is refused, and nothing is changed.
     rhs(b, t, dx): write the derivatives of all states.
     out(b, t): write all outputs from states and inputs.
     """
@@ -37,6 +39,12 @@ def unchanged(block: np.ndarray) -> None:
     del block
 
 
+def unbounded(block: np.ndarray) -> float:
+    """The `longest_step` of components that take any."""
+    del block
+    return math.inf
+
+
 @dataclass(frozen=True)
 class Component:
     """A component that can be instantiated.
@@ -58,6 +66,8 @@ class Component:
         nominals: sizes (hidden_states,) that the elements of the state vectors usually have, from
             the tables of a block; None: 1. Integrators scale their tolerance by them.
         samples: its step also takes samples, which `rhs` and `out` do not show.
+        longest_step: the longest macro step [s] that a block takes in one call, so that every call
+            ends soon; a kernel, or `unbounded`.
     """
 
     declaration: Declaration
@@ -71,6 +81,7 @@ class Component:
     indicator_count: int = 0
     nominals: Callable[[np.ndarray], np.ndarray] | None = None
     samples: bool = False
+    longest_step: Callable[[np.ndarray], float] = unbounded
 
     @property
     def name(self) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 
 from herringbone.core.component import Component
 from herringbone.core.errors import ParameterError, ResourceError
+from herringbone.core.files import is_file
 from herringbone.core.paths import resources_folder
 from herringbone.core.units import quantity
 from herringbone.core.variable import NODES, Causality, Variable
@@ -89,7 +90,7 @@ class Instance:
 
     def _resource(self, name: str, text: str) -> Path:
         file = Path(text) if Path(text).is_absolute() else self.resources / text
-        if not file.is_file():
+        if not is_file(file):
             raise ResourceError(
                 f"{self.name}.{name} = '{text}': there is no file {file}; "
                 f"give an absolute path or a name in {self.resources}"
@@ -113,8 +114,12 @@ class Instance:
         signals[:, 1:] = signals[:, :1]
 
     def step(self, time: float, step_size: float) -> int:
-        """Advance the block; 0 is success."""
+        """Advance the block; 0 is success. The step must be 0 to `longest_step`."""
         return self.component.kernels.step(self.block, self.work, float(time), float(step_size))
+
+    def longest_step(self) -> float:
+        """The longest step [s] of one call, with the present parameters."""
+        return float(self.component.longest_step(self.block))
 
     def first_not_finite(self) -> tuple[str, float] | None:
         """Name and value of the first variable that is NaN or infinite, if any."""

@@ -85,11 +85,14 @@ class Part(Protocol):
     def exit_initialization(self) -> None:
         """Go to step mode; raises HerringboneError if the part refuses."""
 
+    def failed(self) -> None:
+        """A step of the part failed, so that FMI allows nothing but to free it."""
+
     def messages(self) -> list[str]:
         """Messages that the part logged since the last call."""
 
     def close(self) -> None:
-        """Terminate and free the part."""
+        """Terminate the part, if it was initialised and has not failed, and free it."""
 
 
 @contextmanager

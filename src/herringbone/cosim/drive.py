@@ -69,6 +69,7 @@ def drive(
     values = np.ascontiguousarray(records, dtype=float)
     done = _drive(addresses, references(inputs), values, references(outputs), found, step)
     if done < len(records):
+        part.failed()
         said = "; ".join(part.messages()) or "no message"
         raise FmuError(f"{part.name} fails at {max(done, 0) * step:g} s: {said}")
     if not np.isfinite(found).all():

@@ -88,7 +88,7 @@ class Fmu2Part(FmuPart):
         self.slave.enterInitializationMode()
 
     def close(self) -> None:
-        """Free the instance, unless it has failed for good, and remove the extracted files."""
+        """Terminate and free the instance; see `FmuPart.close`."""
         super().close()
         _logs.pop(self._key, None)
 

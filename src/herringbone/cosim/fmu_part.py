@@ -1,5 +1,6 @@
 """An FMU as participant: what FMUs of all FMI versions share."""
 
+import contextlib
 import ctypes
 import math
 import shutil
@@ -32,6 +33,7 @@ class FmuPart(ABC):
 
     def __init__(self, name: str, file: Path, model: ModelDescription | None = None) -> None:
         self.name, self.file = name, file
+        self._running = False
         self.model = model or read_fmu(file)
         self.variables = read_variables(self.model)
         self._log = FmuLog()
@@ -134,13 +136,22 @@ class FmuPart(ABC):
             self.slave.exitInitializationMode()
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+        self._running = True
+
+    def failed(self) -> None:
+        """A step failed: FMI then allows no call but fmi2FreeInstance."""
+        self._running = False
 
     def messages(self) -> list[str]:
         """Warnings and errors logged since the last call, each on one line and once."""
         return self._log.take()
 
     def close(self) -> None:
-        """Free the instance, unless it has failed for good, and remove the extracted files."""
+        """Terminate and free the instance, unless it has failed, and remove the extracted files."""
+        if self._running and not self._log.fatal:
+            self._running = False
+            with contextlib.suppress(FMICallException):  # its results are there, and stay
+                self.slave.terminate()
         if not self._log.fatal:
             self.slave.freeInstance()
         shutil.rmtree(self._folder, ignore_errors=True)

@@ -78,6 +78,7 @@ class Host(_SteppedPart, Fmu2Part):
         try:
             self.slave.doStep(time, step_size)
         except FMICallException as error:
+            self.failed()
             raise FmuError(self._refusal(f"{self.name} does not step", error)) from error
 
     def save(self) -> c_void_p:
@@ -109,6 +110,7 @@ class Host3(_SteppedPart, Fmu3Part):
         try:
             _, terminate, early, reached = self.slave.doStep(time, step_size)
         except FMICallException as error:
+            self.failed()
             raise FmuError(self._refusal(f"{self.name} does not step", error)) from error
         if terminate or early:
             what = "asks to end the simulation" if terminate else "ended its step early"

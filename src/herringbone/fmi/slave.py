@@ -140,6 +140,11 @@ class ComponentSlave(GuardedSlave):
             self._fail(f"{self.instance_name}: doStep before the end of initialisation")
         elif not 0.0 <= step_size < math.inf:
             self._fail(f"{self.instance_name}: step size {step_size} s; it must be 0 or positive")
+        elif step_size > (longest := self._instance.longest_step()):
+            self._fail(
+                f"{self.instance_name}: step size {step_size:g} s; one call takes at most "
+                f"{longest:g} s"
+            )
         else:
             name, value = self._instance.first_not_finite() or ("result", math.nan)
             unit = next((f" {v.unit}" for v in self._reals.values() if v.name == name), "")

@@ -20,6 +20,10 @@ PROPAGATOR = 4 + 2 * DEGREES
 _N = 2 + DEGREES
 SCRATCH_SIZE = 3 * _N * _N
 _TERMS = 16
+SHORTEST_STEP = 1e-300
+"""Step [s] below which 1 / h may overflow; what moves meanwhile is far below rounding."""
+LONGEST_PHASE = 1e9
+"""Phase [rad] of one step up to which rounding leaves the phase within 1e-6 rad."""
 
 
 @kernel
@@ -40,12 +44,13 @@ def propagator(w: float, zeta: float, h: float, out: np.ndarray, at: int, s: np.
     Args:
         w: natural angular frequency [rad/s], >= 0.
         zeta: damping ratio, >= 0.
-        h: step [s], >= 0.
+        h: step [s], >= 0 and at most LONGEST_PHASE / (w + 2 zeta w); below SHORTEST_STEP nothing
+            moves.
         s: scratch (SCRATCH_SIZE long).
     """
     for i in range(PROPAGATOR):
         out[at + i] = 0.0
-    if h == 0.0:
+    if h < SHORTEST_STEP:
         out[at] = out[at + 3] = 1.0
         return
     # The velocity is scaled so that both states have the same size.

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.core.declaration import Declaration
 from herringbone.kernels.jit import inner
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
-from herringbone.kernels.steppers import body_work
+from herringbone.kernels.steppers import MOST_MICRO_STEPS, TOO_LONG, body_work
 
 _EARLY = 1e-6
 """A sample this share of a period behind the end of a macro step still belongs to it."""
@@ -40,6 +40,7 @@ def sampler_stepper(
 
     Returns:
         step(b, w, t, h, micro_step, degree) -> int, as `body_stepper`; `w` is `sampler_work` long.
+        A micro step must be shorter than a sampling period.
     """
     first_input, inputs = declaration.first_input, len(declaration.inputs)
     reals = STRIDE * inputs
@@ -59,6 +60,8 @@ def sampler_stepper(
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
     ) -> int:
+        if not h <= MOST_MICRO_STEPS * micro_step:
+            return TOO_LONG
         for i in range(reals):
             w[kept + i] = b[first_input + i]
         for at in range(0, reals, STRIDE):

@@ -18,6 +18,10 @@ Out = Callable[[np.ndarray, float], None]
 
 NOT_FINITE = 1
 """Status of a step whose states (an element's or source's outputs) are NaN or infinite."""
+TOO_LONG = 2
+"""Status of a step that was refused because it is longer than the component's `longest_step`."""
+MOST_MICRO_STEPS = 1e6
+"""Most micro steps of one call: seconds of work, after which a master wants to hear something."""
 
 
 def body_work(state_count: int, input_count: int) -> int:
@@ -28,6 +32,22 @@ def body_work(state_count: int, input_count: int) -> int:
 def element_work(input_count: int) -> int:
     """Length of the work space that an element's stepper needs."""
     return input_count
+
+
+def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndarray], float]:
+    """Compile the `longest_step` of a body that takes micro steps.
+
+    Args:
+        declaration: of the component.
+        micro_step: name of the parameter that bounds them [s].
+    """
+    at = declaration.index[micro_step]
+
+    @inner(declaration.name)
+    def longest(b: np.ndarray) -> float:
+        return MOST_MICRO_STEPS * b[at]
+
+    return longest
 
 
 def body_stepper(
@@ -41,7 +61,7 @@ def body_stepper(
     Returns:
         step(b, w, t, h, micro_step, degree) -> int: block, work space (`body_work` long), start
         and length of the macro step [s] (h >= 0), longest micro step [s], interface degree;
-        0, or NOT_FINITE.
+        0, NOT_FINITE or, if MOST_MICRO_STEPS would not do, TOO_LONG.
     """
     n = declaration.state_count
     inputs = len(declaration.inputs)
@@ -60,6 +80,8 @@ def body_stepper(
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
     ) -> int:
+        if not h <= MOST_MICRO_STEPS * micro_step:
+            return TOO_LONG
         if degree > 0:
             for i in range(inputs):
                 monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)

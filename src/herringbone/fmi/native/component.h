@@ -104,10 +104,12 @@ typedef struct {
        der(state i) is size + texts_count + i, time is size + texts_count + states; then come the
        event indicators. */
 
-    /* Kernels; those from `start` on are NULL if the component has none. 0 is success. */
+    /* Kernels; those from `longest_step` on are NULL if the component has none. 0 is success. */
     int32_t (*step)(double *b, double *w, double t, double h);
     void (*rhs)(double *b, double t, double *dx);
     void (*out)(double *b, double t);
+    /* The longest step [s] of one call; NULL: any. */
+    double (*longest_step)(double *b);
     /* States from start parameters, before `out`, whenever the block changes in initialisation. */
     void (*start)(double *b);
     /* Tables from resource files: a refusal's number, counted from 1, or 0.

@@ -1,11 +1,12 @@
 """The C file that describes one component to the wrapper; see component.h for every entry."""
 
 import math
+import string
 from collections.abc import Container, Iterable
 
 from herringbone.components.resource_loader import ResourceLoader
 from herringbone.core import Declaration, Text, Variable
-from herringbone.core.component import unchanged
+from herringbone.core.component import unbounded, unchanged
 from herringbone.core.paths import content_hash
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
@@ -13,10 +14,12 @@ from herringbone.fmi.model_description import identifier
 from herringbone.fmi.used_states import UsedStates
 
 _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
+_PLAIN = frozenset(string.ascii_letters + string.digits + " !#$%&'()*+,-./:;<=>@[]^_`{|}~")
 _ENTRY_POINTS = """\
 int32_t hb_step(double *b, double *w, double t, double h);
 void hb_rhs(double *b, double t, double *dx);
 void hb_out(double *b, double t);
+double hb_longest_step(double *b);
 void hb_start(double *b);
 int32_t hb_load(const double *values, const int64_t *shape, double *b, double *scratch,
                 double *report);
@@ -36,7 +39,7 @@ def component_source(used: UsedStates) -> str:
     loader = component.load if isinstance(component.load, ResourceLoader) else None
     refusals = loader.refusals if loader else ()
     parts = [
-        f"/* {component.name}: generated from its declaration, not to be edited. */",
+        "/* Generated from a component's declaration, not to be edited. */",
         "#include <math.h>",
         "#include <stddef.h>",
         '#include "component.h"',
@@ -79,6 +82,7 @@ def component_source(used: UsedStates) -> str:
         "step": "hb_step",
         "rhs": "hb_rhs",
         "out": "hb_out",
+        "longest_step": "NULL" if component.longest_step is unbounded else "hb_longest_step",
         "start": "NULL" if component.start is unchanged else "hb_start",
         "load": "hb_load" if loader else "NULL",
         "load_scratch": loader.scratch if loader else 0,
@@ -114,7 +118,13 @@ def _texts(name: str, texts: Iterable[str]) -> str:
 
 
 def _escaped(text: str) -> str:
-    return text.encode("ascii").decode().replace("\\", "\\\\").replace('"', '\\"')
+    """A text as it stands in a C string; the only way by which text enters the source.
+
+    What is no plain character, and ?, of which trigraphs are made, becomes an octal number.
+    """
+    return "".join(
+        chr(byte) if chr(byte) in _PLAIN else f"\\{byte:03o}" for byte in text.encode("utf-8")
+    )
 
 
 def _string(text: str) -> str:

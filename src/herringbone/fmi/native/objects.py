@@ -22,7 +22,7 @@ from numba.core.ccallback import CFunc
 from herringbone.components.resource_loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
-from herringbone.core.component import unchanged
+from herringbone.core.component import unbounded, unchanged
 from herringbone.fmi.native.model import made_component
 from herringbone.fmi.native.platforms import Platform, platform_of
 
@@ -56,6 +56,9 @@ def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
     def out(b, t):  # noqa: ANN001, ANN202
         kernels_out(carray(b, (block,)), t)
 
+    def longest_step(b):  # noqa: ANN001, ANN202
+        return kernels_longest_step(carray(b, (block,)))
+
     def start(b):  # noqa: ANN001, ANN202
         kernels_start(carray(b, (block,)))
 
@@ -78,6 +81,7 @@ def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
 
     kernels_step, kernels_rhs, kernels_out = kernels
     kernels_start, kernels_indicators = of.start, of.indicators
+    kernels_longest_step = of.longest_step
     kernels_tangent = tangent_kernel(of)
     found: dict[str, tuple[object, Callable]] = {
         "hb_step": (types.int32(_REALS, _REALS, _TIME, _TIME), step),
@@ -85,6 +89,8 @@ def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
         "hb_out": (types.void(_REALS, _TIME), out),
         "hb_tangent": (types.void(_REALS, _TIME, _REALS, _REALS), tangent),
     }
+    if of.longest_step is not unbounded:
+        found["hb_longest_step"] = (_TIME(_REALS), longest_step)
     if of.start is not unchanged:
         found["hb_start"] = (types.void(_REALS), start)
     if isinstance(of.load, ResourceLoader):

@@ -18,6 +18,10 @@ static uint32_t first_not_finite(const Instance *instance) {
 }
 
 static Status explain_failure(Instance *instance, double step_size) {
+    if (hb_component.longest_step && step_size > hb_component.longest_step(instance->block))
+        return instance_fail(instance, STATUS_DISCARD,
+                             "%s: step size %g s; one call takes at most %g s", instance->name,
+                             step_size, hb_component.longest_step(instance->block));
     uint32_t i = first_not_finite(instance);
     bool found = i < hb_component.first_table;
     const char *name = found ? real_name(i) : "result", *unit = found ? real_unit(i) : "";

@@ -1,0 +1,20 @@
+"""Questions about files whose names come from people and files."""
+
+import contextlib
+import os
+from pathlib import Path
+
+
+def is_file(path: Path) -> bool:
+    """True for a file; False also for what no file can be called, such as too long a name."""
+    return os.path.isfile(path)  # noqa: PTH113 (pathlib's raises for such names)
+
+
+def is_folder(path: Path) -> bool:
+    """True for a folder; False also for what no folder can be called."""
+    return os.path.isdir(path)  # noqa: PTH112 (pathlib's raises for such names)
+
+
+def same_folder() -> contextlib.AbstractContextManager[None]:
+    """Context after which the working folder is what it was, whatever FMUs did to it."""
+    return contextlib.chdir(Path.cwd())
