@@ -4,7 +4,6 @@ import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from scipy.interpolate import CubicSpline
 
 from herringbone.core import HerringboneError, Outcome, ParameterError
 from herringbone.core.energy_report import Diagnosis, EnergyReport
+from herringbone.core.names import matches
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -97,9 +97,9 @@ class Result:
         """
         names = [c for c in self.data.columns if c != TIME]
         for pattern in patterns:
-            if not any(fnmatchcase(name, pattern) for name in names):
+            if not any(matches(name, pattern) for name in names):
                 raise ParameterError(f"no column matches '{pattern}'; see result.data.columns")
-        return [n for n in names if any(fnmatchcase(n, p) for p in patterns)]
+        return [n for n in names if any(matches(n, p) for p in patterns)]
 
     def channel(self, group: str) -> list[str]:
         """Columns of a channel group.

@@ -10,7 +10,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from herringbone.core import ParameterError
-from herringbone.output import check_writable
+from herringbone.output import check_writable, say
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -51,6 +51,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     scene = api.load_scene(folder, options.scene)
     values = {**scene.values, **values}
     scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
+    for note in structure.notes:
+        say(note)
     structure, _ = start.started(structure, scene)
     with tqdm(unit=" matrices", disable=None) as bar:
 

@@ -20,14 +20,14 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
         HerringboneError: a value is wrong, or there is no equilibrium.
     """
     system = system.with_values(scene.values)
-    notes: tuple[str, ...] = ()
+    notes = system.notes
     start = scene.start
     if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
-        notes = ("all parts are foreign; the run starts with the values that they declare",)
+        notes += ("all parts are foreign; the run starts with the values that they declare",)
         start = Start.REST
     elif start is Start.EQUILIBRIUM and system.foreign_parts:
         names = ", ".join(system.foreign_parts)
-        notes = (
+        notes += (
             f"{names}: foreign, so the equilibrium is not known; the load rises from zero over "
             f"{LOAD_RAMP_TIME:g} s instead",
         )

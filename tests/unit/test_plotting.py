@@ -7,6 +7,7 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib import cbook
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from support_result import make_foreign_result, make_result
@@ -148,6 +149,18 @@ def test_systems_without_gears_get_their_columns():
     for draw in PICTURES.values():
         with pytest.raises(ParameterError, match="records no"):
             draw(foreign)
+
+
+@pytest.mark.parametrize("name", ["_2nd.y", "a.$b$", "a.$b^{", "a.der(x)[1]"])
+def test_names_are_shown_as_they_are(name, tmp_path):
+    result = make_foreign_result()
+    old = result.data.columns[1]
+    units = {name if n == old else n: unit for n, unit in result.units.items()}
+    figure = replace(result, data=result.data.rename(columns={old: name}), units=units).plot(name)
+    figure.savefig(tmp_path / "names.png")
+    (entry,) = figure.axes[0].get_legend().get_texts()
+    assert entry.get_text().strip().replace("\\$", "$") == name
+    assert cbook.is_math_text(entry.get_text()) is False
 
 
 def test_written_pictures_are_those_that_the_system_has(rig, tmp_path):

@@ -49,6 +49,8 @@ def equilibrium(system: System) -> Equilibrium:
     rotating, zero = _steady_rows(twin)
     scale = _scales(twin)
     x = _guess(twin)
+    if x.size == 0:
+        return Equilibrium({}, 0.0)
     keep = np.setdiff1d(np.arange(x.size), rotating)
 
     def residual(x: np.ndarray) -> np.ndarray:

@@ -69,7 +69,7 @@ class Twin:
         self.instances = make_instances(system)
         self.network = build_network(system, [InProcessPart(i) for i in self.instances])
         self.layout: TwinLayout = twin_layout(self.instances)
-        source = twin_source(system.name, self.network, self.instances, self.layout)
+        source = twin_source(self.network, self.instances, self.layout)
         self._module = load_generated("twin", source)
         self.block = np.concatenate([i.block for i in self.instances])
 

@@ -6,7 +6,6 @@ The monolithic twin is solved once, at the union of the communication points of 
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from fnmatch import fnmatchcase
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from herringbone.analysis.error import relative_error
 from herringbone.analysis.monolithic import Twin
 from herringbone.analysis.work_precision import REFUSED, Point
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.names import matches
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.plan import record_names
@@ -80,7 +80,7 @@ class Reference:
             for name in own
         ]
         self.groups = {
-            group: [n for n in names if any(fnmatchcase(n, p) for p in patterns)]
+            group: [n for n in names if any(matches(n, p) for p in patterns)]
             for group, patterns in system.channels.items()
         }
         self.groups = {group: columns for group, columns in self.groups.items() if columns}

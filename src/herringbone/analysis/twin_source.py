@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from herringbone.core import Instance
 from herringbone.cosim.network import Network
 
-_HEADER = '''"""Monolithic twin of {name}; generated, not to be edited."""
+_HEADER = '''"""Monolithic twin of a system; generated, not to be edited."""
 
 import numpy as np
 
@@ -56,8 +56,11 @@ def twin_layout(instances: list[Instance]) -> TwinLayout:
     return TwinLayout(tuple(blocks), tuple(states))
 
 
-def twin_source(name: str, network: Network, instances: list[Instance], layout: TwinLayout) -> str:
-    """Generate the twin's module."""
+def twin_source(network: Network, instances: list[Instance], layout: TwinLayout) -> str:
+    """Generate the twin's module.
+
+    No text enters it but names of components, which are identifiers (see `Declaration`).
+    """
 
     def block(p: int) -> str:
         return f"b[{layout.block_first[p]}:{layout.block_first[p + 1]}]"
@@ -66,7 +69,7 @@ def twin_source(name: str, network: Network, instances: list[Instance], layout: 
         return layout.block_first[p] + instances[p].component.declaration.index[variable]
 
     names = sorted({i.component.name for i in instances})
-    lines = [_HEADER.format(name=name)]
+    lines = [_HEADER]
     lines += [f'{n}_rhs = COMPONENTS["{n}"].kernels.rhs\n' for n in names]
     lines += [f'{n}_out = COMPONENTS["{n}"].kernels.out\n' for n in names]
     lines.append("\n\n@kernel\ndef scatter(b: np.ndarray, x: np.ndarray) -> None:\n")

@@ -9,10 +9,11 @@ from herringbone.core.errors import (
     ParameterError,
     ResourceError,
     StructureError,
+    one_line,
     reason,
 )
 from herringbone.core.instance import Instance
-from herringbone.core.outcome import Outcome, OutcomeKind
+from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 from herringbone.core.variable import (
     Column,
     StateVector,
@@ -26,6 +27,7 @@ from herringbone.core.variable import (
 )
 
 __all__ = [
+    "EXIT_CODES",
     "Column",
     "Component",
     "Declaration",
@@ -44,6 +46,7 @@ __all__ = [
     "Variable",
     "input_",
     "local",
+    "one_line",
     "output",
     "parameter",
     "reason",

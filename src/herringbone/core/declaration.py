@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from functools import cached_property
 
 from herringbone.core.errors import ParameterError, StructureError
+from herringbone.core.names import check_name
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality, StateVector, Text, Variable, parameter
 
@@ -34,7 +35,8 @@ class Declaration:
     A component with inputs also gets the tunable parameter `interface_degree` (0 to 4).
 
     Raises:
-        StructureError: a name stands twice, a unit is unknown, or a feedthrough names no input.
+        StructureError: the component's name is no identifier, a variable's name stands twice, a
+            unit is unknown, or a feedthrough names no input.
     """
 
     def __init__(
@@ -48,7 +50,7 @@ class Declaration:
         tables: int = 0,
         work: int = 0,
     ) -> None:
-        self.name = name
+        self.name = check_name(name, "component")
         self.description = description
         self.texts = tuple(texts)
         self.vectors = tuple(vectors)

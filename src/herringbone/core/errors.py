@@ -2,7 +2,14 @@
 
 
 class HerringboneError(Exception):
-    """Base of every error that the package raises on bad input."""
+    """Base of every error that the package raises on bad input; its message is one line.
+
+    Args:
+        message: what is wrong. It may quote text from files: what is not printable is escaped.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message))
 
 
 class ParameterError(HerringboneError):
@@ -28,3 +35,10 @@ class FmuError(HerringboneError):
 def reason(error: Exception) -> str:
     """Why a file could not be read or written, without its name, which the message already has."""
     return error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+
+
+def one_line(text: str) -> str:
+    """A text in which nothing moves a terminal's cursor: what is not printable is escaped."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -16,6 +16,18 @@ class OutcomeKind(StrEnum):
     STEP_LIMIT = "step_limit"
 
 
+EXIT_CODES = {
+    OutcomeKind.COMPLETED: 0,
+    OutcomeKind.UNSTABLE: 1,
+    OutcomeKind.DIVERGED: 1,
+    OutcomeKind.PART_FAILED: 1,
+    OutcomeKind.COUPLING_FAILED: 1,
+    OutcomeKind.STEP_LIMIT: 1,
+    OutcomeKind.INTERRUPTED: 130,
+}
+"""Exit code of a command whose run ended in one of these ways."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """How, when and why a run ended.

@@ -9,6 +9,7 @@ import fmpy
 from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
+from herringbone.core.files import is_file, is_folder
 from herringbone.cosim.archive import escaping_entry
 
 _DESCRIPTION = "modelDescription.xml"
@@ -19,9 +20,9 @@ _VERSION = re.compile(rb'fmiVersion\s*=\s*["\']([^"\']*)["\']')
 
 def require_file(file: Path) -> None:
     """Check that there is a file; raises FmuError."""
-    if file.is_dir():
+    if is_folder(file):
         raise FmuError(f"{file} is a folder; give an .fmu file")
-    if not file.is_file():
+    if not is_file(file):
         raise FmuError(f"there is no file {file}")
 
 

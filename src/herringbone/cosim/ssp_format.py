@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element, ParseError, fromstring
 from xml.parsers import expat
 
 from herringbone.core import StructureError
+from herringbone.core.files import is_file, is_folder
 from herringbone.cosim.archive import escaping_entry
 
 STRUCTURE_FILE: Final = "SystemStructure.ssd"
@@ -29,7 +30,7 @@ CHANNELS_ANNOTATION: Final = "herringbone.channels"
 
 def is_ssp(path: Path) -> bool:
     """True if a path names an .ssp file, or a folder into which one was unpacked."""
-    return path.suffix == ".ssp" or (path / STRUCTURE_FILE).is_file()
+    return path.suffix == ".ssp" or is_file(path / STRUCTURE_FILE)
 
 
 def unpack(file: Path) -> Path:
@@ -41,7 +42,7 @@ def unpack(file: Path) -> Path:
     Raises:
         StructureError: no file, no zip, or an entry that would be written outside the folder.
     """
-    if file.is_dir():
+    if is_folder(file):
         return file
     with _archive(file) as archive:
         folder = Path(tempfile.mkdtemp(prefix="herringbone_ssp_"))
@@ -57,7 +58,7 @@ def read_structure(file: Path) -> Element:
         StructureError: it cannot be read, or is no system structure description of SSP 1.
     """
     try:
-        if file.is_dir():
+        if is_folder(file):
             data = (file / STRUCTURE_FILE).read_bytes()
         else:
             with _archive(file) as archive:
@@ -74,7 +75,7 @@ def read_structure(file: Path) -> Element:
 
 
 def _archive(file: Path) -> zipfile.ZipFile:
-    if not file.is_file():
+    if not is_file(file):
         raise StructureError(f"there is no file {file}")
     try:
         archive = zipfile.ZipFile(file)

@@ -1,16 +1,19 @@
 """Reading SSP 1.0 files: one flat system of FMI 2.0 co-simulation FMUs, with parameter values.
 
 What is not of that subset is refused by name; nothing is left out silently but geometry and the
-annotations of other tools.
+annotations of other tools. SSP allows any names; what is no identifier is mapped to one (see
+`core.names.identifier_for`), and a note says so.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 from xml.etree.ElementTree import Element
 
 from herringbone.core import FmuError, StructureError
+from herringbone.core.files import is_file
+from herringbone.core.names import check_name, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
 from herringbone.cosim.fmu_file import read_fmu
 from herringbone.cosim.fmu_variables import read_variables
@@ -63,10 +66,14 @@ class _Reader:
     Attributes:
         file: for messages.
         folder: where its content lies.
+        names: identifiers of the components, by their names in the file.
+        notes: lines about names that were changed.
     """
 
     file: Path
     folder: Path
+    names: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
     def system(self, root: Element) -> System:
         element = root.find("ssd:System", NAMESPACES)
@@ -74,19 +81,46 @@ class _Reader:
             raise self.refusal("it contains no system")
         if element.find("ssd:SignalDictionaries", NAMESPACES) is not None:
             raise self.refusal("signal dictionaries are not supported; connect components directly")
+        name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
+        self.name_components(element)
         parts, variables = [], {}
         for child in element.iterfind("ssd:Elements/*", NAMESPACES):
             part, part_variables = self.part(child)
             parts.append(part)
             variables |= {f"{part.name}.{n}": v for n, v in part_variables.items()}
+        values = self.values(element, "the system", variables)
         system = System(
-            element.get("name") or root.get("name") or self.file.stem,
+            name,
             element.get("description", ""),
             tuple(parts),
             tuple(self.connections(element)),
-            channels=_channels(element),
+            channels=self.channels(element),
+            notes=tuple(self.notes),
         )
-        return system.with_values(self.values(element, "the system", variables))
+        return system.with_values(values)
+
+    def renamed(self, name: str, kind: str, taken: Container[str] = ()) -> str:
+        """The identifier for a name of the file; a note if it is another one."""
+        found = identifier_for(name, taken)
+        if found != name:
+            self.notes.append(f"{self.file}: {kind} {shown(name)} is called {found} here")
+        return found
+
+    def name_components(self, system: Element) -> None:
+        """Find the identifiers of all components; names that are some keep theirs."""
+        names = [child.get("name", "") for child in system.iterfind("ssd:Elements/*", NAMESPACES)]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise self.refusal(f"component name {shown(twice[0])} stands twice; rename one")
+        self.names.update({name: name for name in names if is_identifier(name)})
+        for name in names:
+            if name not in self.names and name:
+                taken = set(self.names.values())
+                self.names[name] = self.renamed(name, "component", taken)
+
+    def path_here(self, path: str) -> str:
+        """A path `component.variable` of the file with the component's identifier."""
+        part, dot, variable = path.partition(".")
+        return f"{self.names.get(part, part)}{dot}{variable}"
 
     def refusal(self, text: str) -> StructureError:
         return StructureError(f"{self.file}: {text}")
@@ -111,7 +145,7 @@ class _Reader:
         except FmuError as error:
             raise FmuError(f"{self.file}: component '{name}': {error}") from error
         values = self.values(element, f"component '{name}'", variables)
-        return PartSpec(name, fmu=fmu, values=values), variables
+        return PartSpec(self.names[name], fmu=fmu, values=values), variables
 
     def path(self, source: str, where: str) -> Path:
         """File of a source, which must lie in the .ssp."""
@@ -119,7 +153,7 @@ class _Reader:
         path = (self.folder / unquote(parsed.path)).resolve()
         if parsed.scheme or parsed.netloc or not path.is_relative_to(self.folder.resolve()):
             raise self.refusal(f"{where}: source '{source}' lies outside the file; pack it")
-        if not path.is_file():
+        if not is_file(path):
             raise self.refusal(f"{where}: there is no '{source}' in the file")
         return path
 
@@ -135,7 +169,7 @@ class _Reader:
             for child in element:
                 if local_name(child) not in {"ConnectionGeometry", "Annotations"}:
                     raise self.refusal(f"{where}: {local_name(child)} is not supported")
-            (first, second) = (f"{part}.{name}" for part, name in ends)
+            first, second = (self.path_here(f"{part}.{name}") for part, name in ends)
             yield first, second
 
     def values(
@@ -148,7 +182,10 @@ class _Reader:
                 "ssv:Parameters/ssv:Parameter", NAMESPACES
             ):
                 name = parameter.get("name", "")
-                found[name] = self.value(parameter, f"{where}, parameter '{name}'", variables)
+                where_here = f"{where}, parameter '{name}'"
+                if element.tag == qualified("ssd:System"):
+                    name = self.path_here(name)
+                found[name] = self.value(parameter, variables.get(name), where_here)
         return found
 
     def parameter_set(self, binding: Element, where: str) -> Element:
@@ -170,14 +207,11 @@ class _Reader:
             raise self.refusal(f"{where}: {source} is no SSP 1.0 parameter set")
         return root
 
-    def value(
-        self, parameter: Element, where: str, variables: Mapping[str, PartVariable]
-    ) -> float | str:
+    def value(self, parameter: Element, variable: PartVariable | None, where: str) -> float | str:
         typed = next((c for c in parameter if local_name(c) != "Annotations"), None)
         kind = "nothing" if typed is None else local_name(typed)
         if typed is None or kind not in {*_TYPES, "String"}:
             raise self.refusal(f"{where}: a value of type {kind} is not supported")
-        variable = variables.get(parameter.get("name", ""))
         unit = typed.get("unit")
         if unit and variable and variable.unit and unit != variable.unit:
             raise self.refusal(
@@ -189,12 +223,13 @@ class _Reader:
         except ValueError:
             raise self.refusal(f"{where}: '{text}' is no {kind}") from None
 
-
-def _channels(system: Element) -> dict[str, tuple[str, ...]]:
-    """Groups of result columns, which this package writes as an annotation."""
-    return {
-        channel.get("name", ""): tuple(channel.get("columns", "").split())
-        for annotation in system.iterfind("ssd:Annotations/ssc:Annotation", NAMESPACES)
-        if annotation.get("type") == CHANNELS_ANNOTATION
-        for channel in annotation.iterfind("hb:Channels/hb:Channel", NAMESPACES)
-    }
+    def channels(self, system: Element) -> dict[str, tuple[str, ...]]:
+        """Groups of result columns, which this package writes as an annotation."""
+        return {
+            check_name(channel.get("name", ""), f"{self.file}: channel"): tuple(
+                channel.get("columns", "").split()
+            )
+            for annotation in system.iterfind("ssd:Annotations/ssc:Annotation", NAMESPACES)
+            if annotation.get("type") == CHANNELS_ANNOTATION
+            for channel in annotation.iterfind("hb:Channels/hb:Channel", NAMESPACES)
+        }

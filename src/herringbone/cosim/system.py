@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from herringbone.core import ParameterError, StructureError
+from herringbone.core.names import check_name, check_path, shown
 
 Values = Mapping[str, float | str]
 
@@ -18,12 +19,18 @@ class PartSpec:
         component: name of a component of this package, or None.
         fmu: FMU file, or None; exactly one of both is given.
         values: start values and parameters by variable.
+
+    Raises:
+        StructureError: the name is no identifier.
     """
 
     name: str
     component: str | None = None
     fmu: Path | None = None
     values: Values = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_path(self.name, "instance")
 
     @property
     def foreign(self) -> bool:
@@ -36,11 +43,16 @@ class System:
     """Parts and how they are wired.
 
     Attributes:
-        name, description: for people.
+        name: an identifier; a system that becomes an FMU has it as model identifier.
+        description: for people.
         parts: all parts, nested systems flattened.
         connections: pairs of paths; a path is `part.port` or `part.variable`.
         ports: ports that the system offers to an outer one, as paths of inner ports.
         channels: named groups of result columns (patterns), on which errors are measured.
+        notes: lines to read about how the system was read, such as names that were changed.
+
+    Raises:
+        StructureError: a name is no identifier, or stands twice.
     """
 
     name: str
@@ -49,8 +61,17 @@ class System:
     connections: tuple[tuple[str, str], ...]
     ports: Mapping[str, str] = field(default_factory=dict)
     channels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        check_name(self.name, "system")
+        for kind, names in (("port", self.ports), ("channel", self.channels)):
+            for name in names:
+                check_name(name, f"system '{self.name}': {kind}")
+        if bad := next((c for c in self.description if not (c.isprintable() or c.isspace())), ""):
+            raise StructureError(
+                f"system '{self.name}': its description has the character {shown(bad)}; drop it"
+            )
         names = [part.name for part in self.parts]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
@@ -99,7 +120,7 @@ class System:
         return replace(
             self,
             parts=tuple(
-                PartSpec(part.name, fmu=fmu) if part.name == instance else part
+                PartSpec(part.name, fmu=fmu.absolute()) if part.name == instance else part
                 for part in self.parts
             ),
         )

@@ -22,6 +22,8 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import StructureError, reason
+from herringbone.core.files import is_file
+from herringbone.core.names import check_name, identifier_for, shown
 from herringbone.core.paths import systems_folder
 from herringbone.cosim.system import PartSpec, System
 
@@ -49,12 +51,12 @@ def find_system(reference: str | Path) -> Path:
         StructureError: there is no such system.
     """
     for folder in (systems_folder() / reference, Path(reference)):
-        if (folder / FILE_NAME).is_file():
+        if is_file(folder / FILE_NAME):
             return folder
     shipped = ", ".join(sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}")))
     raise StructureError(
-        f"there is no system '{reference}': give one of {shipped}, a folder with {FILE_NAME}, "
-        "or an .ssp file"
+        f"there is no system {shown(str(reference))}: give one of {shipped}, a folder with "
+        f"{FILE_NAME}, or an .ssp file"
     )
 
 
@@ -86,10 +88,13 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
         raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
     for key, kind in _KEYS.items():
         _check_type(data.get(key, kind()), kind, key, file)
+    _check_names(data, file)
     for name, path in data.get("ports", {}).items():
         _check_type(path, str, f"port '{name}'", file)
     for name, patterns in data.get("channels", {}).items():
         _check_type(patterns, list, f"channel '{name}'", file)
+        for pattern in patterns:
+            _check_type(pattern, str, f"channel '{name}': pattern", file)
     parts: list[PartSpec] = []
     nested: dict[str, System] = {}
     for name, table in data.get("parts", {}).items():
@@ -100,6 +105,14 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
             inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
             nested[name] = inner.with_values(table.get("set", {}))
     return _assemble(data, file, parts, nested)
+
+
+def _check_names(data: Mapping[str, Any], file: Path) -> None:
+    for name in (data["name"],) if "name" in data else ():
+        check_name(name, f"{file}: name")
+    for key in ("parts", "ports", "channels"):
+        for name in data.get(key, {}):
+            check_name(name, f"{file}: {key.removesuffix('s')}")
 
 
 def _check_type(value: object, kind: type, what: str, file: Path) -> None:
@@ -117,6 +130,10 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
             + (f"; unknown: {', '.join(sorted(unknown))}" if unknown else "")
         )
     _check_type(table[kinds[0]], str, f"part '{name}': {kinds[0]}", file)
+    if not table[kinds[0]].isprintable():
+        raise StructureError(
+            f"{file}: part '{name}': {shown(table[kinds[0]])} is no name of a file"
+        )
     values = table.get("set", {})
     _check_type(values, dict, f"part '{name}': set", file)
     for variable, value in values.items():
@@ -131,7 +148,7 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
 
 def _nested_reference(reference: str, folder: Path) -> str | Path:
     inside = folder / reference
-    return inside if (inside / FILE_NAME).is_file() else reference
+    return inside if is_file(inside / FILE_NAME) else reference
 
 
 def _assemble(
@@ -161,11 +178,16 @@ def _assemble(
             raise StructureError(f"{file}: a connection is a pair of paths, not {pair!r}")
         connections.append((resolve(pair[0]), resolve(pair[1])))
     channels |= {name: tuple(p) for name, p in data.get("channels", {}).items()}
+    own_name = data.get("name", file.parent.name)
+    name = identifier_for(own_name)
+    renamed = (f"{file}: the system is called {name} here",) if name != own_name else ()
+    inner_notes = tuple(note for inner in nested.values() for note in inner.notes)
     return System(
-        data.get("name", file.parent.name),
+        name,
         data.get("description", ""),
         tuple(parts),
         tuple(connections),
         {name: resolve(path) for name, path in data.get("ports", {}).items()},
         channels,
+        (*inner_notes, *renamed),
     )

@@ -11,6 +11,7 @@ import numpy as np
 from herringbone.components.flat_csv import read_flat_csv
 from herringbone.components.modal_data import read_mode_table, read_shape_table
 from herringbone.core import ResourceError, reason
+from herringbone.core.files import is_file, is_folder
 from herringbone.housing.file_format import (
     COMPLIANCES,
     FORMAT,
@@ -77,9 +78,9 @@ def read_housing(path: str | Path) -> ModalHousing:
 
 
 def _root(path: Path) -> Path | zipfile.Path:
-    if path.is_dir():
+    if is_folder(path):
         return path
-    if not path.exists():
+    if not is_file(path):
         raise ResourceError(f"there is no file or folder {path}")
     try:
         with zipfile.ZipFile(path) as archive:

@@ -35,8 +35,15 @@ def headline(result: Result, what: str) -> str:
 
 
 def half_name(half: str) -> str:
-    """`pinion_left` -> `pinion left`; other names stay."""
-    return half.replace("_", " ") if half in HALF_STYLE else half
+    """`pinion_left` -> `pinion left`; other names stay, and are shown as they are.
+
+    matplotlib leaves entries out that begin with an underscore, and sets what stands between dollar
+    signs as a formula.
+    """
+    if half in HALF_STYLE:
+        return half.replace("_", " ")
+    name = half.replace("$", r"\$")
+    return f" {name}" if name.startswith("_") else name
 
 
 def mesh_columns(result: Result) -> dict[str, str]:

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError
+from herringbone.core.files import is_file
+from herringbone.core.names import shown
 from herringbone.cosim.system_file import VALUE_HINT, is_value, read_toml
 
 DEFAULT_SCENE = "loaded"
@@ -56,10 +58,10 @@ def find_scene(system_folder: Path, name: str) -> Path:
     """
     folder = system_folder / "scenes"
     for file in (folder / f"{name}.toml", Path(name)):
-        if file.is_file():
+        if is_file(file):
             return file
     known = ", ".join(sorted(f.stem for f in folder.glob("*.toml"))) or "none"
-    raise ParameterError(f"there is no scene '{name}'; {folder.parent.name} has: {known}")
+    raise ParameterError(f"there is no scene {shown(name)}; {folder.parent.name} has: {known}")
 
 
 def read_scene(file: Path) -> Scene:

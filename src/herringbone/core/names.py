@@ -1,0 +1,74 @@
+"""Names of systems, parts, ports and channels: ASCII identifiers, so that none is code or a path.
+
+Names of an FMU's variables are not among them: they are data of any form that FMI allows.
+"""
+
+import re
+from collections.abc import Container
+from fnmatch import fnmatchcase
+
+from herringbone.core.errors import StructureError
+
+LONGEST = 64
+_IDENTIFIER = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,{LONGEST - 1}}}", re.ASCII)
+_FOREIGN = re.compile(r"[^A-Za-z0-9_]", re.ASCII)
+_SHOWN = 40
+
+
+def is_identifier(text: str) -> bool:
+    """True for ASCII letters, digits and underscores, no digit first, at most LONGEST of them."""
+    return _IDENTIFIER.fullmatch(text) is not None
+
+
+def check_name(text: str, what: str) -> str:
+    """The name itself.
+
+    Args:
+        text: the name.
+        what: what it names, for the message.
+
+    Raises:
+        StructureError: it is no identifier.
+    """
+    if not is_identifier(text):
+        raise StructureError(
+            f"{what} {shown(text)}: a name has only the letters A to Z and a to z, digits and _, "
+            f"does not begin with a digit, and is at most {LONGEST} long; rename it"
+        )
+    return text
+
+
+def check_path(text: str, what: str) -> str:
+    """A path of names joined by dots; raises StructureError if a segment is no identifier."""
+    for segment in text.split("."):
+        check_name(segment, f"{what} {shown(text)}, segment" if "." in text else what)
+    return text
+
+
+def shown(text: str) -> str:
+    """A text in quotes as messages show it: on one line, and cut if it is long."""
+    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
+
+
+def identifier_for(text: str, taken: Container[str] = ()) -> str:
+    """An identifier for a name that other tools allow.
+
+    Whatever is no ASCII letter, digit or underscore becomes an underscore; a digit in front gets
+    one before it; the name is cut at LONGEST. If that is taken, 2, 3, ... is appended.
+
+    Args:
+        text: the name, not empty.
+        taken: identifiers that are in use.
+    """
+    name = _FOREIGN.sub("_", text)
+    name = (f"_{name}" if name[:1].isdigit() else name)[:LONGEST]
+    found, number = name, 1
+    while found in taken:
+        number += 1
+        found = f"{name[: LONGEST - len(str(number)) - 1]}_{number}"
+    return found
+
+
+def matches(name: str, pattern: str) -> bool:
+    """True if the name of a column matches a pattern (`*`, `?`); brackets are those of arrays."""
+    return fnmatchcase(name, pattern.replace("[", "[[]"))
