@@ -8,6 +8,7 @@ from herringbone.analysis.diagnosis import diagnose
 from herringbone.analysis.monolithic import refuse_foreign_parts
 from herringbone.analysis.stability import fastest_bond, warn_if_unstable
 from herringbone.core.energy_report import Verdict
+from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
     AUTO,
@@ -16,6 +17,7 @@ from herringbone.cosim.algorithms import (
     parse_algorithm,
     with_tolerance,
 )
+from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress
@@ -79,7 +81,8 @@ def run(
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: called with the simulated time reached and its end [s].
-        recorded: called with the result as soon as the run has ended; errors against the twin, and
+        recorded: called with the result as soon as the run has ended, before the parts are
+            terminated and freed, which a part may not survive; errors against the twin, and
             why a run is unstable, are found after that, and are in the result that is returned.
 
     Returns:
@@ -98,7 +101,7 @@ def run(
         refuse_foreign_parts(structure)
     fmu, why = choose_kind(fmu)
     notes = [*notes, *broken, *why]
-    with closing_all(open_parts(structure, fmu)) as parts:
+    with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as parts:
         if coupling is None:
             coupling, why = _chosen_for(parts, tolerance)
             notes.append(why)
@@ -110,11 +113,11 @@ def run(
         recording = simulate(
             structure, parts, coupling, grid, progress, bond_frequency=bond, slow=slow
         )
-    notes += _step_notes(asked, coupling, recording)
-    every = make_result(structure, chosen, coupling, fmu, recording, notes)
-    result = decimated(every, chosen.record_step) if reference else every
-    if recorded:
-        recorded(result)
+        notes += _step_notes(asked, coupling, recording)
+        every = make_result(structure, chosen, coupling, fmu, recording, notes)
+        result = decimated(every, chosen.record_step) if reference else every
+        if recorded:
+            recorded(result)
     if reference:
         result = replace(result, error=twin_error(every, structure))
     if _unstable(recording):

@@ -25,18 +25,15 @@ from herringbone.command_options import (
     add_start_values,
     start_values,
 )
-from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.output import check_writable, say, show
+from herringbone.core import (
+    EXIT_CODES,
+    HerringboneError,
+    OutcomeKind,
+    ParameterError,
+    one_line,
+)
+from herringbone.output import check_writable, say, show, terminable
 
-EXIT_CODES = {
-    OutcomeKind.COMPLETED: 0,
-    OutcomeKind.UNSTABLE: 1,
-    OutcomeKind.DIVERGED: 1,
-    OutcomeKind.PART_FAILED: 1,
-    OutcomeKind.COUPLING_FAILED: 1,
-    OutcomeKind.STEP_LIMIT: 1,
-    OutcomeKind.INTERRUPTED: 130,
-}
 BAD_INPUT = 2
 
 
@@ -44,7 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        return options.command(options)
+        with terminable():
+            return options.command(options)
     except HerringboneError as error:
         say(f"herringbone: {error}")
         if options.debug:
@@ -64,7 +62,7 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong, and end with the exit code of bad input."""
-        self.exit(BAD_INPUT, f"{self.prog}: {message}; see '{self.prog} --help'\n")
+        self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)}; see '{self.prog} --help'\n")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,6 +1,7 @@
 """From names to what a run takes: the system, its scene, its parts."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,9 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
+from herringbone.core.files import is_file
 from herringbone.core.part import Part
+from herringbone.cosim.fmu_file import require_file
 from herringbone.cosim.open_fmu import open_fmu
 from herringbone.cosim.ssp_format import is_ssp
 from herringbone.cosim.system import PartSpec, System
@@ -47,7 +50,7 @@ def load_scene(folder: Path, scene: str | Scene | None) -> Scene:
         return scene
     if scene is None and is_ssp(folder):
         return ssp_scene(folder)
-    if scene is None and not (folder / "scenes" / f"{DEFAULT_SCENE}.toml").is_file():
+    if scene is None and not is_file(folder / "scenes" / f"{DEFAULT_SCENE}.toml"):
         return Scene("default")
     return read_scene(find_scene(folder, scene or DEFAULT_SCENE))
 
@@ -83,6 +86,8 @@ def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[
     """
     notes: list[str] = []
     for instance, file in files.items():
+        with _named(instance):
+            require_file(Path(file))
         if system.part(instance).component == MODAL_HOUSING.name:
             notes += replacement_notes(Path(file))
         system = system.with_fmu(instance, Path(file))
@@ -117,12 +122,19 @@ def open_parts(system: System, fmu: str) -> list[Part]:
     return parts
 
 
+@contextmanager
+def _named(instance: str) -> Iterator[None]:
+    """What is wrong with an FMU is said of the instance."""
+    try:
+        yield
+    except FmuError as error:
+        raise FmuError(f"{instance}: {error}") from error
+
+
 def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
     if spec.fmu is not None:
-        try:
+        with _named(spec.name):
             return open_fmu(spec.name, spec.fmu)
-        except FmuError as error:
-            raise FmuError(f"{spec.name}: {error}") from error
     if str(spec.component) in files:
         return open_fmu(spec.name, files[str(spec.component)])
     return InProcessPart(Instance(component(str(spec.component)), spec.name))

@@ -1,7 +1,11 @@
 """Where the command line writes: lines for people, and folders that are checked beforehand."""
 
+import contextlib
+import signal
 import sys
 import tempfile
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.core import HerringboneError
@@ -15,6 +19,19 @@ def say(text: str) -> None:
 def show(text: str) -> None:
     """What a command was asked for."""
     sys.stdout.write(text + "\n")
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """Context in which SIGTERM ends a command as SIGINT does; only in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def check_writable(folder: Path, file: Path | None = None) -> None:

@@ -11,14 +11,19 @@ from herringbone.summary import summary_text
 _TEXT, _SUMMARY = "summary.txt", "summary.json"
 
 
-def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Result:
+def write_report(
+    result: Result, folder: Path, *, parquet: bool = False, shown: Path | None = None
+) -> Result:
     """Write results.csv, pictures, summary.txt and summary.json into a folder, made if needed.
+
+    What takes longest and is least needed comes last: the pictures. The summary is there before.
 
     Args:
         result: of a run.
         folder: where the files go. Those of an earlier run are replaced; what that run had and
             this one has not, such as a picture of its torques, is removed.
         parquet: write results.parquet as well.
+        shown: how the folder is called in `files`; as it is if not given.
 
     Returns:
         The result with `files` filled in.
@@ -28,20 +33,21 @@ def write_report(result: Result, folder: Path, *, parquet: bool = False) -> Resu
     """
     from herringbone.plotting import PICTURES, write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
-    text, summary = folder / _TEXT, folder / _SUMMARY
-    tables = [folder / "results.csv"]
+    names = ["results.csv", *(["results.parquet"] if parquet else []), _TEXT, _SUMMARY]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name in ("results.parquet", *(f"{picture}.png" for picture in PICTURES)):
             (folder / name).unlink(missing_ok=True)
-        result.to_csv(tables[0])
+        result.to_csv(folder / names[0])
         if parquet:
-            tables.append(folder / "results.parquet")
-            result.to_parquet(tables[1])
+            result.to_parquet(folder / names[1])
+        result = replace(result, files=tuple(str((shown or folder) / name) for name in names))
+        write_summary(result, folder)
         pictures = write_pictures(result, folder)
-        result = replace(result, files=tuple(map(str, (*tables, text, summary, *pictures))))
     except OSError as error:
         raise _refused(error, folder) from error
+    drawn = (str((shown or folder) / picture.name) for picture in pictures)
+    result = replace(result, files=(*result.files, *drawn))
     write_summary(result, folder)
     return result
 

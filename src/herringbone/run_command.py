@@ -97,20 +97,27 @@ class _Report:
 
     def __init__(self, options: argparse.Namespace, bar: "_Bar") -> None:
         self._options, self._bar = options, bar
-        self._folder, self._files = Path(), ()
+        self._start = Path.cwd()  # FMUs may change it
+        self._shown, self._files = Path(), ()
 
     def write(self, result: "Result") -> None:
         """Write all files."""
         from herringbone.report import write_report  # noqa: PLC0415 (pandas)
 
         name = Path(self._options.system).stem
-        self._folder = self._options.output or Path("results") / f"{name}-{result.info.scene}"
+        own = Path("results") / f"{name}-{result.info.scene}"
+        self._shown = self._options.output or own
         self._bar.close()
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
-            say(f"{_ended(result.outcome)}, and are being written to {self._folder}")
-        self._files = write_report(result, self._folder, parquet=self._options.parquet).files
+            say(f"{_ended(result.outcome)}, and are being written to {self._shown}")
+        self._files = write_report(
+            result,
+            self._start / self._shown,
+            parquet=self._options.parquet,
+            shown=self._shown,
+        ).files
         if result.outcome.unstable:
-            self._bar.tell(f"results are in {self._folder}; looking for what grows, and remedies")
+            self._bar.tell(f"results are in {self._shown}; looking for what grows, and remedies")
 
     def complete(self, result: "Result") -> "Result":
         """Add to the summary what was found out since; returns the result with its files."""
@@ -118,7 +125,7 @@ class _Report:
 
         result = replace(result, files=self._files)
         if result.error or result.info.why:
-            write_summary(result, self._folder)
+            write_summary(result, self._start / self._shown)
         return result
 
 

@@ -1,16 +1,11 @@
 """A hand-written housing in C takes the place of the component, and moves as its modes say."""
 
-import shutil
-import subprocess
-import sys
-import zipfile
-from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 
-import fmpy
 import numpy as np
 import pytest
+from support_c_fmu import compiled_fmu
 from support_housing import seat_points
 
 import herringbone as hb
@@ -22,15 +17,6 @@ SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
 MASS, DAMPING_TIME = 40.0, 5e-6
 STIFFNESS, COUPLING = np.array([7e8, 7e8, 1.5e8]), np.array([1e8, 1e8, 8e7])
 DOFS = list(product(HALVES, "xyz"))
-
-
-def compiler() -> list[str]:
-    """The system's C compiler, or zig's."""
-    if found := shutil.which("cc"):
-        return [found]
-    if find_spec("ziglang"):
-        return [sys.executable, "-m", "ziglang", "cc"]
-    pytest.skip("there is no C compiler: neither cc nor the package ziglang")
 
 
 def description() -> str:
@@ -63,15 +49,7 @@ def description() -> str:
 
 @pytest.fixture(scope="module")
 def c_housing(tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("c_housing")
-    library = folder / f"c_housing{fmpy.sharedLibraryExtension}"
-    command = [*compiler(), "-O2", "-shared", "-fPIC", "-o", str(library), str(SOURCE)]
-    subprocess.run(command, check=True, capture_output=True)
-    file = folder / "c_housing.fmu"
-    with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("modelDescription.xml", description())
-        archive.write(library, f"binaries/{fmpy.platform}/{library.name}")
-    return file
+    return compiled_fmu(SOURCE, description(), tmp_path_factory.mktemp("c_housing"))
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Ctrl-C while a compiled loop runs.
+"""Ctrl-C, or a request to terminate, while a compiled loop runs.
 
 A KeyboardInterrupt raised inside a Python FMU would be fatal to it, so that the handler only sets a
 flag, which is read between chunks of the loop.
@@ -8,9 +8,11 @@ import signal
 import threading
 from types import FrameType
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
 
 class InterruptFlag:
-    """Context in which SIGINT sets a flag instead of raising; only in the main thread."""
+    """Context in which SIGINT and SIGTERM set a flag; only in the main thread."""
 
     def __init__(self) -> None:
         self.raised = False
@@ -18,7 +20,7 @@ class InterruptFlag:
     def __enter__(self) -> "InterruptFlag":
         self._main = threading.current_thread() is threading.main_thread()
         if self._main:
-            self._before = signal.signal(signal.SIGINT, self._set)
+            self._before = {s: signal.signal(s, self._set) for s in _SIGNALS}
         return self
 
     def _set(self, number: int, frame: FrameType | None) -> None:
@@ -27,4 +29,5 @@ class InterruptFlag:
 
     def __exit__(self, *exception: object) -> None:
         if self._main:
-            signal.signal(signal.SIGINT, self._before)
+            for number, before in self._before.items():
+                signal.signal(number, before)

@@ -118,6 +118,7 @@ class Run:
         if status in _PROBLEMS:
             return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
+        part.failed()
         said = "; ".join(part.messages())
         where, value = self._diverged(culprit)
         if status == NOT_FINITE or where:
