@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.figure import Axes, Figure
 
 from herringbone.gears import Modification, SliceMesh
-from herringbone.gears.gear_file import read_gear_file
-from herringbone.gears.load_sharing import RIGID, load_sharing
-from herringbone.gears.shipped_table import GEAR_FILE
+from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.shipped_table import GEAR_FILE
+from herringbone.gears.stiffness.load_sharing import RIGID, load_sharing
 
 JOB = read_gear_file(GEAR_FILE)  # the thesis' pair, as the gear_mesh component has it
 PLAIN = SliceMesh(JOB.pair, calibration=JOB.calibration)

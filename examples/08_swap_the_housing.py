@@ -12,7 +12,7 @@ from pathlib import Path
 
 import herringbone as hb
 from herringbone.housing import default_housing, write_housing
-from herringbone.housing.reduced_housing import reduce_housing
+from herringbone.housing.reduction.reduced_housing import reduce_housing
 
 
 def swap(housing: Path | None) -> dict:

@@ -13,7 +13,7 @@ from importlib.metadata import version
 __version__ = version("herringbone")
 
 _WHERE = {
-    "run": "herringbone.api",
+    "run": "herringbone.running.api",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",
@@ -21,10 +21,10 @@ _WHERE = {
     "LI": "herringbone.cosim.algorithms",
     "HerringboneError": "herringbone.core",
     "OutcomeKind": "herringbone.core",
-    "Result": "herringbone.result",
+    "Result": "herringbone.result.result",
     "Scene": "herringbone.scenes",
-    "System": "herringbone.cosim.system",
-    "radiated_power": "herringbone.analysis.radiated_power",
+    "System": "herringbone.cosim.structure.system",
+    "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 
 __all__ = [*sorted(_WHERE)]  # noqa: PLE0604 (the names are those of the table)

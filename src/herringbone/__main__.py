@@ -2,7 +2,7 @@
 
 import sys
 
-from herringbone.cli import main
+from herringbone.commands.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

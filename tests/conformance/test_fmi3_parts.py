@@ -4,15 +4,15 @@ import zipfile
 
 import numpy as np
 import pytest
-from support_fmus import NAMES
+from support.fmus import NAMES
 
 import herringbone
-from herringbone import cli
-from herringbone.api import load_scene, load_system
+from herringbone.commands import main as cli
 from herringbone.core import ParameterError
-from herringbone.cosim.calls import do_step, exchange_derivatives
-from herringbone.cosim.open_fmu import open_fmu
+from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.cosim.loops.calls import do_step, exchange_derivatives
 from herringbone.fmi import check_fmu
+from herringbone.running.api import load_scene, load_system
 
 GEAR = "gear_mesh.mesh_left.force"
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from support_fmus import NAMES, STEPS, H, outputs, run
+from support.fmus import NAMES, STEPS, H, outputs, run
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, HerringboneError, Instance

@@ -8,10 +8,10 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from support_exchange import ExchangeHost
+from support.exchange import ExchangeHost
 
-from herringbone.components.modal_data import read_mode_table
 from herringbone.components.registry import COMPONENTS
+from herringbone.components.resources.modal_data import read_mode_table
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.paths import resources_folder
 from herringbone.fmi.host import open_host

@@ -8,7 +8,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
-from support_fmus import NAMES, H, outputs
+from support.fmus import NAMES, H, outputs
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError

@@ -18,7 +18,7 @@ import zipfile
 
 import pytest
 from fmpy.fmi1 import FMICallException
-from support_fmus import NAMES, STEPS, H, run
+from support.fmus import NAMES, STEPS, H, run
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError

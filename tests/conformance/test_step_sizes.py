@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from support_fmus import NAMES
+from support.fmus import NAMES
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.component import unbounded
@@ -40,7 +40,7 @@ import numpy as np
 from herringbone.components.registry import component
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import FmuError, Instance
-from herringbone.cosim.drive import drive
+from herringbone.cosim.loops.drive import drive
 
 name, _, *steps = sys.argv[1:]
 for text in ("1e-6", *steps):

@@ -6,8 +6,8 @@ from urllib.parse import quote
 
 import numpy as np
 
-from herringbone.cosim.network import build_network
-from herringbone.cosim.ssp_structure import DescribedPart
+from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.structure.network import build_network
 
 
 def to_bits(value):

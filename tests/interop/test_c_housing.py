@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.housing import seat_points
 from support_c_fmu import compiled_fmu
-from support_housing import seat_points
 
 import herringbone as hb
-from herringbone import cli
+from herringbone.commands import main as cli
 from herringbone.components.ports import HALVES
 from herringbone.housing import ModalHousing, write_housing
 

@@ -7,20 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from support_fe import require_gmsh
+from support.finite_elements import require_gmsh
 
 import herringbone as hb
 from herringbone.core.paths import component_folder
 from herringbone.housing import write_housing
-from herringbone.housing.design import read_design
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.importers import import_housing
-from herringbone.housing.mesher import mesh_housing
+from herringbone.housing.welded.design import read_design
+from herringbone.housing.welded.mesher import mesh_housing
 
 require_gmsh()
 from skfem import Basis, BilinearForm, ElementTetP2  # noqa: E402
 
-from herringbone.housing.finite_elements import FiniteElements  # noqa: E402 (needs gmsh)
+from herringbone.housing.welded.finite_elements import FiniteElements  # noqa: E402 (needs gmsh)
 
 pytestmark = [
     pytest.mark.slow,

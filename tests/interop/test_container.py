@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import herringbone as hb
-from herringbone.api import load_scene, load_system
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.network import build_network
-from herringbone.cosim.ssp_structure import DescribedPart
+from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.structure.network import build_network
 from herringbone.fmi.native import build_native_fmus
-from herringbone.start import started
+from herringbone.running.api import load_scene, load_system
+from herringbone.running.start import started
 
 assembly = pytest.importorskip("fmu_manipulation_toolbox.assembly")
 

@@ -6,16 +6,16 @@ from functools import cache
 import fmpy
 import numpy as np
 import pytest
-from support_fmus import NAMES
+from support.fmus import NAMES
 
 import herringbone as hb
-from herringbone.api import load_scene, load_system
 from herringbone.components.registry import COMPONENTS
-from herringbone.cosim.network import build_network
-from herringbone.cosim.ssp_structure import DescribedPart
+from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.structure.network import build_network
 from herringbone.fmi import golden
 from herringbone.fmi.native import build_native_fmus
-from herringbone.start import started
+from herringbone.running.api import load_scene, load_system
+from herringbone.running.start import started
 
 MESH, HOUSING = "gear_mesh", "modal_housing"
 HOLD, DURATION = 1e-5, 1e-2

@@ -18,14 +18,14 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd
 
-from herringbone.api import load_scene, load_system, run
 from herringbone.benchmarks.other_masters import environment
 from herringbone.core import ParameterError
 from herringbone.core.paths import resources_folder
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.ssp_read import read_ssp
-from herringbone.cosim.ssp_write import PARAMETER_SET
-from herringbone.export import export_ssp
+from herringbone.cosim.ssp.read import read_ssp
+from herringbone.cosim.ssp.write import PARAMETER_SET
+from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.export import export_ssp
 
 STEP, COUNT, EVERY = 1e-6, 400, 50
 PARALLEL = Jacobi(order=0, schedule="parallel")

@@ -17,11 +17,11 @@ import pytest
 from jacobi_plan import read_rows, write_plan
 
 import herringbone as hb
-from herringbone.api import load_scene, load_system
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.fmi.native import PLATFORMS, build_native_fmus, own_platform
 from herringbone.fmi.native.compiler import require_compiler
-from herringbone.start import started
+from herringbone.running.api import load_scene, load_system
+from herringbone.running.start import started
 
 STEP, COUNT, EVERY = 2e-6, 100_000, 1000
 MASTER = Path(__file__).with_name("jacobi.c")

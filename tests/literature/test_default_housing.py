@@ -7,14 +7,14 @@ import re
 
 import numpy as np
 import pytest
-from support_fe import require_gmsh
+from support.finite_elements import require_gmsh
 
 from herringbone.core.paths import resources_folder
 from herringbone.housing import default_housing
 
 require_gmsh()
-from herringbone.housing import default_data  # noqa: E402 (needs the extra fe)
-from herringbone.housing.design import read_design  # noqa: E402
+from herringbone.housing.welded import default_data  # noqa: E402 (needs the extra fe)
+from herringbone.housing.welded.design import read_design  # noqa: E402
 
 HOUSING = default_housing()
 RECORD = default_data.RECORD.read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ import fmpy
 import herringbone.fmi
 
 HERE = Path(__file__).parent
-WRAPPER = Path(herringbone.fmi.__file__).parent / "native"
+WRAPPER = Path(herringbone.fmi.__file__).parent / "native" / "c"
 COMPILER = shutil.which("gcc") or shutil.which("clang")
 VALGRIND = ("valgrind", "-q", "--leak-check=full", "--error-exitcode=9")
 _HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -18,7 +18,8 @@ _WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-format-nonliteral")
 
 def compile_c(*arguments: str | Path) -> None:
     command = [COMPILER, "-std=c11", "-g", "-O1", "-pthread", *_WARNINGS]
-    command += [f"-I{WRAPPER}", f"-I{_HEADERS}", f"-I{HERE}", *map(str, arguments)]
+    folders = (WRAPPER, *(f for f in WRAPPER.iterdir() if f.is_dir()), _HEADERS, HERE)
+    command += [*(f"-I{folder}" for folder in folders), *map(str, arguments)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
 

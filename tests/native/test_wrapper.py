@@ -69,7 +69,7 @@ def run(
     guard = VALGRIND if request.param == "valgrind" else ()
     folder = tmp_path_factory.mktemp("rotor")
     library = folder / "rotor.o"
-    compile_c(*flags, "-r", *sorted(WRAPPER.glob("*.c")), HERE / "rotor.c", "-o", library)
+    compile_c(*flags, "-r", *sorted(WRAPPER.rglob("*.c")), HERE / "rotor.c", "-o", library)
 
     def run_test(test: str, *arguments: str, **environment: str) -> None:
         compile_c(*flags, HERE / f"{test}.c", library, "-o", folder / test)

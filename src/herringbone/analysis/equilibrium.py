@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.analysis.monolithic import Twin
+from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import EquilibriumError
-from herringbone.cosim.system import System
+from herringbone.cosim.structure.system import System
 
 _ITERATIONS = 40
 _CONVERGED = 1e-11

@@ -13,16 +13,16 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.error import relative_error
-from herringbone.analysis.monolithic import Twin
-from herringbone.api import load_scene, load_system, run
+from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
-from herringbone.cosim.system import PartSpec, System
-from herringbone.result import TIME, Result
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.result.result import TIME, Result
+from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.start import started
+from herringbone.running.system_fmu import export_fmu
 from herringbone.scenes import Scene, Start
-from herringbone.start import started
-from herringbone.system_fmu import export_fmu
 
 TOLERANCE = 1e-3
 T_END = 0.04

@@ -12,19 +12,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from herringbone.analysis.stability import fastest_bond
-from herringbone.api import load_scene, load_system, open_parts
+from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.benchmarks.other_masters import PACKAGES, macro_step
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.fmu2_part import Fmu2Part
-from herringbone.cosim.network import build_network
-from herringbone.cosim.plan import connected_outputs, record_names
+from herringbone.cosim.fmu.fmi2_part import Fmu2Part
+from herringbone.cosim.layouts.layout import connected_outputs, record_names
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.ssp_write import write_ssp
-from herringbone.cosim.system import System
+from herringbone.cosim.ssp.write import write_ssp
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
-from herringbone.start import started
+from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.start import started
 
 STEP = 2.5e-6
 """The gear mesh's micro step [s]."""

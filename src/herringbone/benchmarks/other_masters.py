@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from herringbone.core import HerringboneError
-from herringbone.cosim.ssp_write import PARAMETER_SET
+from herringbone.cosim.ssp.write import PARAMETER_SET
 
 PACKAGES = {"ecos": "ecospy", "libcosim": "libcosimpy"}
 """Python package of each master."""

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from herringbone.components.resource_loader import Refusal, ResourceLoader
+from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel

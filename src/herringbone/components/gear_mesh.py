@@ -62,10 +62,10 @@ import math
 
 import numpy as np
 
-from herringbone.components import stiffness_table
 from herringbone.components.gear_mesh_variables import GEARS, VARIABLES
 from herringbone.components.ports import HALVES
-from herringbone.components.resource_loader import ResourceLoader
+from herringbone.components.resources import stiffness_table
+from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Kernels, Text
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine

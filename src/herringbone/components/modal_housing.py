@@ -30,9 +30,9 @@ import math
 
 import numpy as np
 
-from herringbone.components import modal_data
 from herringbone.components.ports import HALVES
-from herringbone.components.resource_loader import ResourceLoader
+from herringbone.components.resources import modal_data
+from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import (
     Component,
     Declaration,

@@ -16,9 +16,9 @@ from math import comb
 
 import numpy as np
 
-from herringbone.cosim.connection import Connection
-from herringbone.cosim.network import Network
-from herringbone.cosim.rates import motion_of_force
+from herringbone.cosim.structure.connection import Connection
+from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.rates import motion_of_force
 
 _CHANGE = 1.0
 """Difference of a force [N or N.m]."""

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from herringbone.core.declaration import node_name
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, measure_loop, solve_loop
-from herringbone.cosim.energy import EnergyWatch
-from herringbone.cosim.network import Network
+from herringbone.cosim.energy.watch import EnergyWatch
+from herringbone.cosim.structure.network import Network
 
 
 def initialise(

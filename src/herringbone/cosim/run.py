@@ -8,16 +8,16 @@ import numpy as np
 
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
-from herringbone.cosim.adaptive_loop import STEP_LIMIT
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.energy import EnergyWatch
+from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.loop import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
-from herringbone.cosim.network import Network
-from herringbone.cosim.plan import HISTORY, Chunk, record_names
+from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
+from herringbone.cosim.loops.adaptive import STEP_LIMIT
+from herringbone.cosim.loops.common import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
+from herringbone.cosim.structure.network import Network
 
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""

@@ -7,13 +7,13 @@ from herringbone.core import ParameterError
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
-from herringbone.cosim.energy import EnergyWatch
+from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
-from herringbone.cosim.network import build_network
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
-from herringbone.cosim.system import System
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
 
 MOST_STEPS = 1e12

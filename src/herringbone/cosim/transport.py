@@ -5,10 +5,10 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.derivative_pass import get_rates, set_derivatives
-from herringbone.cosim.derivative_plan import input_fit
-from herringbone.cosim.loop import LAST_GOOD
-from herringbone.cosim.network import Network
+from herringbone.cosim.layouts.derivatives import input_fit
+from herringbone.cosim.loops.common import LAST_GOOD
+from herringbone.cosim.loops.derivatives import get_rates, set_derivatives
+from herringbone.cosim.structure.network import Network
 
 _FATAL = 4
 

@@ -8,8 +8,8 @@ from fmpy.model_description import ModelDescription
 from fmpy.validation import validate_fmu
 
 from herringbone.core import FmuError
-from herringbone.cosim.fmu_file import read_fmu, require_file
-from herringbone.cosim.fmu_variables import read_variables
+from herringbone.cosim.fmu.file import read_fmu, require_file
+from herringbone.cosim.fmu.variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
 
 _STEPS = 10

@@ -10,10 +10,10 @@ from typing import Self
 from fmpy.fmi1 import FMICallException
 
 from herringbone.core import FmuError
-from herringbone.cosim.fmu2_part import Fmu2Part
-from herringbone.cosim.fmu3_part import Fmu3Part
-from herringbone.cosim.fmu_file import is_fmi3, read_fmu
-from herringbone.cosim.fmu_part import FmuPart
+from herringbone.cosim.fmu.file import is_fmi3, read_fmu
+from herringbone.cosim.fmu.fmi2_part import Fmu2Part
+from herringbone.cosim.fmu.fmi3_part import Fmu3Part
+from herringbone.cosim.fmu.part import FmuPart
 
 
 class _SteppedPart(FmuPart):

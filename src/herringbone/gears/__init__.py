@@ -9,12 +9,12 @@
 Everything is in SI units and rad; values of both gears are pairs (pinion, wheel).
 """
 
-from herringbone.gears.contact import PathOfContact, ToothForces
-from herringbone.gears.gear_pair import GearPair
-from herringbone.gears.mesh_stiffness import MeshStiffness
-from herringbone.gears.modification import Modification
-from herringbone.gears.slices import SliceMesh
-from herringbone.gears.tooth_profile import ToothProfile
+from herringbone.gears.geometry.contact import PathOfContact, ToothForces
+from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.geometry.tooth_profile import ToothProfile
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
+from herringbone.gears.stiffness.slices import SliceMesh
 
 __all__ = [
     "GearPair",

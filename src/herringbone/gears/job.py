@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
-from herringbone.gears.contact_slices import SLICES
-from herringbone.gears.gear_pair import GearPair
-from herringbone.gears.methods import Task
-from herringbone.gears.modification import Modification
-from herringbone.gears.slices import PHASES
+from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.stiffness.contact_slices import SLICES
+from herringbone.gears.stiffness.methods import Task
+from herringbone.gears.stiffness.slices import PHASES
 
 FULL_SPECIFIC_LOAD = 1e5
 """F_t / b [N/m] at which ISO 6336-1 takes teeth as fully loaded: the torque if none is given."""

@@ -1,9 +1,9 @@
 """Housings, off line: modal models, their file format, how they are made, reduced and imported."""
 
 from herringbone.core.paths import resources_folder
+from herringbone.housing.files.reader import read_housing
+from herringbone.housing.files.writer import write_housing
 from herringbone.housing.modal_model import SEAT_DOFS, Frame, ModalHousing, Point
-from herringbone.housing.reader import read_housing
-from herringbone.housing.writer import write_housing
 
 __all__ = [
     "SEAT_DOFS",

@@ -4,7 +4,7 @@ from matplotlib.figure import Figure
 
 from herringbone.plotting.panels import headline, time_panel
 from herringbone.plotting.style import legend_beside, new_figure, scaled_unit, styled
-from herringbone.result import TIME, Result
+from herringbone.result.result import TIME, Result
 
 _CHARACTER = 0.068
 """Width of a character in a legend [inch]."""

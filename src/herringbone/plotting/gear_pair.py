@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from herringbone.gears import GearPair
-from herringbone.gears.mesh_stiffness import MeshStiffness
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, legend_beside, styled
 
 _MM = 1e3

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from herringbone.analysis.operating_point import by_half, instance, shaft_torques
+from herringbone.analysis.figures.operating_point import by_half, instance, shaft_torques
 from herringbone.plotting.columns import generic_overview
 from herringbone.plotting.panels import (
     close_up,
@@ -16,7 +16,7 @@ from herringbone.plotting.panels import (
     time_panel,
 )
 from herringbone.plotting.style import COLOURS, draw_line, legend, new_figure, styled
-from herringbone.result import TIME, Result
+from herringbone.result.result import TIME, Result
 
 _R_MIN = 30.0 / math.pi
 _ABOVE_ORDERS = 0.06

@@ -8,10 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
-from herringbone.analysis.operating_point import mesh_forces, run_mesh_frequency, steady_part
-from herringbone.analysis.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
+from herringbone.analysis.figures.operating_point import (
+    mesh_forces,
+    run_mesh_frequency,
+    steady_part,
+)
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
-from herringbone.result import TIME, Result
+from herringbone.result.result import TIME, Result
 
 SHOWN_PERIODS = 6
 """Mesh periods that a close-up shows."""

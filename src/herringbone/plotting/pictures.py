@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from herringbone.analysis.operating_point import (
+from herringbone.analysis.figures.operating_point import (
     by_half,
     instance,
     run_mesh_frequency,
     steady_part,
 )
-from herringbone.analysis.radiated_power import LABEL, level_db
-from herringbone.analysis.radiated_power import radiated_power as power_of
+from herringbone.analysis.figures.radiated_power import LABEL, level_db
+from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import (
@@ -35,7 +35,7 @@ from herringbone.plotting.style import (
     new_figure,
     styled,
 )
-from herringbone.result import Result
+from herringbone.result.result import Result
 
 DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
 _FORCE_DIRECTION = {"y": "y (line of action)", "z": "z (axial)"}
@@ -165,7 +165,7 @@ def radiated_power(result: Result) -> Figure:
     """Equivalent radiated power of the housing in bins, dB re 1 pW, with the mesh orders.
 
     Raises:
-        ParameterError: nothing moves; or see `analysis.radiated_power`.
+        ParameterError: nothing moves; or see `analysis.figures.radiated_power`.
     """
     found = power_of(result)
     if not found.total:

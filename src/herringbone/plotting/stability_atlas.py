@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from herringbone.analysis.atlas import Panel
+from herringbone.analysis.stability.atlas import Panel
 from herringbone.core import HerringboneError
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, figure_legend, styled
 

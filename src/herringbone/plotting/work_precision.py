@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpecFromSubplotSpec
 from PIL import Image
 
-from herringbone.analysis.variant_labels import variant_labels
-from herringbone.analysis.work_precision import MARKS, Point, WorkPrecision
+from herringbone.analysis.accuracy.variant_labels import variant_labels
+from herringbone.analysis.accuracy.work_precision import MARKS, Point, WorkPrecision
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, new_figure, styled
 
 LEVEL = 1e-3

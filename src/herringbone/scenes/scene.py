@@ -10,7 +10,7 @@ from typing import Any
 from herringbone.core import ParameterError
 from herringbone.core.files import is_file
 from herringbone.core.names import shown
-from herringbone.cosim.system_file import VALUE_HINT, is_value, read_toml
+from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, read_toml
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}

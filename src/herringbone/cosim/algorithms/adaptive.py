@@ -3,8 +3,14 @@
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.cosim.adaptive_loop import STEP_LIMIT, run_adaptive
-from herringbone.cosim.adaptive_plan import (
+from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
+from herringbone.cosim.algorithms.jacobian import (
+    PREDICTION,
+    CouplingError,
+    StepRefusedError,
+    correction_matrix,
+)
+from herringbone.cosim.layouts.adaptive import (
     ACCEPTED,
     BEFORE,
     BEFORE_THAT,
@@ -19,22 +25,16 @@ from herringbone.cosim.adaptive_plan import (
     WANTED,
     Adaptive,
 )
-from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
-from herringbone.cosim.algorithms.jacobian import (
-    PREDICTION,
-    CouplingError,
-    StepRefusedError,
-    correction_matrix,
-)
-from herringbone.cosim.ladder import FIRST, RUNGS, TICKS
-from herringbone.cosim.loop import COUPLING_FAILED, DONE
-from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import REFRESH
-from herringbone.cosim.node_plan import Buffers, Control
-from herringbone.cosim.plan import Chunk
+from herringbone.cosim.layouts.layout import Chunk
+from herringbone.cosim.layouts.nodes import Buffers, Control
+from herringbone.cosim.loops.adaptive import STEP_LIMIT, run_adaptive
+from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
+from herringbone.cosim.loops.ladder import FIRST, RUNGS, TICKS
+from herringbone.cosim.loops.nodes import REFRESH
+from herringbone.cosim.loops.step_error import update_scale
 from herringbone.cosim.record import Grid, GrowingRecord
 from herringbone.cosim.recording import StepStatistics
-from herringbone.cosim.step_error import update_scale
+from herringbone.cosim.structure.network import Network
 
 RESIDUAL_SHARE = 0.1
 """Share of the tolerance that the corrections may leave."""
@@ -160,7 +160,7 @@ class PreparedAdaptive(PreparedNodes):
         return adaptive
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run up to the end of the chunk, which counts ticks; see `stage_loop.run_stages`."""
+        """Run up to the end of the chunk, which counts ticks; see `loops.stages.run_stages`."""
         if self._buffers is None or self._adaptive is None:
             self._buffers = self._make_buffers(history)
             self._adaptive = self._make_adaptive(self._buffers)

@@ -1,8 +1,8 @@
 """What an algorithm is.
 
 A new algorithm is one file in this folder: a frozen dataclass of its options that derives from
-`Algorithm`, and, if stages do not suffice, a compiled loop of its own beside that of `stage_loop`.
-Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
+`Algorithm`, and, if stages do not suffice, a compiled loop of its own beside that of
+`loops.stages`. Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
 """
 
 from abc import ABC, abstractmethod
@@ -13,11 +13,11 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
-from herringbone.cosim.network import Network
-from herringbone.cosim.node_plan import NodePlan
-from herringbone.cosim.plan import Chunk, Plan
+from herringbone.cosim.layouts.layout import Chunk, Plan
+from herringbone.cosim.layouts.nodes import NodePlan
 from herringbone.cosim.record import Grid, Record, UniformRecord
 from herringbone.cosim.recording import StepStatistics
+from herringbone.cosim.structure.network import Network
 
 
 def option(default: float | str, allowed: str) -> Any:  # noqa: ANN401 (as dataclasses.field)
@@ -161,7 +161,7 @@ class PreparedRun(ABC):
 
     @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; arguments and result are those of `stage_loop.run_stages`."""
+        """Run macro steps; arguments and result are those of `loops.stages.run_stages`."""
 
 
 def check_multirate(algorithm: Algorithm) -> None:

@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
-from herringbone.cosim.network import Network
+from herringbone.cosim.structure.network import Network
 
 _MOST = 50
 

@@ -22,7 +22,7 @@ from typing import ClassVar, Self
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.staged import Prepared, prepare_stages, refuse_mixed
-from herringbone.cosim.network import Network
+from herringbone.cosim.structure.network import Network
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,11 @@ from herringbone.cosim.algorithms.jacobian import (
     correction_matrix,
 )
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
-from herringbone.cosim.loop import COUPLING_FAILED, DONE
-from herringbone.cosim.network import Network
-from herringbone.cosim.node_loop import REFRESH, grow_scale, run_iterated
-from herringbone.cosim.node_plan import Buffers, Control, NodePlan
-from herringbone.cosim.plan import Chunk, build_plan, connected_outputs, node_references
+from herringbone.cosim.layouts.layout import Chunk, build_plan, connected_outputs, node_references
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
+from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
+from herringbone.cosim.structure.network import Network
 
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
@@ -190,7 +190,7 @@ class PreparedNodes(PreparedRun):
         return solved_growth(loop.matrix, [self.input_degree(c.target) == 0 for c in loop.forces])
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `stage_loop.run_stages`."""
+        """Run macro steps; see `loops.stages.run_stages`."""
         if self._buffers is None:
             self._buffers = self._make_buffers(history)
             if chunk.start > 0:  # the history holds equidistant points before the first step

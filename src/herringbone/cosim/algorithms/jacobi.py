@@ -20,7 +20,7 @@ from typing import ClassVar, Literal, Self
 
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.staged import Prepared, prepare_stages
-from herringbone.cosim.network import Network
+from herringbone.cosim.structure.network import Network
 
 
 @dataclass(frozen=True)

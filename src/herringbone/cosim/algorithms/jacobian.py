@@ -3,10 +3,10 @@
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.cosim.network import Network
-from herringbone.cosim.node_jacobian import sensitivity
-from herringbone.cosim.node_plan import Buffers, NodePlan
-from herringbone.cosim.plan import Plan
+from herringbone.cosim.layouts.layout import Plan
+from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.loops.node_jacobian import sensitivity
+from herringbone.cosim.structure.network import Network
 
 PREDICTION = 2
 """Degree of the prediction; one correction makes the result nearly independent of it."""
@@ -28,7 +28,7 @@ class InterfaceJacobian:
 
     Args:
         network: parts and connections.
-        plan, nodes: its layout.
+        plan, nodes: of the network.
         outputs: connected outputs of each part.
     """
 

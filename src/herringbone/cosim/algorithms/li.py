@@ -23,7 +23,7 @@ from typing import ClassVar, Self
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive, check_sources
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
-from herringbone.cosim.network import Network
+from herringbone.cosim.structure.network import Network
 from herringbone.cosim.tolerance import SMALLEST_TOLERANCE, check_tolerance
 
 _MOST = 6
@@ -37,8 +37,9 @@ class LI(Algorithm):
     Args:
         degree: of the forces inside a macro step, 1 to 4.
         iterations: corrections at the least; more follow while the residual is too large.
-        tolerance: relative error (see `analysis.error`) for which the macro step adapts itself, up
-            to the step of the run; 0 keeps the step. See `step_error` for what it is relative to.
+        tolerance: relative error (see `analysis.accuracy.error`) for which the macro step adapts
+            itself, up to the step of the run; 0 keeps the step. See `step_error` for what it is
+            relative to.
 
     Raises:
         ParameterError: an option is out of its range.

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part, has_nodes
-from herringbone.cosim.derivative_plan import Derivatives, lay_out_derivatives
-from herringbone.cosim.network import Network
-from herringbone.cosim.slow_plan import slow_degrees
+from herringbone.cosim.layouts.derivatives import Derivatives, lay_out_derivatives
+from herringbone.cosim.layouts.slow import slow_degrees
+from herringbone.cosim.structure.network import Network
 
 
 def node_degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:

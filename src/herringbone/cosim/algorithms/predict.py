@@ -23,16 +23,16 @@ from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.algorithms.staged import prepare_stages, refuse_mixed
-from herringbone.cosim.network import Network
-from herringbone.cosim.plan import (
+from herringbone.cosim.layouts.layout import (
     Chunk,
     Plan,
     build_plan,
     connected_outputs,
     node_references,
 )
-from herringbone.cosim.predict_loop import NODES, Prediction, run_predicted
-from herringbone.cosim.rates import rate_of, rates
+from herringbone.cosim.loops.predict import NODES, Prediction, run_predicted
+from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.rates import rate_of, rates
 
 _FORCE = -2
 
@@ -133,5 +133,5 @@ class PreparedPrediction(PreparedRun):
         return extrapolated_growth(loop.matrix, degrees, 0)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `stage_loop.run_stages`."""
+        """Run macro steps; see `loops.stages.run_stages`."""
         return run_predicted(self.plan, self._prediction, history, chunk)

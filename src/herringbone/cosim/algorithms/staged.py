@@ -9,11 +9,11 @@ from herringbone.core import ParameterError
 from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.derivative_plan import lay_out_derivatives
-from herringbone.cosim.network import Network
-from herringbone.cosim.plan import Chunk, Plan, build_plan
-from herringbone.cosim.slow_plan import slow_degrees
-from herringbone.cosim.stage_loop import run_stages
+from herringbone.cosim.layouts.derivatives import lay_out_derivatives
+from herringbone.cosim.layouts.layout import Chunk, Plan, build_plan
+from herringbone.cosim.layouts.slow import slow_degrees
+from herringbone.cosim.loops.stages import run_stages
+from herringbone.cosim.structure.network import Network
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Prepared(PreparedRun):
         return extrapolated_growth(loop.matrix, degrees, 0 if self.plan.at_end.any() else 1)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
-        """Run macro steps; see `stage_loop.run_stages`."""
+        """Run macro steps; see `loops.stages.run_stages`."""
         plan = self.plan
         if self.starter is not None and chunk.start < self.order:
             plan = self.starter

@@ -12,8 +12,10 @@ import fmpy
 from herringbone.core import FmuError
 from herringbone.fmi.native.platforms import Platform, own_platform
 
-SOURCES = Path(__file__).parent
+SOURCES = Path(__file__).parent / "c"
 """Folder of the wrapper's C files."""
+INCLUDES = (SOURCES, *sorted(f for f in SOURCES.iterdir() if f.is_dir()))
+"""Folders of its headers."""
 _FLAGS = (
     "-std=c11", "-Os", "-g0", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off",
     "-ffunction-sections", "-fdata-sections", "-fno-stack-protector", "-U_FORTIFY_SOURCE",
@@ -95,8 +97,8 @@ def compile_library(
     if platform.extension == "dylib":
         link.append(f"-Wl,-install_name,@rpath/{library.name}")
     command = [
-        *compiler.command, "-shared", "-s", *_FLAGS, f"-I{SOURCES}", f"-I{headers}",
-        *map(str, _sources(fmi)), str(description), str(kernels),
+        *compiler.command, "-shared", "-s", *_FLAGS, *(f"-I{folder}" for folder in INCLUDES),
+        f"-I{headers}", *map(str, _sources(fmi)), str(description), str(kernels),
         "-o", str(library), *link,
     ]  # fmt: skip
     run = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -105,8 +107,10 @@ def compile_library(
 
 
 def _sources(fmi: int) -> list[Path]:
+    """C files, in the order of their names whatever folder they are in."""
     other = {2: "fmi3", 3: "fmi2"}[fmi]
-    return [file for file in sorted(SOURCES.glob("*.c")) if not file.name.startswith(other)]
+    files = sorted(SOURCES.rglob("*.c"), key=lambda file: file.name)
+    return [file for file in files if not file.name.startswith(other)]
 
 
 def _reason(said: str) -> str:

@@ -4,7 +4,7 @@ import math
 import string
 from collections.abc import Container, Iterable
 
-from herringbone.components.resource_loader import ResourceLoader
+from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Declaration, Text, Variable
 from herringbone.core.component import unbounded, unchanged
 from herringbone.core.paths import content_hash

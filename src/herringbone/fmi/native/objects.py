@@ -19,7 +19,7 @@ import llvmlite.binding as llvm
 from numba import carray, cfunc, types
 from numba.core.ccallback import CFunc
 
-from herringbone.components.resource_loader import REPORT, ResourceLoader
+from herringbone.components.resources.loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
 from herringbone.core.component import unbounded, unchanged

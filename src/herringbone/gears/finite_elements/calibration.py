@@ -22,12 +22,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
-from herringbone.gears.coupled_slices import CoupledSliceMesh
 from herringbone.gears.finite_elements.mesh import FiniteElementMesh
-from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
-from herringbone.gears.mesh_stiffness import MeshStiffness
-from herringbone.gears.slices import PHASES, SliceMesh
+from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
+from herringbone.gears.stiffness.slices import PHASES, SliceMesh
 
 _RANGE = (0.2, 4.0)
 _TOLERANCE = 1e-5

@@ -4,8 +4,9 @@ Unit loads act along the flank's normal at a grid of points: stations of the pat
 every section of the mesh.  The displacement under a concentrated load has no limit as a mesh is
 refined, so each deflection is measured at a depth: where the line of the load, in the transverse
 section, meets the axis of the tooth.  There it converges.  The rest, between flank and depth, is
-the local deformation of a line contact, and has a closed form (see `herringbone.gears.slices`;
-C. Weber, The deflection of loaded gears, DSIR Report 3, 1949).
+the local deformation of a line contact, and has a closed form (see
+`herringbone.gears.stiffness.slices`; C. Weber, The deflection of loaded gears, DSIR Report 3,
+1949).
 
 Loads at the flank and measures at the depth are different functionals, so their matrix is symmetric
 up to the local field only: by 4 % of the largest entry for a spur gear, by 13 % at a helix of 30
@@ -39,7 +40,7 @@ from herringbone.gears.finite_elements.layer import layer_stiffness
 from herringbone.gears.finite_elements.section import Section, mesh_section
 from herringbone.gears.finite_elements.sweep import stack_compliance
 from herringbone.gears.finite_elements.unit_loads import sweep_lead, unit_loads
-from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.geometry.gear_pair import GearPair
 
 STATIONS = 9
 """Candidate points along the path of contact."""

@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 
-from herringbone.gears.contact_slices import ContactSlices
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import (
     ToothCompliance,
@@ -27,9 +26,10 @@ from herringbone.gears.finite_elements.compliance import (
     tooth_mesh,
 )
 from herringbone.gears.finite_elements.layer import scikit_fem
-from herringbone.gears.gear_pair import GearPair
-from herringbone.gears.modification import Modification
-from herringbone.gears.point_mesh import Line, PointMesh, Progress, silent
+from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.stiffness.contact_slices import ContactSlices
+from herringbone.gears.stiffness.point_mesh import Line, PointMesh, Progress, silent
 
 SLICES = 120
 

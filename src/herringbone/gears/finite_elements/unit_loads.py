@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from herringbone.gears.finite_elements.section import Section
-from herringbone.gears.gear_pair import GearPair
+from herringbone.gears.geometry.gear_pair import GearPair
 
 
 def sweep_lead(pair: GearPair, gear: int) -> float:

@@ -4,17 +4,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from herringbone.core import ResourceError
+from herringbone.housing.files.reader import read_compliance
 from herringbone.housing.importers.dmig import read_dmig
 from herringbone.housing.importers.frd import read_frd
 from herringbone.housing.importers.matrix_market import read_matrix_market
+from herringbone.housing.importers.matrix_model import MatrixModel, housing_from_matrices
+from herringbone.housing.importers.mode_set import housing_from_modes
 from herringbone.housing.importers.op4 import read_op4
+from herringbone.housing.importers.seat_file import SeatFile, read_seats
 from herringbone.housing.importers.uff import read_uff
-from herringbone.housing.matrix_model import MatrixModel, housing_from_matrices
 from herringbone.housing.modal_model import ModalHousing
-from herringbone.housing.mode_set import housing_from_modes
-from herringbone.housing.reader import read_compliance
-from herringbone.housing.reduced_housing import with_static_compliance
-from herringbone.housing.seat_file import SeatFile, read_seats
+from herringbone.housing.reduction.reduced_housing import with_static_compliance
 
 _MATRICES: dict[str, Callable[[Path], MatrixModel]] = {
     ".op4": read_op4,

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.core import ResourceError, reason
-from herringbone.housing.matrix_model import MatrixModel, Row, only_name
+from herringbone.housing.importers.matrix_model import MatrixModel, Row, only_name
 
 _SYMMETRIC = 6
 _REAL = {1, 2}

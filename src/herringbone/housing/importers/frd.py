@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import ResourceError, reason
-from herringbone.housing.mode_set import ModeSet, check_modal_mass
+from herringbone.housing.importers.mode_set import ModeSet, check_modal_mass
 
 _LABEL_WIDTHS = {"0": 5, "1": 10}
 """Columns of a node number by the format number of a block; 2 and 3 are binary."""

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.core import ResourceError, reason
-from herringbone.housing.matrix_model import MatrixModel
+from herringbone.housing.importers.matrix_model import MatrixModel
 
 _BANNER = "%%matrixmarket"
 _SYMMETRIES = {"general": 0.0, "symmetric": 1.0, "skew-symmetric": -1.0}

@@ -12,7 +12,7 @@ from pathlib import Path
 import scipy.sparse as sp
 
 from herringbone.core import ResourceError, reason
-from herringbone.housing.matrix_model import MatrixModel, only_name
+from herringbone.housing.importers.matrix_model import MatrixModel, only_name
 
 _HEADER = re.compile(r"^(.{8})(.{8})(.{8})(.{8})(.{8})\s*\d*P?,?(\d+)[ED](\d+)\.(\d+)")
 _REAL = {1, 2}

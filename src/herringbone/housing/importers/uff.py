@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import HerringboneError, ResourceError, reason
-from herringbone.housing.mode_set import (
+from herringbone.housing.importers.mode_set import (
     ModeSet,
     check_modal_mass,
     mass_of_complex_mode,
     real_shape,
 )
-from herringbone.housing.seat_file import SeatFile
+from herringbone.housing.importers.seat_file import SeatFile
 
 _NORMAL, _COMPLEX = 2, 3
 _DISPLACEMENT = (0, 1, 8)

@@ -1,0 +1,204 @@
+"""Runs of several algorithms up a ladder of communication step sizes, against one twin.
+
+The monolithic twin is solved once, at the union of the communication points of all runs.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.work_precision import REFUSED, Point
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.names import matches
+from herringbone.core.part import Part, closing_all
+from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
+from herringbone.cosim.layouts.layout import record_names
+from herringbone.cosim.record import Grid
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.structure.system import System
+
+STEPS = tuple(us * 1e-6 for us in (1, 2, 4, 5, 8, 10, 16, 20, 25, 40, 50, 80, 100, 125, 160, 200))
+"""Default ladder of communication step sizes [s]."""
+FEWEST_STEPS = 50
+"""A run of fewer macro steps than this says nothing and is left out."""
+_FAILURES = 2
+_REPEATS = 5
+_ENOUGH = 0.5  # seconds of repeats
+_LONG = 1.5
+_WARM_STEPS = 2
+_FEMTOSECONDS = 1e15
+
+OpenParts = Callable[[], list[Part]]
+Progress = Callable[[str, float], None]
+"""Called before each run with the algorithm and the step [s]."""
+
+
+def charted_algorithms() -> tuple[Algorithm, ...]:
+    """All algorithms, in the variants that each wants to show."""
+    return tuple(variant for kind in ALGORITHMS.values() for variant in kind.charted())
+
+
+def ladder(steps: Sequence[float], t_end: float) -> list[Grid]:
+    """Communication points of each step, ascending, without runs of too few macro steps.
+
+    Raises:
+        ParameterError: a step is not positive and finite, or none is left.
+    """
+    long = [step for step in steps if step > t_end > 0.0]
+    grids = [make_grid(t_end, step, step) for step in steps if step not in long]
+    by_count = {g.count: g for g in grids if g.count >= FEWEST_STEPS}
+    found = sorted(by_count.values(), key=lambda g: g.step)
+    if not found:
+        raise ParameterError(
+            f"no step makes {FEWEST_STEPS} macro steps in t_end = {t_end:g} s; "
+            f"use steps up to {t_end / FEWEST_STEPS:g} s, or a longer t_end"
+        )
+    return found
+
+
+class Reference:
+    """The twin of a system at the union of the communication points of several runs.
+
+    Args:
+        system: structure with start values; no part is a foreign FMU.
+        grids: communication points of the runs.
+
+    Raises:
+        HerringboneError: the system has no twin or no channels, or the twin cannot be solved.
+    """
+
+    def __init__(self, system: System, grids: Sequence[Grid]) -> None:
+        self.twin = twin = Twin(system)
+        names = [
+            f"{part.name}.{name}"
+            for part, own in zip(twin.network.parts, record_names(twin.network), strict=True)
+            for name in own
+        ]
+        self.groups = {
+            group: [n for n in names if any(matches(n, p) for p in patterns)]
+            for group, patterns in system.channels.items()
+        }
+        self.groups = {group: columns for group, columns in self.groups.items() if columns}
+        if not self.groups:
+            raise ParameterError(
+                f"system '{system.name}' has no channels to measure errors on; "
+                "name some in [channels] of its system.toml"
+            )
+        self._columns = [c for columns in self.groups.values() for c in columns]
+        times = np.concatenate([np.arange(g.count + 1) * g.step for g in grids])
+        self._keys, first = np.unique(_key(times), return_index=True)
+        self._values = twin.solve(times[first], self._columns)
+
+    def errors(self, recording: Recording) -> dict[str, float]:
+        """Relative error by channel group; infinite if the run ended early."""
+        if not recording.outcome.reached_end:
+            return dict.fromkeys(self.groups, math.inf)
+        twin, time = self._at(recording.time)
+        found = {}
+        for group, columns in self.groups.items():
+            values = recording.values[:, [recording.names.index(c) for c in columns]]
+            own = twin[:, [self._columns.index(c) for c in columns]]
+            with np.errstate(over="ignore", invalid="ignore"):
+                error = relative_error(values, own, time)
+            found[group] = error if math.isfinite(error) else math.inf
+        return found
+
+    def _at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """The twin (n, columns) at times; these too, if they are no grid of the reference."""
+        rows = np.searchsorted(self._keys, _key(times)).clip(max=self._keys.size - 1)
+        if np.array_equal(self._keys[rows], _key(times)):
+            return self._values[rows], None
+        return self.twin.solve(times, self._columns), times
+
+
+def _key(times: np.ndarray) -> np.ndarray:
+    """Times in whole femtoseconds, so that rounding makes no two points of one."""
+    return np.rint(times * _FEMTOSECONDS).astype(np.int64)
+
+
+def run_points(
+    system: System,
+    open_parts: OpenParts,
+    reference: Reference,
+    algorithms: Sequence[Algorithm],
+    grids: Sequence[Grid],
+    progress: Progress,
+) -> Iterator[tuple[Point, tuple[str, ...]]]:
+    """Run each algorithm up the ladder, up to two failures in a row or an interrupt.
+
+    An algorithm that adapts its step runs once, up to its own largest step.
+
+    Yields:
+        Each point, and notes on it.
+    """
+    for algorithm in algorithms:
+        failures = 0
+        _warm(system, open_parts, algorithm, grids[0])
+        for grid in [_largest(algorithm, grids[0])] if algorithm.adaptive else grids:
+            progress(str(algorithm), grid.step)
+            point, notes = _point(system, open_parts, reference, algorithm, grid)
+            yield point, notes
+            if point.outcome == OutcomeKind.INTERRUPTED:
+                return
+            failures = failures + 1 if point.failed else 0
+            if failures == _FAILURES:
+                break
+
+
+def _largest(algorithm: Algorithm, grid: Grid) -> Grid:
+    """As long as a grid, with the largest step of an adaptive algorithm."""
+    t_end = grid.step * grid.count
+    step = min(algorithm.start_step, t_end)
+    return make_grid(t_end, step, step)
+
+
+def _simulated(
+    system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid
+) -> Recording:
+    with closing_all(open_parts()) as parts:
+        return simulate(system, parts, algorithm, grid)
+
+
+def _warm(system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Grid) -> None:
+    """Load all compiled code, which is no cost of the algorithm; refusals show in the real run."""
+    with suppress(HerringboneError):
+        _simulated(system, open_parts, algorithm, Grid(grid.step, _WARM_STEPS, 1))
+
+
+def _point(
+    system: System,
+    open_parts: OpenParts,
+    reference: Reference,
+    algorithm: Algorithm,
+    grid: Grid,
+) -> tuple[Point, tuple[str, ...]]:
+    """One point: the error of a run, and the shortest wall time of a few."""
+    walls: list[float] = []
+    while True:
+        try:
+            recording = _simulated(system, open_parts, algorithm, grid)
+        except HerringboneError as error:
+            errors = dict.fromkeys(reference.groups, math.inf)
+            point = Point(str(algorithm), grid.step, 1e-3 / grid.step, 0.0, 0.0, errors, REFUSED)
+            return point, (f"{algorithm} at {grid.step * 1e6:.4g} us: {error}",)
+        walls.append(recording.wall_seconds)
+        if not recording.outcome.completed or len(walls) == _REPEATS:
+            break
+        if walls[-1] > _LONG or (len(walls) > 1 and sum(walls) > _ENOUGH):
+            break
+    made = max(recording.macro_steps, 1) * recording.step
+    point = Point(
+        str(algorithm),
+        recording.step,
+        1e-3 * max(recording.passes.values()) / made,
+        min(walls),
+        recording.outcome.time,
+        reference.errors(recording),
+        str(recording.outcome.kind),
+    )
+    return point, tuple(f"{algorithm}: {note}" for note in recording.notes)

@@ -1,0 +1,69 @@
+"""Figures of recorded channels over the steady part of a run: moments and spectral lines."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.figures.operating_point import steady_part
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
+from herringbone.result.result import Result
+
+_SAME_LINE = 2.0
+"""Lines closer than this many resolutions are one line."""
+
+
+class Moments(NamedTuple):
+    """Mean, root mean square of the AC part, and root mean square, in SI units."""
+
+    mean: float
+    ac_rms: float
+    rms: float
+
+
+class ChannelLine(NamedTuple):
+    """A spectral line: frequency [Hz], amplitude (SI), and the column in which it is largest."""
+
+    frequency: float
+    amplitude: float
+    column: str
+
+
+def moments(result: Result, column: str) -> Moments:
+    """Moments of a column over the steady part."""
+    values = result.data[column].to_numpy()[steady_part(result).rows]
+    if not values.size:
+        return Moments(math.nan, math.nan, math.nan)
+    return Moments(
+        float(values.mean()), float(values.std()), math.sqrt(float(np.mean(np.square(values))))
+    )
+
+
+def largest_lines(
+    result: Result, columns: Sequence[str], highest: float, count: int = 3
+) -> list[ChannelLine]:
+    """The largest spectral lines of some columns, each frequency once, largest first.
+
+    Args:
+        result: of a run.
+        columns: of one unit.
+        highest: frequency up to which lines are looked for [Hz].
+        count: at most so many lines.
+    """
+    part = steady_part(result)
+    if part.rows.stop - part.rows.start < FEWEST_SAMPLES:
+        return []
+    found = [
+        ChannelLine(line.frequency, line.amplitude, column)
+        for column in columns
+        for line in spectral_lines(
+            result.data[column].to_numpy()[part.rows], part.sample_step, highest, count
+        )
+    ]
+    apart = _SAME_LINE / (part.end - part.begin)
+    kept: list[ChannelLine] = []
+    for line in sorted(found, key=lambda line: -line.amplitude):
+        if all(abs(line.frequency - other.frequency) > apart for other in kept):
+            kept.append(line)
+    return kept[:count]

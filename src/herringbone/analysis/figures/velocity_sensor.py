@@ -1,0 +1,162 @@
+"""What a velocity sensor with a sampled recorder shows of a vibration.
+
+The chain: high pass and low pass of the sensor, an anti-alias filter or none, sampling, clipping at
+the range, quantisation. Filters are Butterworth, made digital at the step of the input, which
+therefore must be fine. Without an anti-alias filter a line at f shows at |f - k fs|.
+
+Source: A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., chapters 4 and 7.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.signal import butter, sosfilt
+
+from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.components.velocity_sensor import (
+    ANTI_ALIAS_CORNER,
+    ANTI_ALIAS_ORDER,
+    VELOCITY_SENSOR,
+    converted,
+)
+from herringbone.core import ParameterError
+from herringbone.result.result import TIME, Result
+
+_FINEST = 5.0
+"""Least input rate over sampling rate, and over twice the low pass."""
+_WHOLE = 1e-6
+_START = {v.name: v.start for v in VELOCITY_SENSOR.declaration.parameters}
+
+
+class SensorRecord(NamedTuple):
+    """What was recorded.
+
+    Attributes:
+        time: (n,) of the samples [s].
+        velocity: (n,) or (n, k) [m/s].
+        saturated: samples that were clipped, () or (k,).
+    """
+
+    time: np.ndarray
+    velocity: np.ndarray
+    saturated: np.ndarray
+
+
+@dataclass(frozen=True)
+class VelocitySensor:
+    """Sensor and recorder; the component `velocity_sensor` has the same parameters.
+
+    Attributes:
+        high_pass_hz: of the sensor, second order [Hz]; 0 for none.
+        low_pass_hz: of the sensor, second order [Hz]; 0 for none.
+        anti_alias: an eighth-order low pass at 0.4 times the sampling rate.
+        sampling_hz: [Hz].
+        range: largest velocity, either sign [m/s].
+        bits: of the converter over both signs; 0 for no quantisation.
+    """
+
+    high_pass_hz: float = _START["high_pass_hz"]
+    low_pass_hz: float = _START["low_pass_hz"]
+    anti_alias: bool = bool(_START["anti_alias"])
+    sampling_hz: float = _START["sampling_hz"]
+    range: float = _START["range"]
+    bits: int = int(_START["bits"])
+
+    def __post_init__(self) -> None:
+        """Check; raises ParameterError."""
+        for name, lowest in (("high_pass_hz", 0.0), ("low_pass_hz", 0.0)):
+            if not getattr(self, name) >= lowest:
+                raise ParameterError(f"{name} = {getattr(self, name):g} Hz must not be negative")
+        for name, unit in (("sampling_hz", "Hz"), ("range", "m/s")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ParameterError(f"{name} = {getattr(self, name):g} {unit} must be positive")
+        if not 0 <= self.bits <= 32:
+            raise ParameterError(f"bits = {self.bits}: it must lie between 0 and 32")
+
+    def alias_hz(self, frequency_hz: float) -> float:
+        """Frequency at which a line shows after sampling [Hz]."""
+        rest = frequency_hz % self.sampling_hz
+        return min(rest, self.sampling_hz - rest)
+
+    def measure(self, velocity: np.ndarray, step: float) -> SensorRecord:
+        """Record a vibration that begins at time 0.
+
+        Args:
+            velocity: (n,) or (n, k) [m/s], one column per sensor.
+            step: between rows [s].
+
+        Raises:
+            ParameterError: the input is too coarse, or its rate no multiple of the sampling rate.
+        """
+        velocity = np.asarray(velocity, dtype=float)
+        every = self._every(step)
+        seen = velocity
+        for sections in self._filters(step):
+            seen = sosfilt(sections, seen, axis=0)
+        sampled = seen[::every]
+        saturated = (np.abs(sampled) > self.range).sum(axis=0)
+        digits = np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
+        return SensorRecord(np.arange(len(sampled)) * every * step, digits, saturated)
+
+    def _every(self, step: float) -> int:
+        """Input rows per sample."""
+        if not 0.0 < step < np.inf:
+            raise ParameterError(f"step = {step:g} s must be positive")
+        ratio = 1.0 / (self.sampling_hz * step)
+        needed = max(self.sampling_hz, 2.0 * self.low_pass_hz) * _FINEST
+        if 1.0 / step < needed * (1.0 - _WHOLE):
+            raise ParameterError(
+                f"records every {step:g} s are too coarse for the sensor; it takes "
+                f"{1.0 / needed:g} s or less (--record-step)"
+            )
+        if abs(ratio - round(ratio)) > _WHOLE * ratio:
+            raise ParameterError(
+                f"records every {step:g} s do not fit samples every {1.0 / self.sampling_hz:g} s; "
+                "take a whole part of it"
+            )
+        return round(ratio)
+
+    def _filters(self, step: float) -> list[np.ndarray]:
+        """Second-order sections of the filters that are there."""
+        rate = 1.0 / step
+        wanted = (
+            (2, self.high_pass_hz, "highpass"),
+            (2, self.low_pass_hz, "lowpass"),
+            (
+                ANTI_ALIAS_ORDER,
+                ANTI_ALIAS_CORNER * self.sampling_hz if self.anti_alias else 0.0,
+                "lowpass",
+            ),
+        )
+        return [butter(n, f, kind, fs=rate, output="sos") for n, f, kind in wanted if f > 0.0]
+
+
+def sensor_velocity(
+    result: Result, sensors: Sequence[str] = ("A", "B", "C"), *, axis: str = "z"
+) -> np.ndarray:
+    """Velocity of the housing at its sensors under the bearing forces of a run.
+
+    Args:
+        result: of a run with the component `modal_housing`, whose modal data have the sensors.
+        sensors: names.
+        axis: direction that they feel; axial by default.
+
+    Returns:
+        (n, len(sensors)) [m/s] at the records, equidistant ones if the step was adaptive.
+
+    Raises:
+        ParameterError: no forces are recorded, or there is no such sensor.
+    """
+    result = result.uniform()
+    housing = housing_of(result)
+    known = housing.dofs if housing else ()
+    if missing := [name for name in sensors if (name, axis) not in known]:
+        raise ParameterError(
+            f"the modal data of the run have no sensor {missing[0]} along {axis}; it takes data "
+            "with sensors, as 'herringbone housing build' makes them"
+        )
+    step = float(np.diff(result.data[TIME].to_numpy()[:2])[0])
+    modal = modal_velocity(housing, seat_forces(result), step)
+    return modal @ np.array([housing.shape(name, axis) for name in sensors]).T

@@ -1,0 +1,193 @@
+"""How a housing behaves from rest: the tests of the contract, and the force records they use.
+
+The work over a step with held forces is the force times the change of the positions, exactly.
+
+Source: J. C. Willems, Arch. Rational Mech. Anal. 45 (1972) 321-351 (passivity).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from herringbone.components.ports import HALVES
+from herringbone.core.part import Part
+from herringbone.cosim.loops.drive import drive
+
+RECORDS = 20
+"""Random force records of the test of passivity."""
+_AXES = "xyz"
+FORCES = tuple(f"{seat}.f_{axis}" for seat in HALVES for axis in _AXES)
+POSITIONS = tuple(f"{seat}.s_{axis}" for seat in HALVES for axis in _AXES)
+VELOCITIES = tuple(f"{seat}.v_{axis}" for seat in HALVES for axis in _AXES)
+_FORCE = 1000.0
+_SETTLING, _RECORD = 2500, 400
+"""Steps of a step response and of a random record."""
+_BAND_HZ = (50.0, 2000.0)
+_SINES = 6
+
+STATIC_ERROR = 0.02
+RECIPROCITY_ERROR = 0.01
+SUPERPOSITION_ERROR = 1e-3
+NEGATIVE_WORK = 1e-3
+HALVING_CHANGE = 0.01
+FEEDTHROUGH_RATIO = 0.75
+"""Largest share of a step's deflection that half the step may give; a mass alone gives 1/4."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One test.
+
+    Attributes:
+        test: its name.
+        holds: whether it passed.
+        measured: what was seen.
+        limit: what is allowed.
+    """
+
+    test: str
+    holds: bool
+    measured: str
+    limit: str
+
+
+class Behaviour:
+    """The tests; responses to single forces are computed once.
+
+    Args:
+        open_part: makes a new instance, not yet initialised.
+        step: communication step size [s].
+    """
+
+    def __init__(self, open_part: Callable[[], Part], step: float) -> None:
+        self._open, self._step = open_part, step
+        self._responses: np.ndarray | None = None
+
+    def _run(self, forces: np.ndarray, step: float | None = None) -> np.ndarray:
+        """Positions (n + 1, 12) under forces (n, 12)."""
+        return self._outputs(forces, POSITIONS, step or self._step)
+
+    def _outputs(self, forces: np.ndarray, names: tuple[str, ...], step: float) -> np.ndarray:
+        part = self._open()
+        try:
+            part.enter_initialization(0.0, (len(forces) + 1) * step)
+            part.exit_initialization()
+            return drive(part, FORCES, forces, names, step)
+        finally:
+            part.close()
+
+    @property
+    def _unit_responses(self) -> np.ndarray:
+        """(12, n + 1, 12): positions after a step of 1 N at each force."""
+        if self._responses is None:
+            eye = _FORCE * np.eye(len(FORCES))
+            runs = [self._run(np.tile(force, (_SETTLING, 1))) for force in eye]
+            self._responses = np.array(runs) / _FORCE
+        return self._responses
+
+    def feedthrough(self) -> Finding:
+        """The deflection after one step vanishes with the step; a feedthrough would stay."""
+        force = np.full((1, len(FORCES)), _FORCE)
+        whole, half = (np.abs(self._run(force, h)[1]) for h in (self._step, self._step / 2.0))
+        ratio = float((half / np.where(whole > 0.0, whole, np.inf)).max())
+        holds = ratio <= FEEDTHROUGH_RATIO
+        return Finding(
+            "no feedthrough", holds, f"s(h/2) / s(h) = {ratio:.2f}", f"{FEEDTHROUGH_RATIO:g}"
+        )
+
+    def zero(self) -> Finding:
+        """Nothing moves without force."""
+        found = self._outputs(
+            np.zeros((_RECORD, len(FORCES))), (*POSITIONS, *VELOCITIES), self._step
+        )
+        largest = float(np.abs(found).max())
+        return Finding("zero stays zero", largest == 0.0, f"{largest:g}", "0")
+
+    def statics(self, static: np.ndarray | None) -> Finding:
+        """The mean of the step responses, weighted so that vibration drops out."""
+        responses = self._unit_responses
+        found = _mean(responses)
+        if static is None:
+            later = _mean(responses[:, responses.shape[1] // 4 :])
+            reference, what = later, "drifts by"
+        else:
+            reference, what = static, "off by"
+        error = float(np.abs(found - reference).max() / np.abs(reference).max())
+        lowest = float(np.linalg.eigvalsh((found + found.T) / 2.0)[0])
+        holds = error <= STATIC_ERROR and lowest > 0.0
+        shown = f"{what} {100 * error:.2g} %" + ("" if lowest > 0.0 else ", not positive")
+        return Finding("static compliance", holds, shown, f"{100 * STATIC_ERROR:g} %, positive")
+
+    def reciprocity(self) -> Finding:
+        """A force at i moves j as the same force at j moves i."""
+        responses = self._unit_responses
+        error = float(np.abs(responses - responses.transpose(2, 1, 0)).max())
+        error /= float(np.abs(responses).max())
+        holds = error <= RECIPROCITY_ERROR
+        return Finding(
+            "reciprocity", holds, f"off by {100 * error:.2g} %", f"{100 * RECIPROCITY_ERROR:g} %"
+        )
+
+    def superposition(self) -> Finding:
+        """The response to all forces at once is the sum of the single ones."""
+        forces = _FORCE * np.random.default_rng(1).standard_normal(len(FORCES))
+        together = self._run(np.tile(forces, (_SETTLING, 1)))
+        expected = np.tensordot(forces, self._unit_responses, axes=1)
+        error = float(np.abs(together - expected).max() / np.abs(expected).max())
+        holds = error <= SUPERPOSITION_ERROR
+        limit = f"{100 * SUPERPOSITION_ERROR:g} %"
+        return Finding("superposition", holds, f"off by {100 * error:.2g} %", limit)
+
+    def passivity(self) -> Finding:
+        """Work from rest is never negative."""
+        lowest = min(least_work(self._run, seed, self._step) for seed in range(RECORDS))
+        holds = lowest >= -NEGATIVE_WORK
+        shown = f"{lowest:.1g} of the highest work" if lowest < 0.0 else "no negative work"
+        return Finding("passivity", holds, shown, f"-{NEGATIVE_WORK:g}, {RECORDS} records")
+
+    def halving(self) -> Finding:
+        """The rms of the positions at half the step, under the same forces."""
+        forces = random_forces(0, self._step)
+        whole = self._run(forces)[1:]
+        half = self._run(np.repeat(forces, 2, axis=0), self._step / 2.0)[2::2]
+        change = float(abs(_rms(half) / _rms(whole) - 1.0))
+        holds = change <= HALVING_CHANGE
+        return Finding(
+            "step halving", holds, f"rms changes by {100 * change:.2g} %",
+            f"{100 * HALVING_CHANGE:g} %",
+        )  # fmt: skip
+
+
+def random_forces(seed: int, step: float, steps: int = _RECORD) -> np.ndarray:
+    """Smooth random forces (steps, 12) [N] that begin at zero."""
+    random = np.random.default_rng(seed)
+    low, high = np.log(_BAND_HZ)
+    w = 2.0 * np.pi * np.exp(random.uniform(low, high, (_SINES, len(FORCES))))
+    amplitude = _FORCE * random.standard_normal((_SINES, len(FORCES)))
+    phase = random.uniform(0.0, 2.0 * np.pi, (_SINES, len(FORCES)))
+    t = step * np.arange(steps)[:, None, None]
+    return (amplitude * (np.sin(w * t + phase) - np.sin(phase))).sum(axis=1)
+
+
+def least_work(run: Callable[[np.ndarray], np.ndarray], seed: int, step: float) -> float:
+    """Lowest work of a random record since rest, over the highest.
+
+    Args:
+        run: positions (n + 1, 12) [m] under held forces (n, 12) [N].
+        seed: of the record.
+        step: communication step size [s].
+    """
+    forces = random_forces(seed, step)
+    work = np.cumsum((forces * np.diff(run(forces), axis=0)).sum(axis=1))
+    return float(work.min() / np.abs(work).max())
+
+
+def _mean(responses: np.ndarray) -> np.ndarray:
+    """(12, 12) mean over time under a Hann window."""
+    window = np.hanning(responses.shape[1])
+    return np.einsum("n,fns->fs", window / window.sum(), responses)
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt((values**2).mean()))

@@ -1,0 +1,109 @@
+"""What every housing must do, whoever wrote it: the contract and its tests.
+
+Variables: twelve forces on the housing `<seat>.f_x` ... [N] are inputs; the motions of the seats
+`<seat>.s_x` ... [m] and `<seat>.v_x` ... [m/s] are outputs without direct dependence on inputs.
+Behaviour, from rest: zero stays zero; a constant force leads to a constant deflection; the
+compliance is reciprocal; responses add up; a force record never gets out more work than it put in;
+a halved step changes little.
+
+Behaviour is tested in `housing.behaviour`.
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from herringbone.analysis.housing.behaviour import (
+    FORCES,
+    POSITIONS,
+    VELOCITIES,
+    Behaviour,
+    Finding,
+)
+from herringbone.core import ParameterError
+from herringbone.core.part import Part
+from herringbone.core.units import base_exponents
+
+STEP = 2e-5
+"""Communication step size [s] of the tests; two-way coupling wants no larger one."""
+_UNITS = (
+    dict.fromkeys(FORCES, "N") | dict.fromkeys(POSITIONS, "m") | dict.fromkeys(VELOCITIES, "m/s")
+)
+
+
+def check_housing(
+    open_part: Callable[[], Part],
+    *,
+    static: np.ndarray | None = None,
+    step: float = STEP,
+    progress: Callable[[str], None] = lambda what: None,
+) -> list[Finding]:
+    """Test a housing against the contract.
+
+    Args:
+        open_part: makes a new instance, not yet initialised.
+        static: (12, 12) compliance at the seats to compare with [m/N], if it is known.
+        step: communication step size [s].
+        progress: called with what begins.
+
+    Returns:
+        One finding a test; if variables are wrong, nothing else is tested.
+
+    Raises:
+        HerringboneError: it does not start or does not step.
+    """
+    if not 0.0 < step < 1.0:
+        raise ParameterError(f"step {step:g} s must be positive")
+    part = open_part()
+    try:
+        findings = list(_declared(part))
+    finally:
+        part.close()
+    if not all(finding.holds for finding in findings):
+        return findings
+    tests = Behaviour(open_part, step)
+    for what, test in (
+        ("no feedthrough", tests.feedthrough),
+        ("zero stays zero", tests.zero),
+        ("static compliance", lambda: tests.statics(static)),
+        ("reciprocity", tests.reciprocity),
+        ("superposition", tests.superposition),
+        ("passivity", tests.passivity),
+        ("step halving", tests.halving),
+    ):
+        progress(what)
+        findings.append(test())
+    return findings
+
+
+def _declared(part: Part) -> Iterator[Finding]:
+    wanted = {name: "input" for name in FORCES} | dict.fromkeys((*POSITIONS, *VELOCITIES), "output")
+    missing = [
+        name
+        for name, causality in wanted.items()
+        if name not in part.variables
+        or part.variables[name].causality != causality
+        or not part.variables[name].is_real
+    ]
+    count = f"{len(wanted) - len(missing)} of {len(wanted)}"
+    shown = f"{count}; missing: {', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
+    limit = "12 inputs f, 12 outputs s, 12 outputs v"
+    yield Finding("variables", not missing, shown if missing else count, limit)
+    present = [part.variables[name] for name in wanted if name not in missing]
+    wrong = [
+        f"{v.name} in {v.unit}"
+        for v in present
+        if v.unit and v.dimension and v.dimension != _si(_UNITS[v.name])
+    ]
+    bare = sum(not v.unit for v in present)
+    shown = ", ".join(wrong[:3]) or (f"{bare} without unit, taken as SI" if bare else "declared")
+    yield Finding("units", not wrong, shown, "N, m, m/s")
+    direct = [v.name for v in present if v.causality == "output" and v.dependencies]
+    undeclared = sum(v.causality == "output" and v.dependencies is None for v in present)
+    shown = f"{undeclared} outputs say nothing" if undeclared else "none"
+    shown = f"{direct[0]} and {len(direct) - 1} more" if direct else shown
+    yield Finding("dependencies", not direct, shown, "none of s, v on f")
+
+
+def _si(unit: str) -> tuple:
+    return (1.0, 0.0, tuple(sorted(base_exponents(unit).items())))

@@ -1,0 +1,1 @@
+"""Stability of the coupling: limits, why they are exceeded, and what to choose."""

@@ -1,0 +1,233 @@
+"""Amplification matrix of a coupling algorithm, measured on its own compiled code.
+
+One macro step of an algorithm maps z = (states of all parts, signals at the communication points
+that the algorithm looks back to) to z'. For linear parts the map is affine, z' = A z + b: its
+columns follow from differences of single macro steps, exactly up to rounding. Nothing is derived
+by hand, so that every algorithm that runs can be examined.
+
+The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Busch, ZAMM 96, 2016,
+1061-1081, section 3: recurrence equations of co-simulation; here the parts are the real ones.)
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+from threadpoolctl import ThreadpoolController
+
+from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part, state_changes
+from herringbone.core import HerringboneError, Instance
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
+from herringbone.cosim.loops.common import DONE, get_all
+from herringbone.cosim.structure.network import Network
+
+_BLAS = ThreadpoolController()
+"""Matrices of a few hundred rows: threads of BLAS would mostly wait for each other."""
+RIGID = 1e-5
+"""Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
+square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
+GROWTH = 1e-6
+"""Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
+_SLOW = 0.3
+"""Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
+_ROWS = HISTORY - 1
+_START = HISTORY
+"""A macro step by which all history is there."""
+_NEVER = 1 << 40
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The fastest growing motion of a coupled system.
+
+    Attributes:
+        radius: largest magnitude of an eigenvalue, rigid rotation left out.
+        frequency: of that motion [Hz], at most half the rate of communication points.
+        fast_radius: the same of motions that are not slow against the step. Slow ones decay by
+            next to nothing in a step at any step; these tell when an unstable band is near.
+        mirror_radius: the same of motions at half the rate of communication points: there a motion
+            meets its own mirror image, and one of the two grows at the expense of the other.
+    """
+
+    radius: float
+    frequency: float
+    fast_radius: float
+    mirror_radius: float = 0.0
+
+
+class Amplification:
+    """Amplification matrices of one algorithm on one system of linear parts.
+
+    Args:
+        network: parts and connections.
+        instances: of its parts, at the operating point; they are left as they were.
+        algorithm: coupling algorithm.
+
+    Raises:
+        ParameterError: a part cannot do what the algorithm needs.
+    """
+
+    def __init__(
+        self, network: Network, instances: Sequence[Instance], algorithm: Algorithm
+    ) -> None:
+        self._parts = [linear_part(i) for i in instances]
+        self.network = replace(network, parts=tuple(self._parts))
+        self.algorithm = algorithm
+        self._start = [part.values.copy() for part in self._parts]
+        self._counts = [part.declaration.state_count for part in self._parts]
+        plan = algorithm.prepare(self.network).plan
+        self._outputs = plan.output_reference.size
+        self._first = plan.output_first
+        self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
+        self._base = np.zeros((HISTORY, self._outputs))
+        get_all(plan, self._base, self._records, 0)
+        self._base[1:] = self._base[0]
+        self._change = self._changes(plan.output_first, plan.output_reference)
+        self._used: np.ndarray | None = None
+
+    def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
+        """Difference of each entry of z."""
+        found = [change for part in self._parts for change in state_changes(part.instance)]
+        signals: list[float] = []
+        for p, part in enumerate(self._parts):
+            units = {v.reference: v.unit for v in part.variables.values() if v.is_real}
+            signals += [
+                CHANGE.get(units[int(r)] or "", OTHER_CHANGE)
+                for r in references[first[p] : first[p + 1]]
+            ]
+        return np.array(found + signals * _ROWS)
+
+    def growth(self, step: float) -> Growth:
+        """The fastest growing motion at a macro step [s], from the eigenvalues.
+
+        Raises:
+            HerringboneError: a part fails at this step.
+        """
+        matrix = self.matrix(step)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            eigenvalues = np.linalg.eigvals(matrix)
+        eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
+        sizes = np.abs(eigenvalues)
+        if sizes.size == 0:
+            return Growth(0.0, 0.0, 0.0)
+        angles = np.abs(np.angle(eigenvalues))
+        largest = int(np.argmax(sizes))
+        frequency = float(angles[largest] / (2.0 * np.pi * step))
+        fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
+        mirror = float(sizes[angles == np.pi].max(initial=0.0))
+        return Growth(float(sizes[largest]), frequency, fast, mirror)
+
+    def matrix(self, step: float) -> np.ndarray:
+        """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
+
+        Raises:
+            HerringboneError: a part fails at this step.
+        """
+        if self._used is None:
+            everything = np.arange(self._change.size)
+            self._used = _coupled(self._differences(step, everything))
+        return self._differences(step, self._used)
+
+    def motion(self, step: float) -> list[np.ndarray]:
+        """Complex amplitudes of each part's outputs in the fastest growing motion.
+
+        Connected outputs come first, in their order; then those that only the algorithm reads.
+
+        Raises:
+            HerringboneError: a part fails at this step.
+        """
+        matrix = self.matrix(step)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            eigenvalues, vectors = np.linalg.eig(matrix)
+        sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
+        vector = vectors[:, int(np.argmax(sizes))]
+        vector = vector / np.abs(vector / self._change[self._used]).max()
+        history = self._base.copy()
+        with self._prepared(step) as prepared:
+            self._advance(prepared, step, history)
+            self._advance(prepared, step, history)
+            base = history[0].copy()
+            found = []
+            for changes in (vector.real, vector.imag):
+                self._advance(prepared, step, history, dict(zip(self._used, changes, strict=True)))
+                found.append(history[0] - base)
+        return np.split(found[0] + 1j * found[1], self._first[1:-1])
+
+    @contextmanager
+    def _prepared(self, step: float) -> Iterator[PreparedRun]:
+        """A run of the algorithm; afterwards the parts are as they were."""
+        prepared = self.algorithm.prepare(self.network)
+        degrees = [part.instance.block[part.degree_index] for part in self._parts]
+        try:
+            for part, degree in zip(self._parts, prepared.degree, strict=True):
+                part.prepare(step, degree)
+            yield prepared
+        finally:
+            self._restore(self._base.copy())
+            for part, degree in zip(self._parts, degrees, strict=True):
+                part.instance.block[part.degree_index] = degree
+
+    def _advance(
+        self,
+        prepared: PreparedRun,
+        step: float,
+        history: np.ndarray,
+        changes: Mapping[int, float] | None = None,
+    ) -> np.ndarray:
+        """z after one macro step from the operating point, some of its entries changed."""
+        self._restore(history)
+        for entry, change in (changes or {}).items():
+            self._perturb(history, int(entry), change)
+        chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
+        status, _, culprit = prepared.run(history, chunk)
+        if status != DONE:
+            name = self._parts[culprit].name if culprit >= 0 else "the coupling"
+            raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
+        return self._vector(history)
+
+    def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
+        history = self._base.copy()
+        matrix = np.empty((used.size, used.size))
+        with self._prepared(step) as prepared:
+            # An algorithm may build its correction in the first call.
+            self._advance(prepared, step, history)
+            base = self._advance(prepared, step, history)[used]
+            for column, entry in enumerate(used):
+                change = self._change[entry]
+                moved = self._advance(prepared, step, history, {entry: change})[used]
+                matrix[:, column] = (moved - base) / change
+        return matrix
+
+    def _restore(self, history: np.ndarray) -> None:
+        history[:] = self._base
+        for part, start in zip(self._parts, self._start, strict=True):
+            part.values[:] = start
+
+    def _perturb(self, history: np.ndarray, entry: int, change: float) -> None:
+        rest = entry
+        for part, count in zip(self._parts, self._counts, strict=True):
+            if rest < count:
+                part.values[rest] += change
+                return
+            rest -= count
+        history[rest // self._outputs, rest % self._outputs] += change
+
+    def _vector(self, history: np.ndarray) -> np.ndarray:
+        states = [p.values[:count] for p, count in zip(self._parts, self._counts, strict=True)]
+        return np.concatenate([*states, history[:_ROWS].ravel()])
+
+
+def _coupled(matrix: np.ndarray) -> np.ndarray:
+    """Entries of z that can grow: in a circle of influence, or on their own.
+
+    Eigenvalues are those of the strongly connected blocks. What is left out has the eigenvalue 0
+    (a signal that nothing looks back to) or exactly 1 (a state that nothing changes).
+    """
+    count, block = connected_components(matrix != 0.0, directed=True, connection="strong")
+    alone = np.bincount(block, minlength=count)[block] == 1
+    diagonal = np.diag(matrix)
+    return np.flatnonzero(~alone | ((diagonal != 0.0) & (diagonal != 1.0)))

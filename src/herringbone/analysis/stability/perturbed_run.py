@@ -1,0 +1,115 @@
+"""Growth of a small perturbation, per macro step, measured on two runs of the real loop.
+
+Both runs have the same algorithm and step; in one of them the bodies start with slightly other
+velocities. In a stable coupling the difference of the forces dies out, whatever the runs themselves
+do (mesh excitation, a transient); in an unstable one it grows exponentially. Its rate is the
+largest Lyapunov exponent of the coupled run (G. Benettin et al., Meccanica 15, 1980, 9-20).
+
+Slow motions, which every step resolves, are taken out by the second difference in time. What is
+left of them: a kick turns shafts a little faster, so that meshing forces come earlier, by an angle
+that grows linearly in time. Only what grows faster than that counts as growth.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from herringbone.components.in_process import InProcessPart
+from herringbone.core import HerringboneError, Instance
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.energy.watch import power_pairs
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
+
+KICK = {"m/s": 1e-6, "rad/s": 1e-4}
+"""Largest start velocities: they deflect the meshes by about 1e-4 of what the load does."""
+GROWN = 30.0
+"""Elastic energy is at most that of the kick: a stable difference rises by the start's share only;
+what has risen by this factor was growing, even if separating teeth have since held it."""
+_ROUNDING = 1e-4
+"""Of what was there at first: the least that rounding of the shafts' angles does not cover."""
+_WINDOWS, _FIRST = 10, 20
+
+MakeInstances = Callable[[], Sequence[Instance]]
+"""Makes the parts of a run, at their start values."""
+
+
+def perturbation_growth(
+    system: System,
+    instances: MakeInstances,
+    algorithm: Algorithm,
+    step: float,
+    *,
+    steps: int,
+    at_rest: bool = False,
+) -> float:
+    """Natural logarithm of the growth of a small perturbation per macro step.
+
+    Args:
+        system: structure; where bodies and elements meet, forces are compared.
+        instances: makes its parts.
+        algorithm: coupling algorithm.
+        step: macro step [s].
+        steps: macro steps of each run.
+        at_rest: the parts are linear and start in equilibrium: without the perturbation their
+            forces are constant, so that one run is enough.
+
+    Returns:
+        Positive in an unstable coupling; infinite if a run ends early.
+    """
+    kicked = _forces(system, _kicked(instances()), algorithm, step, steps)
+    plain = kicked[:1] if at_rest else _forces(system, instances(), algorithm, step, steps)
+    if not (np.isfinite(kicked).all() and np.isfinite(plain).all()):
+        return math.inf
+    return _rate(np.diff(kicked - plain, n=2, axis=0), power=0 if at_rest else 1)
+
+
+def _kicked(instances: Sequence[Instance]) -> Sequence[Instance]:
+    """The instances with other velocities of all bodies, the same ones in every call."""
+    random = np.random.default_rng(0)
+    for instance in instances:
+        for entry, v in enumerate(instance.component.declaration.states):
+            instance.block[entry] += KICK.get(v.unit, 0.0) * random.uniform(-1.0, 1.0)
+    return instances
+
+
+def _forces(
+    system: System, instances: Sequence[Instance], algorithm: Algorithm, step: float, steps: int
+) -> np.ndarray:
+    """Forces between the parts (steps + 1, m) in a run; one row of infinity if it ends early."""
+    parts = [InProcessPart(i) for i in instances]
+    pairs = [pair.force for pair in power_pairs(build_network(system, parts))]
+    try:
+        run = simulate(system, parts, algorithm, make_grid(steps * step, step, step))
+    except HerringboneError:  # no Jacobian where the values overflow
+        return np.full((1, len(pairs)), np.inf)
+    if not run.outcome.reached_end:
+        return np.full((1, len(pairs)), np.inf)
+    columns = [run.names.index(f"{parts[c.source].name}.{c.output}") for c in pairs]
+    return run.values[:, columns]
+
+
+def _rate(difference: np.ndarray, power: int) -> float:
+    """Growth per row of a difference (n, m), from its middle to its end, or up to its peak.
+
+    Args:
+        difference: of two runs.
+        power: of time, with which a difference may grow that counts as constant.
+    """
+    length = len(difference) // _WINDOWS
+    windows = difference[: length * _WINDOWS].reshape(_WINDOWS, length, -1)
+    weights = np.hanning(length)[:, None] / np.hanning(length).mean()
+    sizes = np.sqrt((weights * windows**2).mean(axis=(1, 2)))
+    start = math.sqrt((difference[:_FIRST] ** 2).mean())
+    last = int(np.argmin(np.append(sizes > _ROUNDING * start, False))) - 1
+    if last < 1:
+        return math.log(_ROUNDING) / length
+    middle = (last + 1) // 2 if last > 1 else 0
+    allowed = ((last + 0.5) / (middle + 0.5)) ** power
+    rate = math.log(sizes[last] / (allowed * sizes[middle])) / ((last - middle) * length)
+    peak = int(np.argmax(sizes))
+    if rate <= 0.0 and sizes[peak] > GROWN * start:
+        return math.log(sizes[peak] / start) / ((peak + 1) * length)
+    return rate

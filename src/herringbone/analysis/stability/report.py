@@ -1,0 +1,196 @@
+"""Stability of a system's coupling as text and as one JSON object."""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+from herringbone.analysis.stability.bonds import Bond
+from herringbone.analysis.stability.limits import Stability, StepLimits
+from herringbone.analysis.stability.linear_parts import MeshStiffness
+from herringbone.analysis.stability.simulated_limit import HIGHEST, LOWEST
+from herringbone.analysis.stability.step_scan import LARGEST_STEP
+from herringbone.core import HerringboneError
+
+_MICRO = 1e6
+_WIDTH = 100
+"""Longest line of the text, in characters."""
+_SCHEDULE = ",schedule=bodies_first"
+"""The default, left out of names."""
+
+
+def _us(step: float) -> str:
+    return f"{_MICRO * step:.1f}" if math.isfinite(step) else f"> {_MICRO * LARGEST_STEP:.0f}"
+
+
+def _simulated(step: float | None) -> str:
+    return "-" if step is None else _us(step)
+
+
+def _bands(found: StepLimits) -> str:
+    parts = [
+        f"{_us(low)}-{_us(high)}" if math.isfinite(high) else f"from {_us(low)}"
+        for low, high in found.unstable_bands
+    ]
+    return ", ".join(parts) or "none"
+
+
+def _table(rows: Sequence[tuple[str, ...]], *, wrap_last: bool = False) -> list[str]:
+    """Rows in columns, the first one left-aligned, the last one too if it is to be wrapped."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    left = {0, len(widths) - 1} if wrap_last else {0}
+    indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
+    lines = []
+    for row in rows:
+        first, *more = _pieces(row[-1], _WIDTH - indent) if wrap_last else (row[-1],)
+        cells = zip((*row[:-1], first), widths, strict=True)
+        text = [c.ljust(w) if k in left else c.rjust(w) for k, (c, w) in enumerate(cells)]
+        lines += ["  ".join(text).rstrip(), *(" " * indent + line for line in more)]
+    return lines
+
+
+def _pieces(bands: str, width: int) -> list[str]:
+    """Lines of whole bands."""
+    lines = wrap(bands.replace("from ", "from\N{NO-BREAK SPACE}"), max(width, 1))
+    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
+
+
+def _limit_rows(found: Stability, *, runs: bool) -> list[tuple[str, ...]]:
+    names = [stiffness.value for stiffness in MeshStiffness]
+    rows: list[tuple[str, ...]] = [
+        ("", *names, *(("runs",) if runs else ()), "grows at", "unstable at mean"),
+        ("algorithm", *("[us]" for _ in names), *(("[us]",) if runs else ()), "[Hz]", "[us]"),
+    ]
+    for limits in found.limits:
+        seen = (_simulated(limits.simulated_limit),) if runs else ()
+        frequency = f"{limits.frequency:.0f}" if math.isfinite(limits.frequency) else "-"
+        steps = (_us(limits.mesh_stiffness[name]) for name in names)
+        name = limits.algorithm.removesuffix(_SCHEDULE)
+        rows.append((name, *steps, *seen, frequency, _bands(limits)))
+    return rows
+
+
+def _bond_lines(bonds: Sequence[Bond]) -> list[str]:
+    """A line of numbers for each bond, and below it the bodies with their effective masses."""
+    rules = "jacobi:order=0", "jacobi:order=1", "jacobi:order=2", "li:degree=3"
+    rows: list[tuple[str, ...]] = [
+        ("bond", "local", "damping", "J0", "J1", "J2", "LI-3"),
+        ("  bodies, effective masses", "[Hz]", "ratio [1]", *("[us]" for _ in rules)),
+    ]
+    for bond in bonds:
+        frequency = f"{bond.frequency / (2.0 * math.pi):.0f}"
+        limits = (_us(bond.limits[rule]) for rule in rules)
+        rows.append((bond.name, frequency, f"{bond.damping_ratio:.3f}", *limits))
+    head, units, *numbers = _table(rows)
+    below = map(_bodies, bonds)
+    pairs = [line for pair in zip(numbers, below, strict=True) for line in pair]
+    return [head, units, *pairs, "J0, J1, J2, LI-3: limits of jacobi and li by the two-mass rule"]
+
+
+def _bodies(bond: Bond) -> str:
+    unit = "kg.m2" if bond.name.endswith(".tau") else "kg"
+    masses = zip(bond.bodies, bond.masses, strict=True)
+    return "  " + ", ".join(f"{body} {mass:.4g} {unit}" for body, mass in masses)
+
+
+def stability_text(found: Stability) -> str:
+    """Limits, bonds and recommendation, for people; up to 100 characters wide."""
+    scene = f", scene {found.scene}" if found.scene else ""
+    runs = any(limits.simulated_limit for limits in found.limits)
+    lines = [
+        f"{found.system}{scene}: first unstable step at minimum, mean and maximum mesh stiffness,",
+        "predicted from the linear parts",
+        "",
+        *_table(_limit_rows(found, runs=runs), wrap_last=True),
+    ]
+    if runs:
+        lines.append(
+            "runs: of the non-linear system; - if none was found from "
+            f"{LOWEST:g} to {HIGHEST:g} times the predicted one"
+        )
+    if found.bonds:
+        lines += ["", *_bond_lines(found.bonds)]
+        lines.append(f"all bonds together: {found.highest_frequency / (2.0 * math.pi):.0f} Hz")
+    chosen = found.recommended
+    if chosen:
+        lines += [
+            "",
+            f"recommended for {100.0 * found.tolerance:g} %: "
+            f"--algorithm {chosen.algorithm.removesuffix(_SCHEDULE)} --step {chosen.step:.3g}",
+            f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
+            f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
+            *wrap(f"rule: {chosen.source}", _WIDTH),
+        ]
+    return "\n".join([*lines, *(line for n in found.notes for line in wrap(f"note: {n}", _WIDTH))])
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def stability_summary(found: Stability) -> dict[str, Any]:
+    """Plain values, for JSON: steps in s, frequencies in Hz; None where no limit was found."""
+    chosen = found.recommended
+    return {
+        "system": found.system,
+        "scene": found.scene,
+        "tolerance": found.tolerance,
+        "algorithms": [
+            {
+                "algorithm": limits.algorithm,
+                "limit": _number(limits.limit),
+                "unstable_bands": [[_number(x) for x in band] for band in limits.unstable_bands],
+                "mesh_stiffness": {k: _number(v) for k, v in limits.mesh_stiffness.items()},
+                "frequency": _number(limits.frequency),
+                "simulated_limit": limits.simulated_limit,
+            }
+            for limits in found.limits
+        ],
+        "bonds": [
+            {
+                "bond": bond.name,
+                "bodies": list(bond.bodies),
+                "masses": list(bond.masses),
+                "stiffness": bond.stiffness,
+                "damping": bond.damping,
+                "frequency": bond.frequency / (2.0 * math.pi),
+                "damping_ratio": bond.damping_ratio,
+                "limits": bond.limits,
+            }
+            for bond in found.bonds
+        ],
+        "all_bonds_frequency": found.highest_frequency / (2.0 * math.pi),
+        "recommended": chosen
+        and {
+            "algorithm": chosen.algorithm,
+            "step": chosen.step,
+            "expected_error": chosen.expected_error,
+            "separation_error": chosen.separation_error,
+            "bounded_by": chosen.bounded_by,
+            "source": chosen.source,
+        },
+        "notes": list(found.notes),
+    }
+
+
+def write_stability(found: Stability, folder: Path) -> list[Path]:
+    """Write stability.txt and stability.json to a folder, made if needed; what was written.
+
+    Raises:
+        HerringboneError: a file cannot be written.
+    """
+    contents = {
+        folder / "stability.txt": stability_text(found),
+        folder / "stability.json": json.dumps(stability_summary(found)),
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, content in contents.items():
+            file.write_text(content + "\n", encoding="utf-8")
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from error
+    return list(contents)

@@ -1,0 +1,1 @@
+"""A system without coupling: the monolithic twin, and the system as one component."""

@@ -1,0 +1,172 @@
+"""The monolithic twin: the same equations as the co-simulation, solved as one system.
+
+Dormand-Prince of order 8 (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential
+Equations I, 1993, section II.5) at a tolerance far below coupling errors, restarted at the
+breakpoints that the components declare.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_source
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.registry import component
+from herringbone.core import HerringboneError, Instance, StructureError
+from herringbone.core.generated import load_generated
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
+
+TOLERANCE = 1e-10
+"""Relative tolerance of the twin; absolute: this times the size that a state reaches."""
+_SMALLEST = 1e-15
+
+
+def refuse_foreign_parts(system: System) -> None:
+    """Check that the equations of all parts are known.
+
+    Raises:
+        StructureError: a part is a foreign FMU.
+    """
+    if system.foreign_parts:
+        raise StructureError(
+            f"{', '.join(system.foreign_parts)} is a foreign FMU: its equations are not known, so "
+            "that there is no monolithic reference for this system"
+        )
+
+
+def make_instances(system: System) -> list[Instance]:
+    """Instances of a system's components, values set and initialised.
+
+    Raises:
+        StructureError: a part is a foreign FMU, whose equations are not known.
+        ParameterError, ResourceError: bad values.
+    """
+    refuse_foreign_parts(system)
+    instances = []
+    for spec in system.parts:
+        instance = Instance(component(str(spec.component)), spec.name)
+        for name, value in spec.values.items():
+            instance.set(name, value)
+        instance.initialise()
+        instances.append(instance)
+    return instances
+
+
+class Twin:
+    """A system as one right-hand side.
+
+    Args:
+        system: its parts are all components of this package.
+
+    Raises:
+        StructureError, ParameterError, ResourceError: see `make_instances`, `build_network`.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.instances = make_instances(system)
+        self.network = build_network(system, [InProcessPart(i) for i in self.instances])
+        self.layout: TwinLayout = twin_layout(self.instances)
+        source = twin_source(self.network, self.instances, self.layout)
+        self._module = load_generated("twin", source)
+        self.block = np.concatenate([i.block for i in self.instances])
+
+    @property
+    def state(self) -> np.ndarray:
+        """Start values of all states (n,)."""
+        counts = [i.component.declaration.state_count for i in self.instances]
+        return np.concatenate([i.block[:n] for i, n in zip(self.instances, counts, strict=True)])
+
+    def rhs(self, t: float, x: np.ndarray) -> np.ndarray:
+        """Derivative of all states (n,) at time t [s]."""
+        dx = np.zeros_like(x)
+        self._module.rhs(self.block, x, float(t), dx)
+        return dx
+
+    def index(self, column: str) -> int:
+        """Index in the twin's block of `instance.variable`."""
+        name, _, variable = column.partition(".")
+        for p, instance in enumerate(self.instances):
+            if instance.name == name:
+                declaration = instance.component.declaration
+                return self.layout.block_first[p] + declaration.index[variable]
+        raise StructureError(f"the twin has no part '{name}'")
+
+    def observe(self, times: np.ndarray, states: np.ndarray, columns: Sequence[str]) -> np.ndarray:
+        """Values (times, columns) of outputs at times and states (n, times)."""
+        values = np.empty((times.size, len(columns)))
+        indices = np.array([self.index(c) for c in columns], dtype=np.int64)
+        self._module.observe(self.block, times, np.ascontiguousarray(states), indices, values)
+        return values
+
+    def breakpoints(self, t_end: float) -> list[float]:
+        """Times in (0, t_end) at which the right-hand side is not smooth."""
+        found = {t for i in self.instances for t in i.component.breakpoints(i.block)}
+        return sorted(t for t in found if 0.0 < t < t_end)
+
+    def solve(
+        self,
+        times: np.ndarray,
+        columns: Sequence[str],
+        tolerance: float = TOLERANCE,
+        progress: Callable[[float, float], None] | None = None,
+    ) -> np.ndarray:
+        """Outputs (times, columns) of the solution from the start values.
+
+        Args:
+            times: ascending, from 0 [s].
+            columns: `instance.variable`.
+            tolerance: relative tolerance.
+            progress: called with the time reached and the end [s].
+
+        Raises:
+            HerringboneError: the solver gives up.
+        """
+        t_end = float(times[-1])
+        states = np.empty((self.state.size, times.size))
+        x, t0 = self.state, 0.0
+        for t1 in [*self.breakpoints(t_end), t_end]:
+            last = t1 == t_end
+            inside = (times >= t0) & ((times <= t1) if last else (times < t1))
+            x = self._solve_piece(
+                t0, t1, x, times, np.flatnonzero(inside), states, tolerance, progress
+            )
+            t0 = t1
+        return self.observe(times, states, columns)
+
+    def _solve_piece(
+        self,
+        t0: float,
+        t1: float,
+        x: np.ndarray,
+        times: np.ndarray,
+        rows: np.ndarray,
+        states: np.ndarray,
+        tolerance: float,
+        progress: Callable[[float, float], None] | None,
+    ) -> np.ndarray:
+        """Solve between two breakpoints; fills the states at the wanted rows."""
+        dx = np.empty_like(x)
+        rhs, block = self._module.rhs, self.block
+
+        def function(t: float, x: np.ndarray) -> np.ndarray:
+            rhs(block, x, t, dx)
+            return dx.copy()
+
+        solver = DOP853(function, t0, x, t1, rtol=tolerance, atol=_SMALLEST)
+        wanted = times[rows]
+        position = 0
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise HerringboneError(f"the monolithic twin stops at {solver.t:g} s: {message}")
+            end = int(np.searchsorted(wanted, solver.t, side="right"))
+            if end > position:
+                inside = wanted[position:end]
+                states[:, rows[position:end]] = solver.dense_output()(inside)
+                position = end
+            if progress:
+                progress(solver.t, float(times[-1]))
+        return solver.y

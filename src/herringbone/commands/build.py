@@ -1,0 +1,93 @@
+"""The command `build`: FMUs of components, Python or native."""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from herringbone.commands.options import assignments
+from herringbone.commands.output import check_writable
+
+_ALL = "all"
+_SET = "COMPONENT.PARAMETER=FILE"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    sub.add_argument("component", nargs="*", help="components; all if none is given")
+    sub.add_argument("--native", action="store_true", help="without Python at run time")
+    add_platform_options(sub)
+    sub.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar=_SET,
+        help="resource file that a native FMU carries instead of its own; may be repeated",
+    )
+    sub.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        help="folder to copy the FMUs to, as COMPONENT.fmu, with --fmi 3 as COMPONENT_fmi3.fmu; "
+        "files of these names are replaced",
+    )
+
+
+def add_platform_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the options of native FMUs."""
+    sub.add_argument("--fmi", type=int, default=2, help="FMI version of native FMUs, 2 or 3")
+    sub.add_argument(
+        "--platforms",
+        nargs="+",
+        default=[],
+        metavar="PLATFORM",
+        help="platforms of native FMUs, such as x86_64-windows, or all; this one if not given",
+    )
+
+
+def chosen_platforms(options: argparse.Namespace) -> list[str]:
+    """The names of the platforms that were asked for."""
+    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
+
+    return list(PLATFORMS) if options.platforms == [_ALL] else options.platforms
+
+
+def untested(platforms: list[str]) -> list[str]:
+    """A line that names the platforms whose binaries were built but cannot be run here, if any."""
+    from herringbone.fmi.native import PLATFORMS  # noqa: PLC0415
+
+    names = [name for name in platforms if not PLATFORMS[name].tested]
+    return [f"built, not run: {', '.join(names)}"] if names else []
+
+
+def build(options: argparse.Namespace) -> Iterator[str]:
+    """Build; yields the files and what is to be known of them.
+
+    Raises:
+        HerringboneError: something about the options is wrong, or the build fails.
+    """
+    from herringbone.core import ParameterError  # noqa: PLC0415
+    from herringbone.running.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
+
+    if not options.native and (options.platforms or options.fmi != 2):
+        raise ParameterError(
+            "--platforms and --fmi choose among native FMUs; add --native. Python FMUs are FMI 2.0 "
+            "and run wherever Python and this package do"
+        )
+    if not options.native and options.set:
+        raise ParameterError(
+            "--set puts files into native FMUs; add --native. Python FMUs read theirs at run time"
+        )
+    if options.output:
+        check_writable(options.output)
+    platforms = chosen_platforms(options)
+    files = assignments(options.set, "--set", _SET)
+    fmus = build_fmus(
+        options.component,
+        options.output,
+        native=options.native,
+        platforms=platforms,
+        fmi=options.fmi,
+        files={path: Path(file) for path, file in files.items()},
+    )
+    yield from map(str, fmus)
+    yield from untested(platforms)

@@ -1,0 +1,75 @@
+"""The command `export`: a system as .ssp file, or as one native FMU."""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+
+from herringbone.commands.build import add_platform_options, chosen_platforms, untested
+from herringbone.commands.options import add_scene
+from herringbone.commands.output import check_writable
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options, `--set` excepted."""
+    add_scene(sub)
+    sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
+    sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
+    sub.add_argument(
+        "--outside",
+        action="append",
+        default=[],
+        metavar="INSTANCE",
+        help="leave this instance out of the FMU; what it feeds becomes inputs",
+    )
+    sub.add_argument("--native", action="store_true", help="an .ssp file with native FMUs")
+    add_platform_options(sub)
+    sub.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        help="file; if not given SYSTEM.ssp, with --as-fmu SYSTEM.fmu, and with --fmi 3 "
+        "SYSTEM_fmi3.fmu",
+    )
+
+
+def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> list[str]:
+    """Export; returns the file and what is to be known of it.
+
+    Raises:
+        HerringboneError: something about the options is wrong, or the export fails.
+    """
+    from herringbone.core import ParameterError  # noqa: PLC0415
+    from herringbone.running.export import PARALLEL_STEP, export_ssp, fmu_file_name  # noqa: PLC0415
+    from herringbone.running.system_fmu import export_fmu  # noqa: PLC0415
+
+    name = Path(options.system).stem
+    if options.output:
+        check_writable(options.output.parent, options.output)
+    platforms = chosen_platforms(options)
+    if options.as_fmu:
+        if options.step is not None:
+            raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
+        file = export_fmu(
+            options.system,
+            options.output or Path(fmu_file_name(name, options.fmi)),
+            outside=options.outside,
+            scene=options.scene,
+            values=values,
+            platforms=platforms,
+            fmi=options.fmi,
+        )
+        return [str(file), *untested(platforms)]
+    if options.outside or options.fmi != 2:
+        raise ParameterError("--outside and --fmi belong to one FMU; add --as-fmu")
+    if platforms and not options.native:
+        raise ParameterError("--platforms chooses among native FMUs; add --native or --as-fmu")
+    file = export_ssp(
+        options.system,
+        options.output or Path(f"{name}.ssp"),
+        scene=options.scene,
+        step=PARALLEL_STEP if options.step is None else options.step,
+        values=values,
+        native=options.native,
+        platforms=platforms,
+    )
+    return [str(file), *untested(platforms)]

@@ -1,0 +1,103 @@
+"""What `herringbone gear` shows and writes: table, picture, stiffness table, component values."""
+
+import json
+from pathlib import Path
+
+from herringbone.commands.gear.tables import gear_figures, gear_tables
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.gears.files.component_values import component_values
+from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.files.table_file import table_text
+from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.job import GearJob
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
+from herringbone.gears.stiffness.methods import Progress, check_method, mesh_stiffness
+
+TABLE, PICTURE, VALUES = "mesh_stiffness.csv", "gear_pair.png", "gear_mesh.toml"
+_READERS = (".toml", ".rexs", ".xml")
+
+
+def gear(
+    file: Path,
+    output: Path | None = None,
+    *,
+    method: str = "slices",
+    torque: float | None = None,
+    stage: str | None = None,
+    halves: int | None = None,
+    progress: Progress | None = None,
+    as_json: bool = False,
+) -> str:
+    """Compute a pair's table and write its files.
+
+    Args:
+        file: gear file (.toml) or REXS file (.rexs, .xml).
+        output: folder; results/gear-NAME if None.
+        method: of the mesh stiffness.
+        torque: of the pinion [N m]; the file's if None.
+        stage: of a REXS file.
+        halves: of a REXS stage; 1 if None.
+        progress: called with what is done and the share of the work, 0 to 1.
+        as_json: one JSON object, in SI units and rad, instead of the table.
+
+    Returns:
+        The table as text, and where the files are.
+
+    Raises:
+        HerringboneError: see `read_gear_file`, `read_rexs`, `GearJob.task` and the method; or a
+            file cannot be written.
+    """
+    check_method(method)
+    job = _job(file, stage, halves)
+    if torque is not None:
+        job = GearJob(**{**vars(job), "torque": torque})
+    task = job.task()
+    stiffness = mesh_stiffness(task, method, progress)
+    folder = output or Path("results") / f"gear-{file.stem}"
+    written = [str(path) for path in _write(stiffness, folder, file.stem)]
+    if as_json:
+        return json.dumps({**gear_figures(job, stiffness), "files": written})
+    return f"{gear_tables(job, stiffness)}\n\nFiles: {', '.join(written)}"
+
+
+def _job(file: Path, stage: str | None, halves: int | None) -> GearJob:
+    suffix = file.suffix.lower()
+    if suffix not in _READERS:
+        raise ParameterError(f"{file}: a gear file ends with one of {', '.join(_READERS)}")
+    if suffix == ".toml":
+        for option, value in (("stage", stage), ("halves", halves)):
+            if value is not None:
+                raise ParameterError(f"{file}: --{option} is of REXS files only")
+        return read_gear_file(file)
+    return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
+
+
+def _write(stiffness: MeshStiffness, folder: Path, name: str) -> list[Path]:
+    """Write table, picture and, of a double-helical pair, the component's values."""
+    from herringbone.plotting.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
+
+    texts = {TABLE: table_text(stiffness)}
+    if stiffness.pair.halves == 2:
+        texts[VALUES] = _values_text(stiffness.pair)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file_name, text in texts.items():
+            (folder / file_name).write_text(text, encoding="utf-8", newline="\n")
+        write_gear_pair_picture(stiffness, f"Gear pair {name}", folder / PICTURE)
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from error
+    return [folder / file_name for file_name in (*texts, PICTURE)]
+
+
+def _values_text(pair: GearPair) -> str:
+    """Values of the gear_mesh component as the [set] table of a scene."""
+    lines = [
+        "# Values of the gear_mesh component for this pair: the [set] table of a scene.",
+        f"# A steady load of the wheel is {pair.gear_ratio:.6g} times the pinion's torque.",
+        "[set]",
+    ]
+    lines += [f'"gear_mesh.{name}" = {value!r}' for name, value in component_values(pair).items()]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,148 @@
+"""`herringbone housing reduce` and `import`: modal data made smaller, and brought in."""
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from herringbone.commands.output import check_writable, say, show
+from herringbone.components.modal_housing import MODES
+from herringbone.core import HerringboneError
+from herringbone.housing import ModalHousing, read_housing, write_housing
+from herringbone.housing.importers import import_housing
+from herringbone.housing.reduction.error import drive_point_errors
+from herringbone.housing.reduction.reduced_housing import certified_bound, reduce_housing
+
+_DECADES, _POINTS = 1.3, 800
+
+
+def reduce_command(options: argparse.Namespace) -> int:
+    """Reduce modal data, write them with their certificate and a picture beside the full data."""
+    full = read_housing(options.data)
+    stem = options.data.name.removesuffix(".zip")
+    output = options.output or Path("results") / f"{stem}-{options.band:g}Hz"
+    if output.resolve() == options.data.resolve():
+        raise HerringboneError(f"-o {output} would overwrite the full data; choose another place")
+    check_writable(_folder(output))
+    reduced = reduce_housing(full, band_hz=options.band, tolerance=options.tolerance)
+    frequency_hz = options.band * np.logspace(-_DECADES, 0.0, _POINTS)
+    errors = drive_point_errors(full, reduced, frequency_hz)
+    static = np.diag(full.static_compliance())
+    difference = float(np.abs(np.diag(reduced.static_compliance()) / static - 1.0).max())
+    _write(reduced, output)
+    picture = _folder(output) / f"{output.name.removesuffix('.zip')}.png"
+    _draw(full, reduced, frequency_hz, errors, picture)
+    figures = {
+        "oscillators": reduced.frequency_hz.size,
+        "normal_modes": reduced.kind.count("normal"),
+        "residual_modes": reduced.kind.count("residual"),
+        "full_oscillators": full.frequency_hz.size,
+        "band_hz": options.band,
+        "tolerance": options.tolerance,
+        "error_bound": certified_bound(reduced, options.band),
+        "error_against_data": float(errors.max()),
+        "static_difference": difference,
+        "files": [str(output), str(picture)],
+    }
+    show(json.dumps(figures) if options.json else _text(figures))
+    return 0
+
+
+def _text(figures: dict) -> str:
+    before, after = figures["full_oscillators"], figures["oscillators"]
+    counts = f"{figures['normal_modes']} normal and {figures['residual_modes']} residual modes"
+    if before == after:
+        lines = [f"All {before} oscillators, {counts}, are needed to {figures['band_hz']:g} Hz"]
+        if figures["error_bound"]:
+            lines[0] += f"; certified before to {100 * figures['error_bound']:.2g} %"
+    else:
+        lines = [
+            f"{before} oscillators became {after}: {counts}",
+            f"Receptance at the seats up to {figures['band_hz']:g} Hz: error certified below "
+            f"{100 * figures['error_bound']:.2g} % of the static compliance (tolerance "
+            f"{100 * figures['tolerance']:g} %), {100 * figures['error_against_data']:.2g} % "
+            "against the data",
+            f"Static compliance at the seats differs by {figures['static_difference']:.1e}",
+        ]
+    return "\n".join([*lines, "Files: " + ", ".join(figures["files"])])
+
+
+def _draw(
+    full: ModalHousing,
+    reduced: ModalHousing,
+    frequency_hz: np.ndarray,
+    errors: np.ndarray,
+    file: Path,
+) -> None:
+    from herringbone.plotting.housing_reduction import reduction_picture  # noqa: PLC0415 (lazy)
+
+    picture = reduction_picture(
+        frequency_hz,
+        full.receptance(frequency_hz),
+        reduced.receptance(frequency_hz),
+        (full.static_compliance(), reduced.static_compliance()),
+        errors,
+        certified_bound(reduced, float(frequency_hz[-1])),
+        (full.frequency_hz.size, reduced.frequency_hz.size),
+    )
+    try:
+        picture.savefig(file)
+    except OSError as error:
+        raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
+
+
+def import_command(options: argparse.Namespace) -> int:
+    """Import a housing of another program, write it in the neutral format."""
+    output = options.output or Path("results") / options.file[0].stem
+    check_writable(_folder(output))
+    with tqdm(disable=None, bar_format="[{elapsed}] {desc}") as bar:
+        housing = import_housing(
+            options.file,
+            options.seats,
+            band_hz=options.band,
+            tolerance=options.tolerance,
+            most_modes=MODES,
+            progress=bar.set_description_str,
+        )
+    _write(housing, output)
+    stiffness = 1e-6 / np.diag(housing.static_compliance())
+    figures = {
+        "oscillators": housing.frequency_hz.size,
+        "normal_modes": housing.kind.count("normal"),
+        "frequency_hz": housing.frequency_hz[:8].tolist(),
+        "static_stiffness_N_per_um": stiffness.tolist(),
+        "valid_to_hz": housing.valid_to_hz,
+        "error_bound": housing.certificate.get("error_bound"),
+        "files": [str(output)],
+    }
+    show(json.dumps(figures) if options.json else _import_text(figures))
+    return 0
+
+
+def _import_text(figures: dict) -> str:
+    bound = figures["error_bound"]
+    certified = "" if bound is None else f", error certified below {100 * bound:.2g} %"
+    return "\n".join([
+        f"{figures['oscillators']} oscillators, {figures['normal_modes']} of them normal modes, "
+        f"good to {figures['valid_to_hz']:g} Hz{certified}",
+        "Lowest [Hz]: " + ", ".join(f"{f:.2f}" for f in figures["frequency_hz"]),
+        "Static stiffness x, y, z of each seat [N/um]: "
+        + ", ".join(f"{k:.0f}" for k in figures["static_stiffness_N_per_um"]),
+        "Files: " + ", ".join(figures["files"]),
+    ])  # fmt: skip
+
+
+def _folder(output: Path) -> Path:
+    return output.parent if output.suffix == ".zip" else output
+
+
+def _write(housing: ModalHousing, output: Path) -> None:
+    for warning in write_housing(housing, output):
+        say(f"herringbone: note: {warning}")
+    if housing.frequency_hz.size > MODES:
+        say(
+            f"herringbone: note: {housing.frequency_hz.size} oscillators; the component takes "
+            f"{MODES}: lower --band or raise --tolerance of 'herringbone housing reduce'"
+        )

@@ -1,0 +1,59 @@
+"""What `herringbone list` shows."""
+
+from herringbone.components.registry import COMPONENTS, component
+from herringbone.core.paths import systems_folder
+from herringbone.core.variable import Causality, Variable
+from herringbone.cosim.algorithms import ALGORITHMS
+from herringbone.cosim.structure.system_file import FILE_NAME, read_toml
+from herringbone.scenes import read_scene
+
+_ORDER = (Causality.INPUT, Causality.OUTPUT, Causality.LOCAL, Causality.PARAMETER)
+
+
+def _table(rows: list[tuple[str, ...]]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
+    return [
+        "  " + "  ".join([*(c.ljust(w) for c, w in zip(row, widths, strict=False)), row[-1]])
+        for row in rows
+    ]
+
+
+def overview() -> str:
+    """Components, systems with their scenes, and algorithms."""
+    lines = ["Components:"]
+    lines += _table([(c.name, c.declaration.description) for c in COMPONENTS.values()])
+    lines += ["", "Systems and scenes:"]
+    rows = []
+    for file in sorted(systems_folder().glob(f"*/{FILE_NAME}")):
+        rows.append((file.parent.name, read_toml(file).get("description", "")))
+        for scene in sorted(file.parent.glob("scenes/*.toml")):
+            rows.append((f"  {scene.stem}", read_scene(scene).description))
+    lines += _table(rows)
+    lines += ["", "Algorithms:"]
+    lines += _table(
+        [(str(kind()), (kind.__doc__ or "").splitlines()[0]) for kind in ALGORITHMS.values()]
+    )
+    return "\n".join(lines)
+
+
+def _start(variable: Variable) -> str:
+    return "" if variable.causality is Causality.OUTPUT else f"{variable.start:g}"
+
+
+def describe_component(name: str) -> str:
+    """Description and variables of a component.
+
+    Raises:
+        StructureError: there is no such component.
+    """
+    declaration = component(name).declaration
+    lines = [f"{name}: {declaration.description}"]
+    for causality in _ORDER:
+        found = [v for v in declaration.variables if v.causality is causality]
+        if found:
+            lines += ["", f"{causality.value}s:"]
+            lines += _table([(v.name, _start(v), v.unit, v.description) for v in found])
+    if declaration.texts:
+        lines += ["", "resource files:"]
+        lines += _table([(t.name, t.start, t.description) for t in declaration.texts])
+    return "\n".join(lines)

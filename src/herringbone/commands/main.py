@@ -1,0 +1,180 @@
+"""Command line: what `herringbone --help` shows."""
+
+import argparse
+import re
+import traceback
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NoReturn
+
+import herringbone
+from herringbone.commands import bench as bench_command
+from herringbone.commands import build as build_command
+from herringbone.commands import export as export_command
+from herringbone.commands import run as run_command
+from herringbone.commands import stability as stability_command
+from herringbone.commands.gear import command as gear_command
+from herringbone.commands.housing import command as housing_command
+from herringbone.commands.options import (
+    add_command,
+    add_kind,
+    add_scene,
+    add_start_values,
+    start_values,
+)
+from herringbone.commands.output import check_writable, say, show, terminable
+from herringbone.core import (
+    EXIT_CODES,
+    HerringboneError,
+    OutcomeKind,
+    ParameterError,
+    one_line,
+)
+
+BAD_INPUT = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    options = _parser().parse_args(arguments)
+    try:
+        with terminable():
+            return options.command(options)
+    except HerringboneError as error:
+        say(f"herringbone: {error}")
+        if options.debug:
+            traceback.print_exc()
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        say("herringbone: interrupted")
+        return EXIT_CODES[OutcomeKind.INTERRUPTED]
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line, and to which -1e-5 is a number and no option."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:  # noqa: ANN401 (argparse's own)
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong, and end with the exit code of bad input."""
+        self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)}; see '{self.prog} --help'\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
+    parser.add_argument("--version", action="version", version=herringbone.__version__)
+    parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    add = partial(add_command, commands)
+    sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
+    sub.add_argument("name", nargs="?", help="component whose variables are shown")
+    build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
+    sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
+    sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
+    sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
+    sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
+    run_command.add_options(add("run", _run, "run a system"))
+    _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
+    sub = add("stability", _stability, "predict the stable steps of algorithms")
+    _comparison_options(sub)
+    stability_command.add_options(sub)
+    add_start_values(sub)
+    bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
+    sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
+    export_command.add_options(sub)
+    add_start_values(sub)
+    gear_command.register(commands)
+    housing_command.register(commands)
+    return parser
+
+
+def _comparison_options(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compare algorithms on a scene."""
+    add_scene(sub)
+    sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
+
+
+def _chart_options(sub: argparse.ArgumentParser) -> None:
+    _comparison_options(sub)
+    sub.add_argument("--steps", type=float, nargs="+", help="communication step sizes in s")
+    sub.add_argument(
+        "--tolerances", type=float, nargs="+", help="relative errors: a curve of adaptive li"
+    )
+    sub.add_argument("--t-end", type=float, help="duration of each run in s")
+    add_kind(sub)
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
+    )
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _run(options: argparse.Namespace) -> int:
+    return EXIT_CODES[run_command.run(options)]
+
+
+def _list(options: argparse.Namespace) -> int:
+    from herringbone.commands.listing import describe_component, overview  # noqa: PLC0415
+
+    show(describe_component(options.name) if options.name else overview())
+    return 0
+
+
+def _build(options: argparse.Namespace) -> int:
+    for line in build_command.build(options):
+        show(line)
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    if options.against and not options.role:
+        raise ParameterError("--against belongs to the test of a housing; add --as housing")
+    if options.role:
+        from herringbone.commands.housing.check import check_command  # noqa: PLC0415 (numba)
+
+        return check_command(options.fmu, options.against)
+    from herringbone.fmi.check import check_fmu  # noqa: PLC0415
+
+    problems = check_fmu(options.fmu)
+    for problem in problems:
+        show(problem)
+    show(
+        f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
+    )
+    return 1 if problems else 0
+
+
+def _chart(options: argparse.Namespace) -> int:
+    from herringbone.commands.chart import chart  # noqa: PLC0415 (numba: only when something runs)
+
+    check_writable(options.output or Path("results"))
+    given = {"algorithms": options.algorithm, **vars(options)}
+    given = {name: given[name] for name in ("algorithms", "steps", "tolerances", "t_end")}
+    text, outcome = chart(
+        options.system,
+        options.output,
+        as_json=options.json,
+        scene=options.scene,
+        fmu=options.fmu,
+        **{name: value for name, value in given.items() if value is not None},
+    )
+    show(text)
+    return EXIT_CODES[outcome]
+
+
+def _stability(options: argparse.Namespace) -> int:
+    show(stability_command.stability(options, start_values(options.set)))
+    return 0
+
+
+def _bench(options: argparse.Namespace) -> int:
+    show(bench_command.bench(options))
+    return 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    for line in export_command.export(options, start_values(options.set)):
+        show(line)
+    return 0

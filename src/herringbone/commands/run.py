@@ -1,0 +1,171 @@
+"""The command `run`: a system, from its options to the report."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tqdm import tqdm
+
+from herringbone.commands.options import (
+    add_kind,
+    add_scene,
+    add_start_values,
+    assignments,
+    start_values,
+)
+from herringbone.commands.output import check_writable, say, show
+from herringbone.core import Outcome, OutcomeKind, ParameterError
+
+if TYPE_CHECKING:
+    from herringbone.result.result import Result
+
+_SLOW, _REPLACE = "INSTANCE=N,...", "INSTANCE=FILE.fmu"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    add_scene(sub)
+    sub.add_argument(
+        "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
+    )
+    sub.add_argument(
+        "--step", type=float, help="communication step size in s; the largest, with --tolerance"
+    )
+    sub.add_argument(
+        "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
+    )
+    sub.add_argument(
+        "--slow", metavar=_SLOW, help="heavy bodies that step once in N communication steps"
+    )
+    sub.add_argument("--t-end", type=float, help="duration in s")
+    sub.add_argument("--record-step", type=float, help="time between records in s")
+    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
+    add_kind(sub)
+    sub.add_argument(
+        "--replace", action="append", default=[], metavar=_REPLACE,
+        help="FMU in the place of an instance; may be repeated",
+    )  # fmt: skip
+    add_start_values(sub)
+    sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
+    sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
+    sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> OutcomeKind:
+    """Run, write the report, and show the summary.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or files cannot be written.
+    """
+    from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running.summary import summary_text  # noqa: PLC0415
+
+    check_writable(options.output or Path("results"))
+    optional = {
+        name: value
+        for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
+        if (value := getattr(options, name)) is not None
+    }
+    with _Bar() as bar:
+        report = _Report(options, bar)
+        result = api.run(
+            options.system,
+            **optional,
+            fmu=options.fmu,
+            replace_parts=assignments(options.replace, "--replace", _REPLACE),
+            values=start_values(options.set),
+            slow=_multiples(options.slow),
+            reference=options.reference,
+            progress=bar.show,
+            recorded=report.write,
+        )
+    result = report.complete(result)
+    show(result.to_json() if options.json else summary_text(result))
+    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+        say(_ended(result.outcome))
+    return result.outcome.kind
+
+
+def _ended(outcome: Outcome) -> str:
+    return f"herringbone: {outcome.kind.value}: {outcome.message}"
+
+
+class _Report:
+    """The files of a run: written when it ends, before anything more is found out about it."""
+
+    def __init__(self, options: argparse.Namespace, bar: "_Bar") -> None:
+        self._options, self._bar = options, bar
+        self._start = Path.cwd()  # FMUs may change it
+        self._shown, self._files = Path(), ()
+
+    def write(self, result: "Result") -> None:
+        """Write all files."""
+        from herringbone.running.report import write_report  # noqa: PLC0415 (pandas)
+
+        name = Path(self._options.system).stem
+        own = Path("results") / f"{name}-{result.info.scene}"
+        self._shown = self._options.output or own
+        self._bar.close()
+        if result.outcome.kind is OutcomeKind.INTERRUPTED:
+            say(f"{_ended(result.outcome)}, and are being written to {self._shown}")
+        self._files = write_report(
+            result,
+            self._start / self._shown,
+            parquet=self._options.parquet,
+            shown=self._shown,
+        ).files
+        if result.outcome.unstable:
+            self._bar.tell(f"results are in {self._shown}; looking for what grows, and remedies")
+
+    def complete(self, result: "Result") -> "Result":
+        """Add to the summary what was found out since; returns the result with its files."""
+        from herringbone.running.report import write_summary  # noqa: PLC0415 (pandas)
+
+        result = replace(result, files=self._files)
+        if result.error or result.info.why:
+            write_summary(result, self._start / self._shown)
+        return result
+
+
+def _multiples(text: str | None) -> dict[str, int]:
+    """Whole numbers by instance, of an option that lists them."""
+    found = {}
+    for name, number in assignments(text.split(",") if text else [], "--slow", _SLOW).items():
+        if not number.isdecimal():
+            raise ParameterError(f"--slow {name}={number}: it must be a whole number of steps")
+        found[name] = int(number)
+    return found
+
+
+class _Bar:
+    """Progress bar of simulated milliseconds, then a line on what goes on; on a terminal only."""
+
+    def __enter__(self) -> "_Bar":
+        self._bar: tqdm | None = None
+        return self
+
+    def show(self, reached: float, t_end: float) -> None:
+        """Move the bar to a simulated time [s]."""
+        if self._bar is None:
+            self._bar = tqdm(
+                total=round(1e3 * t_end, 3),
+                unit="ms",
+                disable=None,
+                bar_format="{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]",
+            )
+        self._bar.update(1e3 * reached - self._bar.n)
+
+    def tell(self, text: str) -> None:
+        """Show a line until the bar is closed."""
+        self.close()
+        self._bar = tqdm(desc=text, disable=None, bar_format="{desc}", leave=False)
+
+    def close(self) -> None:
+        """End the line."""
+        if self._bar is not None:
+            self._bar.close()
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()

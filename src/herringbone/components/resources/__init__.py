@@ -1,0 +1,1 @@
+"""The resource files of components: their grammar, and the tables that they become."""

@@ -1,0 +1,100 @@
+"""From resource files to tables: the files become numbers, a kernel checks and arranges them.
+
+The kernel is the same for Python and native FMUs, so that both have the same tables and refuse the
+same files with the same words.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.components.resources.flat_csv import check_units, read_flat_csv
+from herringbone.core import Column, ResourceError, Text
+
+REPORT = 6
+"""Numbers that a refusal may show."""
+
+LoadKernel = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], int]
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a resource file is refused.
+
+    Attributes:
+        format: follows the file's path; has `%g` conversions for the numbers of the report.
+        text: which one of the component's resource files is at fault.
+    """
+
+    format: str
+    text: int = 0
+
+    def error(self, files: list[Path], report: np.ndarray) -> ResourceError:
+        """The refusal with its numbers."""
+        numbers = self.format.replace("%%", "").count("%")
+        return ResourceError(f"{files[self.text]}{self.format % tuple(report[:numbers])}")
+
+
+@dataclass(frozen=True)
+class ResourceLoader:
+    """Reads a component's resource files into the tables of a block.
+
+    Attributes:
+        texts: the String parameters that name the files, with their columns.
+        kernel: load(values, shape, b, scratch, report) -> int, in the kernel language. `values`
+            and `shape`: see `read_numbers`, file after file. It returns 0, or the number of a
+            refusal, counted from 1, and writes the numbers that the refusal shows to `report`.
+        refusals: what the kernel may return.
+        scratch: length of the scratch space.
+    """
+
+    texts: tuple[Text, ...]
+    kernel: LoadKernel
+    refusals: tuple[Refusal, ...]
+    scratch: int
+
+    def __call__(self, block: np.ndarray, files: Mapping[str, Path]) -> None:
+        """Read the files, given by String parameter; raises ResourceError."""
+        paths = [files[text.name] for text in self.texts]
+        read = [read_numbers(p, text.columns) for p, text in zip(paths, self.texts, strict=True)]
+        values = np.concatenate([numbers for numbers, _ in read])
+        shape = np.array([shape for _, shape in read], dtype=np.int64).ravel()
+        report = np.zeros(REPORT)
+        refusal = self.kernel(values, shape, block, np.empty(self.scratch), report)
+        if refusal:
+            raise self.refusals[refusal - 1].error(paths, report)
+
+
+def read_numbers(file: Path, columns: tuple[Column, ...]) -> tuple[np.ndarray, tuple[int, int]]:
+    """Read a flat CSV file as numbers.
+
+    Returns:
+        One number per declared column (which of its units the file uses; 0 for words), then the
+        rows, columns in declared order; and the number of rows and of columns.
+
+    Raises:
+        ResourceError: see `read_flat_csv`; or a word that a column does not take.
+    """
+    words = tuple(c for c in columns if c.words)
+    rest = next((c.name for c in columns if c.rest), "")
+    wanted = {c.name: c.units for c in columns if c.units and not c.rest}
+    table, units = read_flat_csv(file, tuple(c.name for c in words), wanted, more=rest)
+    check_units(units, {c.name: c.units for c in columns if c.units}, file)
+    for column in words:
+        table[column.name] = _numbered(column, table[column.name], file)
+    declared = [c.name for c in columns if not c.rest]
+    order = [*declared, *(name for name in table if name not in declared)]
+    rows = np.column_stack([table[name] for name in order])
+    used = [float(c.units.index(units[c.name].strip())) if c.units else 0.0 for c in columns]
+    return np.concatenate([used, rows.ravel()]), rows.shape
+
+
+def _numbered(column: Column, found: np.ndarray, file: Path) -> np.ndarray:
+    numbers = {word: float(i) for i, word in enumerate(column.words)}
+    if not column.other_words and (unknown := [w for w in found if w not in numbers]):
+        raise ResourceError(
+            f"{file}: {column.name} '{unknown[0]}' is none of {', '.join(column.words)}"
+        )
+    return np.array([numbers.get(word, -1.0) for word in found])

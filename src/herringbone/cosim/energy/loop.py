@@ -1,0 +1,271 @@
+"""Energy that the coupling adds in each macro step, against what the dampers take; compiled.
+
+A body takes a force f inside a macro step; F is what the element would give at the motion that the
+step makes. For each pair of force and velocity at a body's port, the coupling adds
+
+    dE = integral of (f - F) (v - w) dt.
+
+w is the mean, over a window, of the motion of an element's ports together that causes no force: a
+force that errs steadily changes the speed of a shaft, but feeds no vibration. F has an elastic
+part, F + C v, and a damping part, -C v, with the matrix C of the element's dampers (C w = 0). The
+elastic part is linear in the positions, so that over all pairs of an element its work is known from
+both ends of the step, whatever the motion inside:
+
+    dE = integral of f ds - (E0 + E1) / 2 (s1 - s0) + integral of v C v dt,   E = F + C v.
+
+f is the polynomial that the algorithm let the body take. The motion inside the step is the
+polynomial through positions and velocities, at both ends for the algorithms with one pass:
+
+    integral of (a0 + a1 c + a2 c^2) ds = a0 d + a1 (d / 2 - h (v0 - v1) / 12)
+                                             + a2 (3 d / 10 + h (v1 / 10 - v0 / 15)),  d = s1 - s0,
+
+and at all nodes for the iterated ones (`energy.nodes`). F at the end of a step is what the element
+gave there, if it saw the motion that the step ends with. If it saw another one (extrapolated,
+predicted or old), the difference is taken out with its stiffness and damping matrices.
+
+dE and what the dampers take, the integral of v C v, are summed over the steps of a window, or over
+samples of them. Where the coupling adds more than these dampers take, a motion may grow. It need
+not, because the bodies have dampers of their own: so it must also be seen to grow, by what the
+dampers take, which is quadratic in the motion. Work that rounding of the forces can do is left out
+of what is added: when a motion has died out, nothing else is there.
+
+Compare B. Rodriguez, A. J. Rodriguez, B. Sputh et al., Multibody Syst. Dyn. 55 (2022) 75-103, on
+energy errors at the interfaces of explicit co-simulation.
+"""
+
+import numpy as np
+
+from herringbone.cosim.energy.monitor import (
+    COMMON,
+    DRAG,
+    DRAG_AT_END,
+    ELASTIC,
+    INACCURATE_AT,
+    INACCURATE_FOR,
+    LEAST,
+    LENGTH,
+    ROUNDED,
+    SAMPLES,
+    SAMPLES_BEFORE,
+    SLICES,
+    SPEED,
+    SPEED_AT_END,
+    STEPS,
+    TERMS,
+    TIME,
+    TOTAL,
+    UNSTABLE_AT,
+    EnergyMonitor,
+)
+from herringbone.kernels.jit import inlined, kernel
+
+UNSTABLE, EARLY, INACCURATE = 1.0, 2.0, 0.1
+"""Energy added by the coupling, in units of what the dampers take; EARLY holds for UNSTABLE while
+the first window is not full."""
+RISE = 30.0
+"""Rise of what the dampers take, while the coupling adds more, that counts as growth: the motion
+rises 5.5-fold. The start of a stable run, when its excitation sets in, makes less."""
+PATIENCE = 4
+"""Judgement begins after this part of a window, and inaccuracy must last as long."""
+_EPSILONS = 16.0 * np.finfo(np.float64).eps
+"""Rounding of a force, relative to its terms: about as many operations make it from the states."""
+_NOTHING = 1e-300
+_ROUNDING = 1e-6
+"""Of the time, in slices."""
+
+
+@inlined
+def _write_end(monitor: EnergyMonitor, values: np.ndarray) -> None:
+    """Velocities v at the end of the step less their common mean, C v, and sizes of terms."""
+    state = monitor.state
+    for i in range(monitor.force.size):
+        state[SPEED_AT_END, i] = values[monitor.velocity[i]] - state[COMMON, i]
+        state[DRAG_AT_END, i] = state[TERMS, i] = 0.0
+    for k in range(monitor.row.size):
+        i, j = monitor.row[k], monitor.column[k]
+        state[DRAG_AT_END, i] += monitor.damping[k] * state[SPEED_AT_END, j]
+        state[TERMS, i] += abs(monitor.damping[k] * values[monitor.velocity[j]])
+        if monitor.position[j] >= 0:
+            state[TERMS, i] += abs(monitor.stiffness[k] * values[monitor.position[j]])
+
+
+@inlined
+def _update_common(monitor: EnergyMonitor, steps: int) -> None:
+    """Mean common velocity of the pairs of an element, from its sum over so many steps."""
+    state, rigid = monitor.state, monitor.rigid
+    for i in range(monitor.force.size):
+        before = state[COMMON, i]
+        state[COMMON, i] = 0.0
+        for j in range(monitor.force.size):
+            state[COMMON, i] += rigid[i, j] * state[TOTAL, j] / steps
+        state[SPEED, i] += before - state[COMMON, i]
+    for i in range(monitor.force.size):
+        state[TOTAL, i] = 0.0
+
+
+@inlined
+def _end_becomes_start(monitor: EnergyMonitor, i: int, elastic: float) -> None:
+    """The next step starts as this one ends, with this elastic force."""
+    state = monitor.state
+    state[SPEED, i], state[DRAG, i] = state[SPEED_AT_END, i], state[DRAG_AT_END, i]
+    state[ELASTIC, i] = elastic
+
+
+@inlined
+def _write_start(monitor: EnergyMonitor, values: np.ndarray) -> None:
+    """A step starts with these outputs, which belong together."""
+    _write_end(monitor, values)
+    for i in range(monitor.force.size):
+        elastic = values[monitor.force[i]] + monitor.state[DRAG_AT_END, i]
+        _end_becomes_start(monitor, i, elastic)
+
+
+@inlined
+def begin_step(monitor: EnergyMonitor, start: np.ndarray, end: np.ndarray, together: bool) -> None:
+    """Get ready for a step between these outputs; those at its start may belong together."""
+    state = monitor.state
+    if monitor.counts[SAMPLES] == 0:
+        for i in range(monitor.force.size):
+            state[TOTAL, i] = start[monitor.velocity[i]]
+        _update_common(monitor, 1)
+    if monitor.counts[STEPS] == 1 or (together and monitor.stride > 1):
+        _write_start(monitor, start)
+    _write_end(monitor, end)
+
+
+@inlined
+def is_watched(monitor: EnergyMonitor, h: float) -> bool:
+    """A macro step h [s] is over; true if the monitor wants to see it.
+
+    That is every sample, and the step before it if elements are late: at its end begins the sample.
+    """
+    if monitor.force.size == 0:
+        return False
+    monitor.clock[TIME] += h
+    monitor.counts[STEPS] += 1
+    step = monitor.counts[STEPS]
+    return step % monitor.stride == 0 or (
+        monitor.late != 0 and (step == 1 or (step + 1) % monitor.stride == 0)
+    )
+
+
+@inlined
+def finish_pair(
+    monitor: EnergyMonitor, i: int, elastic: float, work: float, heat: float, h: float
+) -> None:
+    """Book a step of pair i.
+
+    Args:
+        monitor: is written.
+        i: pair.
+        elastic: force at the end of the step.
+        work: of the force on the body less that of the elastic force [J].
+        heat: energy that dampers take [J].
+        h: macro step [s].
+    """
+    state, count = monitor.state, monitor.force.size
+    if monitor.fast[i]:
+        monitor.now[i] += work + heat
+        way = h * max(abs(state[SPEED, i]), abs(state[SPEED_AT_END, i]))
+        monitor.now[count + ROUNDED] += _EPSILONS * state[TERMS, i] * way
+    monitor.now[count] += heat
+    state[TOTAL, i] += state[SPEED_AT_END, i] + state[COMMON, i]
+    _end_becomes_start(monitor, i, elastic)
+
+
+@inlined
+def _shift_forces(monitor: EnergyMonitor) -> None:
+    """What the slips of the elements' motions took from the forces."""
+    slip = monitor.slip
+    for k in range(monitor.row.size):
+        j = monitor.column[k]
+        shift = monitor.stiffness[k] * slip[0, j] + monitor.damping[k] * slip[1, j]
+        monitor.shift[monitor.row[k]] += shift
+
+
+@inlined
+def book_step(monitor: EnergyMonitor, history: np.ndarray, h: float) -> None:
+    """Account for one macro step of an algorithm with one pass.
+
+    Args:
+        monitor: `taken` tells the forces, and `slip` the motions of the elements if they are late.
+            The step may only lead to a sample.
+        history: row 0 the values at the end of the step, row 1 those at its start.
+        h: macro step [s].
+    """
+    state, taken, late = monitor.state, monitor.taken, monitor.late != 0
+    begin_step(monitor, history[1], history[0], not late)
+    if late:
+        _shift_forces(monitor)
+    sample = monitor.counts[STEPS] % monitor.stride == 0
+    for i in range(monitor.force.size):
+        s, v0, v1 = monitor.position[i], state[SPEED, i], state[SPEED_AT_END, i]
+        d = 0.5 * h * (v0 + v1)
+        if s >= 0:
+            d = history[0, s] - history[1, s] - h * state[COMMON, i]
+        drag0, drag1 = state[DRAG, i], state[DRAG_AT_END, i]
+        elastic = history[0, monitor.force[i]] + drag1
+        if late:
+            elastic += monitor.shift[i]
+            monitor.shift[i] = 0.0
+        if not sample:
+            _end_becomes_start(monitor, i, elastic)
+            continue
+        heat = h / 3.0 * (drag0 * v0 + drag1 * v1 + 0.5 * (drag0 * v1 + drag1 * v0))
+        work = (taken[0, i] - 0.5 * (state[ELASTIC, i] + elastic)) * d
+        work += taken[1, i] * (0.5 * d - h * (v0 - v1) / 12.0)
+        work += taken[2, i] * (0.3 * d + h * (0.1 * v1 - v0 / 15.0))
+        finish_pair(monitor, i, elastic, work, heat, h)
+    if sample:
+        end_step(monitor, h)
+
+
+@inlined
+def end_step(monitor: EnergyMonitor, h: float) -> None:
+    """Book the length of a step; judge when a slice of time is full."""
+    counts, clock = monitor.counts, monitor.clock
+    counts[SAMPLES] += 1
+    monitor.now[monitor.force.size + LENGTH] += h
+    if clock[TIME] >= (counts[SLICES] + 1.0 - _ROUNDING) * monitor.slice:
+        _close_slice(monitor)
+
+
+@inlined
+def _judge(monitor: EnergyMonitor) -> None:
+    """Set the flags."""
+    counts, clock, sums, count = monitor.counts, monitor.clock, monitor.sums, monitor.force.size
+    window = monitor.slices.shape[0]
+    added = -sums[count + ROUNDED]
+    for i in range(count):
+        added += sums[i]
+    taken = max(sums[count], _NOTHING)
+    power = taken / sums[count + LENGTH]
+    bound = UNSTABLE if counts[SLICES] >= window else EARLY
+    clock[LEAST] = min(clock[LEAST], power) if added > bound * taken else np.inf
+    if np.isnan(clock[UNSTABLE_AT]) and power > RISE * clock[LEAST]:
+        clock[UNSTABLE_AT] = clock[TIME]
+        for i in range(sums.size):
+            monitor.at_flag[i] = sums[i]
+    counts[INACCURATE_FOR] = counts[INACCURATE_FOR] + 1 if added > INACCURATE * taken else 0
+    if np.isnan(clock[INACCURATE_AT]) and PATIENCE * counts[INACCURATE_FOR] > window:
+        clock[INACCURATE_AT] = clock[TIME]
+
+
+@kernel
+def _close_slice(monitor: EnergyMonitor) -> None:
+    """The present slice of time goes into the window, and the oldest one out of it."""
+    counts, slices, sums, now = monitor.counts, monitor.slices, monitor.sums, monitor.now
+    window = slices.shape[0]
+    row = counts[SLICES] % window
+    for i in range(sums.size):
+        sums[i] += now[i] - slices[row, i]
+        slices[row, i] = now[i]
+        now[i] = 0.0
+    counts[SLICES] += 1
+    if row == window - 1:  # what a large transient left in the sums by rounding is forgotten
+        for i in range(sums.size):
+            sums[i] = slices[:, i].sum()
+        _update_common(monitor, counts[SAMPLES] - counts[SAMPLES_BEFORE])
+        counts[SAMPLES_BEFORE] = counts[SAMPLES]
+    if PATIENCE * counts[SLICES] > window:
+        _judge(monitor)

@@ -1,0 +1,1 @@
+"""FMUs as participants: files from strangers, checked, opened and called."""

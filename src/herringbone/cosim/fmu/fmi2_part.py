@@ -1,0 +1,106 @@
+"""An FMU 2.0 as participant."""
+
+import atexit
+import ctypes
+import itertools
+
+from fmpy.fmi2 import (
+    FMU2Slave,
+    calloc,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    free,
+)
+from fmpy.logging import addLoggerProxy
+
+from herringbone.core.part import Addresses
+from herringbone.cosim.fmu.log import FmuLog
+from herringbone.cosim.fmu.part import FmuPart
+
+_keys = itertools.count(1)
+_logs: dict[int, FmuLog] = {}
+"""Logs of the open parts; fmpy's logger proxy keeps one logger for the process."""
+
+
+@fmi2CallbackLoggerTYPE
+def _log(environment: int, _name: bytes, status: int, _category: bytes, message: bytes) -> None:
+    if environment in _logs:
+        _logs[environment].add(status, message)
+
+
+def _callbacks(key: int) -> fmi2CallbackFunctions:
+    """Callbacks of one part; fmpy's proxy formats the logger's arguments."""
+    callbacks = fmi2CallbackFunctions()
+    callbacks.logger = _log
+    callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    callbacks.componentEnvironment = ctypes.c_void_p(key)
+    addLoggerProxy(ctypes.byref(callbacks))
+    return callbacks
+
+
+class Fmu2Part(FmuPart):
+    """An instantiated FMU 2.0 for co-simulation."""
+
+    slave: FMU2Slave
+
+    def _load(self, **options: str) -> FMU2Slave:
+        self._key = next(_keys)
+        self._callbacks = _callbacks(self._key)
+        return FMU2Slave(**options)
+
+    def _instantiate(self) -> None:
+        _logs[self._key] = self._log
+        self.slave.instantiate(callbacks=self._callbacks, loggingOn=True)
+        _finalize_at_exit(self.slave.dll)
+
+    @property
+    def addresses(self) -> Addresses:
+        """Addresses of the FMU's functions."""
+        names = ["SetReal", "GetReal", "DoStep"]
+        if self.model.coSimulation.canGetAndSetFMUstate:
+            names += ["GetFMUstate", "SetFMUstate", "FreeFMUstate"]
+        functions = (self._address(f"fmi2{name}") for name in names)
+        found = Addresses(int(self.slave.component), *functions)
+        if self.model.coSimulation.canInterpolateInputs:
+            found = found._replace(set_derivatives=self._address("fmi2SetRealInputDerivatives"))
+        if self.model.coSimulation.maxOutputDerivativeOrder > 0:
+            found = found._replace(get_derivatives=self._address("fmi2GetRealOutputDerivatives"))
+        return found
+
+    def _write(self, kind: str, reference: int, value: float | str) -> None:
+        setter = {
+            "Real": self.slave.setReal,
+            "Integer": self.slave.setInteger,
+            "Enumeration": self.slave.setInteger,
+            "Boolean": self.slave.setBoolean,
+            "String": self.slave.setString,
+        }[kind]
+        setter([reference], [value])
+
+    def _read(self, references: list[int]) -> list[float]:
+        return self.slave.getReal(references)
+
+    def _enter(self, start_time: float, stop_time: float) -> None:
+        self.slave.setupExperiment(startTime=start_time, stopTime=stop_time)
+        self.slave.enterInitializationMode()
+
+    def close(self) -> None:
+        """Terminate and free the instance; see `FmuPart.close`."""
+        super().close()
+        _logs.pop(self._key, None)
+
+
+_finalizers: dict[str, object] = {}
+
+
+def _finalize_at_exit(dll: ctypes.CDLL) -> None:
+    """Let pythonfmu release its interpreter reference once, before the process ends.
+
+    Otherwise it is released twice by static destructors, and the process may abort at exit.
+    """
+    if hasattr(dll, "finalizePythonInterpreter") and not _finalizers:
+        _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
+        atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)  # type: ignore[attr-defined]

@@ -1,0 +1,246 @@
+"""FMI 2.0 functions in front of the FMI 3.0 functions of a part, at C addresses.
+
+So the compiled loop treats an FMU 3.0 as it treats an FMU 2.0. The component pointer is the address
+of the part's memory, a record of type `MEMORY`. The loop knows scalars only: it sees the elements
+of an array, which FMI 3.0 sets and gets as a whole. Therefore the part remembers the last value of
+every element, and a call exchanges all elements of the variables that it touches. What is
+remembered of inputs is what the FMU holds: a restored state brings its own back.
+
+The kernels view memory as arrays of given types, which numba compiles with counted references only.
+"""
+
+import numpy as np
+from llvmlite import ir
+from numba import carray, from_dtype, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from herringbone.cosim.loops.calls import c_call, state_call
+from herringbone.kernels.fmi_calls import DISCARD, OK
+from herringbone.kernels.jit import allocating, c_function
+
+MEMORY = np.dtype(
+    [
+        ("instance", np.int64),
+        ("set_float64", np.int64),
+        ("get_float64", np.int64),
+        ("do_step", np.int64),
+        ("get_state", np.int64),
+        ("set_state", np.int64),
+        ("free_state", np.int64),
+        ("get_derivatives", np.int64),
+        ("count", np.int64),
+        ("elements", np.int64),
+        ("values", np.int64),
+        ("references", np.int64),
+        ("packed", np.int64),
+        ("arrays", np.int64),
+        ("array_count", np.int64),
+        ("calls", np.int64),
+        ("ended", np.int64),
+    ]
+)
+"""What an FMU 3.0 is for its adapters.
+
+instance, and the addresses of its functions; count of elements; addresses of the elements, of their
+last values (float64), and of the value references (uint32) and values (float64) of the current
+call, and of the first elements of the inputs that are arrays (uint32), with their number; number of
+calls; ended: 1 if a step ended early or the part asked to end the simulation.
+"""
+ELEMENT = np.dtype(
+    [("reference", np.int64), ("first", np.int64), ("size", np.int64), ("call", np.int64)]
+)
+"""An element: value reference, first element and size of its variable; at the first element, the
+number of the last call that exchanged the variable."""
+
+_MEMORY = types.CPointer(from_dtype(MEMORY))
+_EXCHANGE = types.int32(
+    _MEMORY, types.CPointer(types.uint32), types.size_t, types.CPointer(types.float64)
+)
+_STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
+_STATE = types.int32(_MEMORY, types.int64)
+_DERIVATIVES = types.int32(
+    _MEMORY, types.CPointer(types.uint32), types.size_t, types.int64, types.int64
+)
+_UNKNOWN_SIZE = 1  # bounds are not checked
+_ENDED = 256  # added to the status of a step
+_INT32, _DOUBLE, _BOOLEAN = ir.IntType(32), ir.DoubleType(), ir.IntType(8)
+
+
+@intrinsic
+def _at(typing_context, address):  # noqa: ANN001, ANN202
+    """Pointer to what stands at an address."""
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.int64), generate
+
+
+_exchange = c_call("address", "address", "count", "address", "count")
+"""fmi3SetFloat64 or fmi3GetFloat64."""
+_derivatives = c_call("address", "address", "count", "address", "address", "count")
+"""fmi3GetOutputDerivatives."""
+
+
+@intrinsic
+def _step(typing_context, address, instance, time, step, no_set_before):  # noqa: ANN001, ANN202
+    """fmi3DoStep at `address`: its status, and _ENDED if it ended early or for good."""
+    signature = types.int32(types.int64, types.int64, types.float64, types.float64, types.int32)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        pointer = cgutils.voidptr_t
+        kind = ir.FunctionType(_INT32, [pointer, _DOUBLE, _DOUBLE, _INT32, *[pointer] * 4])
+        target, instance, time, step, no_set_before = arguments
+        event, terminate, early = (
+            cgutils.alloca_once_value(builder, ir.Constant(_BOOLEAN, 0)) for _ in range(3)
+        )
+        reached = builder.bitcast(cgutils.alloca_once(builder, _DOUBLE), pointer)
+        for flag in (event, terminate, early):
+            builder.store(ir.Constant(_BOOLEAN, 0), flag)
+        status = builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [
+                builder.inttoptr(instance, pointer),
+                time,
+                step,
+                no_set_before,
+                *(event, terminate, early),
+                reached,
+            ],
+        )
+        ended = builder.or_(builder.load(terminate), builder.load(early))
+        flag = builder.icmp_unsigned("!=", ended, ir.Constant(_BOOLEAN, 0))
+        return builder.add(status, builder.select(flag, _INT32(_ENDED), _INT32(0)))
+
+    return signature, generate
+
+
+@allocating
+def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, int]:
+    """Variables of these elements and their last values, to the current call; how many of each."""
+    part = memory[0]
+    part.calls += 1
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    value = carray(_at(part.values), part.count, np.float64)
+    reference = carray(_at(part.references), part.count, np.uint32)
+    packed = carray(_at(part.packed), part.count, np.float64)
+    variables, total = 0, 0
+    for i in range(count):
+        first = element[references[i]].first
+        if element[first].call != part.calls:
+            element[first].call = part.calls
+            reference[variables] = element[first].reference
+            variables += 1
+            for k in range(first, first + element[first].size):
+                packed[total] = value[k]
+                total += 1
+    return variables, total
+
+
+@allocating
+def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
+    """Values of the current call, to the elements of the variables in the order of `_pack`."""
+    part = memory[0]
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    value = carray(_at(part.values), part.count, np.float64)
+    packed = carray(_at(part.packed), part.count, np.float64)
+    total = 0
+    for i in range(count):
+        first = element[references[i]].first
+        if element[first].call == part.calls:
+            element[first].call = 0
+            for k in range(first, first + element[first].size):
+                value[k] = packed[total]
+                total += 1
+
+
+@allocating
+def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
+    """Get the variables of these elements from the FMU; FMI status."""
+    part = memory[0]
+    variables, total = _pack(memory, references, count)
+    status = _exchange(
+        part.get_float64, (part.instance, part.references, variables, part.packed, total)
+    )
+    _unpack(memory, references, count)
+    return status
+
+
+@c_function(_EXCHANGE)
+def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2SetReal."""
+    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    given = carray(values, _UNKNOWN_SIZE)
+    part = whole[0]
+    last = carray(_at(part.values), part.count, np.float64)
+    for i in range(count):
+        last[reference[i]] = given[i]
+    variables, total = _pack(whole, reference, count)
+    return _exchange(
+        part.set_float64, (part.instance, part.references, variables, part.packed, total)
+    )
+
+
+@c_function(_EXCHANGE)
+def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
+    """fmi2GetReal."""
+    whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
+    wanted = carray(values, _UNKNOWN_SIZE)
+    part = whole[0]
+    status = _update(whole, reference, count)
+    last = carray(_at(part.values), part.count, np.float64)
+    for i in range(count):
+        wanted[i] = last[reference[i]]
+    return status
+
+
+@c_function(_STEP)
+def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _STEP)
+    """fmi2DoStep; a step that ended early, or with the wish to end the simulation, is discarded."""
+    part = carray(memory, 1)[0]
+    status = _step(part.do_step, part.instance, time, step, no_set_before)
+    if status < _ENDED:
+        return types.int32(status)
+    part.ended = 1
+    return types.int32(max(status - _ENDED, DISCARD))
+
+
+@c_function(_STATE)
+def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2GetFMUstate."""
+    part = carray(memory, 1)[0]
+    return state_call(part.get_state, part.instance, handle)
+
+
+@c_function(_STATE)
+def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2SetFMUstate; inputs that are arrays are remembered as the state has them."""
+    whole = carray(memory, 1)
+    part = whole[0]
+    status = state_call(part.set_state, part.instance, state)
+    if status == OK and part.array_count > 0:
+        arrays = carray(_at(part.arrays), part.array_count, np.uint32)
+        return _update(whole, arrays, part.array_count)
+    return status
+
+
+@c_function(_STATE)
+def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
+    """fmi2FreeFMUstate."""
+    part = carray(memory, 1)[0]
+    return state_call(part.free_state, part.instance, handle)
+
+
+@c_function(_DERIVATIVES)
+def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001, ANN201
+    """fmi2GetRealOutputDerivatives, of scalars; the others' number of values is refused."""
+    part = carray(memory, 1)[0]
+    given = carray(references, _UNKNOWN_SIZE)
+    element = carray(_at(part.elements), part.count, ELEMENT)
+    reference = carray(_at(part.references), part.count, np.uint32)
+    for i in range(count):
+        reference[i] = element[given[i]].reference
+    return _derivatives(
+        part.get_derivatives, (part.instance, part.references, count, orders, values, count)
+    )

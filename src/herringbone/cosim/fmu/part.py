@@ -1,0 +1,157 @@
+"""An FMU as participant: what FMUs of all FMI versions share."""
+
+import contextlib
+import ctypes
+import math
+import shutil
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from fmpy.fmi1 import FMICallException
+from fmpy.model_description import ModelDescription
+
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.part import Addresses
+from herringbone.cosim.fmu.file import extract_fmu, read_fmu
+from herringbone.cosim.fmu.log import FmuLog
+from herringbone.cosim.fmu.variables import read_variables
+
+
+class FmuPart(ABC):
+    """An instantiated FMU for co-simulation; fmpy reads, extracts, loads and instantiates it.
+
+    Args:
+        name: instance name.
+        file: the FMU, of the class's FMI version.
+        model: its model description, if it has been read.
+
+    Raises:
+        FmuError: the file cannot be used, or does not instantiate.
+    """
+
+    def __init__(self, name: str, file: Path, model: ModelDescription | None = None) -> None:
+        self.name, self.file = name, file
+        self._running = False
+        self.model = model or read_fmu(file)
+        self.variables = read_variables(self.model)
+        self._log = FmuLog()
+        self._folder = extract_fmu(file)
+        try:
+            self.slave = self._load(
+                guid=self.model.guid,
+                unzipDirectory=str(self._folder),
+                modelIdentifier=self.model.coSimulation.modelIdentifier,
+                instanceName=name,
+            )
+            self._instantiate()
+        except Exception as error:  # fmpy raises bare Exception; loading raises OSError
+            shutil.rmtree(self._folder, ignore_errors=True)
+            said = "; ".join([str(error), *self.messages()])
+            raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
+
+    @abstractmethod
+    def _load(self, **options: str) -> Any:  # noqa: ANN401 (fmpy's class of the FMI version)
+        """fmpy's slave of the FMI version."""
+
+    @abstractmethod
+    def _instantiate(self) -> None:
+        """Make an instance, the slave's component, that logs to `_log`."""
+
+    @property
+    @abstractmethod
+    def addresses(self) -> Addresses:
+        """What the compiled loop calls."""
+
+    @abstractmethod
+    def _write(self, kind: str, reference: int, value: float | str) -> None:
+        """Set a variable of an FMI type; raises FMICallException."""
+
+    @abstractmethod
+    def _read(self, references: list[int]) -> list[float]:
+        """Values of real variables; raises FMICallException."""
+
+    @abstractmethod
+    def _enter(self, start_time: float, stop_time: float) -> None:
+        """Set up the experiment and enter initialisation mode; raises FMICallException."""
+
+    def _address(self, function: str) -> int:
+        """Address of a function of the FMU's library."""
+        return ctypes.cast(getattr(self.slave.dll, function), ctypes.c_void_p).value or 0
+
+    def new_state(self) -> int:
+        """0: the FMU allocates its states."""
+        return 0
+
+    def set(self, name: str, value: float | str) -> None:
+        """Set a variable before or during initialisation.
+
+        Raises:
+            ParameterError: unknown name, wrong type, not finite, or refused by the FMU.
+        """
+        if name not in self.variables:
+            raise ParameterError(
+                f"{self.name}: {self.file.name} has no variable '{name}'; "
+                f"'herringbone check {self.file}' lists them"
+            )
+        variable = self.variables[name]
+        kind = variable.type
+        if "[" in kind or kind in {"Binary", "Clock"}:
+            raise ParameterError(f"{self.name}.{name} is of type {kind}, which cannot be set here")
+        if (kind == "String") != isinstance(value, str):
+            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a {kind}")
+        if not isinstance(value, str) and not math.isfinite(value):
+            raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
+        whole = not isinstance(value, str) and kind not in {"Real", "Float32", "Float64"}
+        try:
+            self._write(kind, variable.reference, int(value) if whole else value)
+        except FMICallException as error:
+            raise ParameterError(self._refusal(f"{self.name}.{name} = {value!r}", error)) from error
+
+    def _refusal(self, what: str, error: Exception) -> str:
+        return f"{what}: {'; '.join(self.messages()) or error}"
+
+    def get(self, names: Sequence[str]) -> list[float]:
+        """Values of real variables; raises FmuError."""
+        if self._log.fatal:
+            raise FmuError(f"{self.name} has failed for good; nothing can be read from it")
+        try:
+            return self._read([self.variables[name].reference for name in names])
+        except FMICallException as error:
+            raise FmuError(
+                self._refusal(f"{self.name}: reading {', '.join(names)}", error)
+            ) from error
+
+    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+        """Set up the experiment and enter initialisation mode; raises FmuError."""
+        try:
+            self._enter(start_time, stop_time)
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+
+    def exit_initialization(self) -> None:
+        """Go to step mode; raises FmuError."""
+        try:
+            self.slave.exitInitializationMode()
+        except FMICallException as error:
+            raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+        self._running = True
+
+    def failed(self) -> None:
+        """A step failed: FMI then allows no call but fmi2FreeInstance."""
+        self._running = False
+
+    def messages(self) -> list[str]:
+        """Warnings and errors logged since the last call, each on one line and once."""
+        return self._log.take()
+
+    def close(self) -> None:
+        """Terminate and free the instance, unless it has failed, and remove the extracted files."""
+        if self._running and not self._log.fatal:
+            self._running = False
+            with contextlib.suppress(FMICallException):  # its results are there, and stay
+                self.slave.terminate()
+        if not self._log.fatal:
+            self.slave.freeInstance()
+        shutil.rmtree(self._folder, ignore_errors=True)

@@ -1,0 +1,1 @@
+"""A network as flat arrays: what the compiled loops work on."""

@@ -1,0 +1,219 @@
+"""Compiled loop of linearly implicit coupling with an adaptive macro step.
+
+The step is the largest rung of the ladder whose error (see `step_error`) stays within the
+tolerance. A step that errs too much, or that a part discards, is taken back and repeated on a
+smaller rung. An unstable step shows as an error before it shows in the result: the fastest motion
+grows until the estimate sees it, and the next steps are smaller.
+"""
+
+import numpy as np
+
+from herringbone.cosim.energy.loop import is_watched
+from herringbone.cosim.energy.nodes import watch_nodes
+from herringbone.cosim.layouts.adaptive import (
+    ACCEPTED,
+    BEFORE,
+    BEFORE_THAT,
+    CULPRIT,
+    MISSED,
+    MISSED_NOW,
+    NEEDED,
+    ROWS,
+    TAKEN_BACK,
+    USED,
+    WANTED,
+    Adaptive,
+)
+from herringbone.cosim.layouts.layout import Chunk, Plan
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.loops.common import (
+    DONE,
+    LAST_GOOD,
+    NOT_FINITE,
+    PART_FAILED,
+    get_outputs,
+    not_finite,
+)
+from herringbone.cosim.loops.ladder import fitting_rung
+from herringbone.cosim.loops.node_pass import begin, restore
+from herringbone.cosim.loops.nodes import REFRESH, converge, finish
+from herringbone.cosim.loops.step_error import ORDER, step_error, update_scale
+from herringbone.kernels.jit import inlined, kernel
+
+STEP_LIMIT = 5
+"""Status: the smallest step still errs too much."""
+TOO_MUCH = 1.3
+"""A step with more than this many tolerances is taken back; the error of a run is a mean."""
+PATIENCE = 100
+"""So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
+forces, or from rest, where their size is not yet known, no step is small enough."""
+_DISCARDED = 2
+MEMORY = 0.65
+"""Share of the largest error factor that is kept from step to step."""
+_SAFETY, _LEAST, _MOST = 0.7, 0.3, 1.6
+
+
+@inlined
+def _next_rung(adaptive: Adaptive, rung: int, error: float, order: int) -> int:
+    """The largest rung up to the step at which the error would be within the tolerance.
+
+    The error falls with h^order; its largest factor is remembered over some steps, because it
+    passes through zero whenever the forces swing.
+    """
+    h = adaptive.rungs[rung]
+    factor = max(error / h**order, MEMORY * adaptive.sharpness[0])
+    if factor - factor == 0.0:
+        adaptive.sharpness[0] = factor
+    ticks = _MOST * h
+    if factor > 0.0:
+        ticks = min(ticks, (_SAFETY * adaptive.tolerance / factor) ** (1.0 / order))
+    ticks = max(ticks, _LEAST * h)
+    found = 0
+    for k in range(adaptive.rungs.size):
+        if adaptive.rungs[k] <= ticks:
+            found = k
+    return found
+
+
+@inlined
+def _take_back(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
+    """Parts and history as before the step; -1, or the part that refused."""
+    history = buffers.history
+    for row in range(history.shape[0] - 1):
+        for i in range(history.shape[1]):
+            history[row, i] = history[row + 1, i]
+    return restore(plan, nodes, buffers, True)
+
+
+@inlined
+def _record(plan: Plan, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, done: int) -> int:
+    """A row, if it is time for one; -1, or the part whose outputs cannot be read."""
+    row, t = adaptive.state[ROWS], chunk.t0 + done * chunk.h
+    if done < adaptive.last and t < adaptive.times[row - 1] + (chunk.every - 0.5) * chunk.h:
+        return -1
+    for p in range(plan.component.size):
+        if get_outputs(plan, history, p, chunk.records, row) > LAST_GOOD:
+            return p
+    adaptive.times[row] = t
+    adaptive.state[ROWS] += 1
+    return -1
+
+
+@inlined
+def _accept(
+    nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, corrections: int, h: float
+) -> None:
+    """Book a step that was taken."""
+    state, rung = adaptive.state, adaptive.state[USED]
+    update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, h)
+    state[BEFORE_THAT], state[BEFORE] = state[BEFORE], adaptive.rungs[rung]
+    state[ACCEPTED] += 1
+    adaptive.taken[rung] += 1
+    adaptive.owed[rung] += max(0, corrections - 1)
+    if adaptive.owed[rung] > adaptive.corrections.shape[1]:
+        adaptive.ready[rung] = NEEDED
+
+
+@inlined
+def _try(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    control: Control,
+    adaptive: Adaptive,
+    t: float,
+    h: float,
+) -> tuple[int, float]:
+    """One macro step on the rung in use: who failed (or -1), and its error."""
+    state, rung = adaptive.state, adaptive.state[USED]
+    known = state[ACCEPTED] + 1
+    buffers.spacing[0] = state[BEFORE] / adaptive.rungs[rung]
+    buffers.spacing[1] = state[BEFORE_THAT] / adaptive.rungs[rung]
+    buffers.counts[2] = 0
+    failed = begin(plan, nodes, buffers, control.order, known, t, h, False)
+    if failed < 0:
+        failed, _ = converge(plan, nodes, buffers, adaptive.corrections[rung], control, t, h)
+    if failed >= 0:
+        return failed, np.inf
+    error, culprit = step_error(nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known)
+    state[CULPRIT] = culprit
+    return -1, error
+
+
+@inlined
+def _complete(
+    plan: Plan, nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, chunk: Chunk, done: int,
+    corrections: int, error: float,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Book and record a step that was taken, and choose the next; result as of `_macro_step`."""
+    state, rung = adaptive.state, adaptive.state[USED]
+    ticks = adaptive.rungs[rung]
+    finish(plan, nodes, buffers)
+    culprit = not_finite(plan, buffers.history)
+    if culprit >= 0:
+        return NOT_FINITE, 0, culprit
+    if is_watched(chunk.energy, ticks * chunk.h):
+        watch_nodes(chunk.energy, buffers.nodes, buffers.trial, ticks * chunk.h)
+    _accept(nodes, buffers, adaptive, corrections, ticks * chunk.h)
+    failed = _record(plan, adaptive, buffers.history, chunk, done + ticks)
+    if failed >= 0:
+        return PART_FAILED, ticks, failed
+    wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
+    state[WANTED] = min(wanted, rung) if state[TAKEN_BACK] else wanted
+    state[TAKEN_BACK] = 0
+    too_much = not error <= TOO_MUCH * adaptive.tolerance
+    state[MISSED] += too_much
+    state[MISSED_NOW] = state[MISSED_NOW] + 1 if too_much else 0
+    return STEP_LIMIT if state[MISSED_NOW] == PATIENCE else DONE, ticks, -1
+
+
+@inlined
+def _macro_step(
+    plan: Plan, nodes: NodePlan, buffers: Buffers, control: Control, adaptive: Adaptive,
+    chunk: Chunk, done: int,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Try a macro step after `done` ticks: status, ticks made (0 if taken back), and who failed."""
+    state = adaptive.state
+    rung = fitting_rung(adaptive.rungs, state[WANTED], adaptive.last - done)
+    state[USED] = rung
+    if adaptive.ready[rung] <= NEEDED:
+        return REFRESH, 0, -1
+    before = buffers.counts[1]
+    t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
+    failed, error = _try(plan, nodes, buffers, control, adaptive, t, h)
+    smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
+    if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
+        return PART_FAILED, 0, failed
+    if smaller and not error <= TOO_MUCH * adaptive.tolerance:
+        failed = _take_back(plan, nodes, buffers)
+        adaptive.rejected[rung] += 1
+        wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
+        state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
+        return PART_FAILED if failed >= 0 else DONE, 0, failed
+    corrections = buffers.counts[1] - before
+    return _complete(plan, nodes, buffers, adaptive, chunk, done, corrections, error)
+
+
+@kernel
+def run_adaptive(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    control: Control,
+    adaptive: Adaptive,
+    chunk: Chunk,
+) -> tuple[int, int, int]:
+    """Run macro steps up to a time; the result is that of `loops.stages.run_stages`, in ticks.
+
+    Args:
+        chunk: in ticks; ends early when the rows are full. `every` is the least number of ticks
+            between rows.
+
+    Status REFRESH asks for the correction of the rung `state[USED]`.
+    """
+    status, done, culprit = DONE, chunk.start, -1
+    end, rows = chunk.start + chunk.count, adaptive.times.size
+    while status == DONE and done < end and adaptive.state[ROWS] < rows:
+        status, ticks, culprit = _macro_step(plan, nodes, buffers, control, adaptive, chunk, done)
+        done += ticks
+    return status, done, culprit

@@ -1,0 +1,152 @@
+"""Compiled loop of the iterated algorithms: signals at nodes, rollback, one frozen correction.
+
+A macro step of degree p: the unknowns U are the values at c = 1/p ... 1 of all outputs that feed
+bodies. One pass steps the bodies on U, then the elements on the bodies' motions at the nodes, which
+gives G(U). From a prediction, each correction is U += C (G - U), after which all parts are restored
+and step again. C = I is the plain fixed point, C = (I - dG/dU)^-1 one Newton step with a frozen
+Jacobian. After the last pass the parts are at the end of the step, and G - U is what is left over.
+"""
+
+import numpy as np
+
+from herringbone.cosim.energy.loop import is_watched
+from herringbone.cosim.energy.nodes import watch_nodes
+from herringbone.cosim.layouts.layout import Chunk, Plan
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.loops.common import (
+    DONE,
+    LAST_GOOD,
+    NOT_FINITE,
+    PART_FAILED,
+    get_outputs,
+    not_finite,
+    record_row,
+)
+from herringbone.cosim.loops.node_pass import begin, one_pass, restore
+from herringbone.cosim.loops.slow import finish_slow, trace_slow
+from herringbone.kernels.jit import inlined, kernel
+
+REFRESH = 3
+"""Status: the correction no longer contracts; a new Jacobian is wanted."""
+
+
+@inlined
+def residual(buffers: Buffers) -> float:
+    """Largest residual, in units of the scale; infinite if it is not finite."""
+    largest = 0.0
+    for k in range(buffers.rest.shape[0]):
+        for i in range(buffers.rest.shape[1]):
+            size = abs(buffers.rest[k, i]) / buffers.scale[i]
+            if size - size != 0.0:
+                return np.inf
+            largest = max(largest, size)
+    return largest
+
+
+@inlined
+def correct(buffers: Buffers, correction: np.ndarray) -> None:
+    """U += C (G - U)."""
+    count = buffers.scale.size
+    for row in range(correction.shape[0]):
+        total = 0.0
+        for k in range(buffers.rest.shape[0]):
+            for i in range(count):
+                total += correction[row, k * count + i] * buffers.rest[k, i]
+        buffers.trial[row // count, row % count] += total
+
+
+@inlined
+def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
+    """The values at the end of the step become the newest of the history, rates those before."""
+    for i in range(buffers.rates.shape[1]):
+        buffers.rates[0, i] = buffers.rates[1, i]
+    for p in range(plan.component.size):
+        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+            buffers.history[0, i] = buffers.nodes[nodes.degree, i]
+
+
+@inlined
+def grow_scale(nodes: NodePlan, buffers: Buffers) -> None:
+    """The scale becomes the largest value of the same unit at communication points so far."""
+    for i in range(nodes.unknown.size):
+        size = abs(buffers.history[0, nodes.unknown[i]])
+        if size > buffers.scale[i]:
+            for k in range(nodes.unknown.size):
+                if nodes.group[k] == nodes.group[i]:
+                    buffers.scale[k] = size
+
+
+@inlined
+def converge(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    correction: np.ndarray,
+    control: Control,
+    t: float,
+    h: float,
+) -> tuple[int, float]:
+    """Correct one macro step until the residual is small; who failed (or -1), and contraction."""
+    failed = one_pass(plan, nodes, buffers, t, h)
+    before, contraction = residual(buffers), 0.0
+    for done in range(control.most):
+        if failed >= 0 or (done >= control.corrections and before <= control.tolerance):
+            break
+        correct(buffers, correction)
+        failed = restore(plan, nodes, buffers, False)
+        if failed < 0:
+            failed = one_pass(plan, nodes, buffers, t, h)
+        after = residual(buffers)
+        if before > control.tolerance:
+            contraction = max(contraction, after / before)
+        before = after
+        buffers.counts[1] += 1
+    buffers.worst[0] = max(buffers.worst[0], before)
+    buffers.worst[1] = max(buffers.worst[1], contraction)
+    return failed, contraction
+
+
+@kernel
+def run_iterated(
+    plan: Plan,
+    nodes: NodePlan,
+    buffers: Buffers,
+    correction: np.ndarray,
+    control: Control,
+    chunk: Chunk,
+) -> tuple[int, int, int]:
+    """Run macro steps; the result is that of `loops.stages.run_stages`.
+
+    Args:
+        correction: C, (unknowns p) squared.
+
+    Status REFRESH ends the chunk after a macro step that is complete.
+    """
+    h = chunk.h
+    for n in range(chunk.start, chunk.start + chunk.count):
+        t, row, contraction = chunk.t0 + n * h, record_row(chunk, n), 0.0
+        failed = begin(plan, nodes, buffers, control.order, n + 1, t, h, False)
+        if failed < 0:
+            failed, contraction = converge(plan, nodes, buffers, correction, control, t, h)
+        if failed >= 0:
+            return PART_FAILED, n, failed
+        finish(plan, nodes, buffers)
+        buffers.spacing[0] = 1.0
+        for node in range(1, nodes.degree + 1):
+            trace_slow(plan, buffers.nodes[node], n, node, nodes.degree)
+        failed = finish_slow(plan, buffers.history, chunk, n)
+        if failed >= 0:
+            return PART_FAILED, n, failed
+        culprit = not_finite(plan, buffers.history)
+        if culprit >= 0:
+            return NOT_FINITE, n + 1, culprit
+        grow_scale(nodes, buffers)
+        if is_watched(chunk.energy, h):
+            watch_nodes(chunk.energy, buffers.nodes, buffers.trial, h)
+        for p in range(plan.component.size if row >= 0 else 0):
+            fast = plan.slow.taken[p] < 0
+            if fast and get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:
+                return PART_FAILED, n + 1, p
+        if contraction > control.slow:
+            return REFRESH, n + 1, -1
+    return DONE, chunk.start + chunk.count, -1

@@ -1,0 +1,235 @@
+"""Reading SSP 1.0 files: one flat system of FMI 2.0 co-simulation FMUs, with parameter values.
+
+What is not of that subset is refused by name; nothing is left out silently but geometry and the
+annotations of other tools. SSP allows any names; what is no identifier is mapped to one (see
+`core.names.identifier_for`), and a note says so.
+"""
+
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import unquote, urlparse
+from xml.etree.ElementTree import Element
+
+from herringbone.core import FmuError, StructureError
+from herringbone.core.files import is_file
+from herringbone.core.names import check_name, identifier_for, is_identifier, shown
+from herringbone.core.part import PartVariable
+from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.ssp.format import (
+    CHANNELS_ANNOTATION,
+    FMU_TYPE,
+    NAMESPACES,
+    PARAMETER_TYPE,
+    local_name,
+    parse_xml,
+    qualified,
+    read_structure,
+    unpack,
+)
+from herringbone.cosim.structure.system import PartSpec, System
+
+_TYPES = {"Real": float, "Integer": int, "Boolean": lambda text: int(text in {"true", "1"})}
+
+
+def read_ssp(file: Path) -> System:
+    """The system of an .ssp file, or of a folder into which one was unpacked.
+
+    The FMUs lie in a temporary folder that is removed when the process ends.
+
+    Raises:
+        StructureError: the file cannot be read or uses what this master does not know.
+        FmuError: an FMU is not for co-simulation with FMI 2.0, or unusable.
+    """
+    return _Reader(file, unpack(file)).system(read_structure(file))
+
+
+def read_stop_time(file: Path) -> float | None:
+    """Stop time of the default experiment [s], if there is one.
+
+    Raises:
+        StructureError: the file cannot be read.
+    """
+    experiment = read_structure(file).find("ssd:DefaultExperiment", NAMESPACES)
+    text = None if experiment is None else experiment.get("stopTime")
+    try:
+        return None if text is None else float(text)
+    except ValueError:
+        raise StructureError(f"{file}: stopTime = '{text}' is no number") from None
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """One file that is being read.
+
+    Attributes:
+        file: for messages.
+        folder: where its content lies.
+        names: identifiers of the components, by their names in the file.
+        notes: lines about names that were changed.
+    """
+
+    file: Path
+    folder: Path
+    names: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def system(self, root: Element) -> System:
+        element = root.find("ssd:System", NAMESPACES)
+        if element is None:
+            raise self.refusal("it contains no system")
+        if element.find("ssd:SignalDictionaries", NAMESPACES) is not None:
+            raise self.refusal("signal dictionaries are not supported; connect components directly")
+        name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
+        self.name_components(element)
+        parts, variables = [], {}
+        for child in element.iterfind("ssd:Elements/*", NAMESPACES):
+            part, part_variables = self.part(child)
+            parts.append(part)
+            variables |= {f"{part.name}.{n}": v for n, v in part_variables.items()}
+        values = self.values(element, "the system", variables)
+        system = System(
+            name,
+            element.get("description", ""),
+            tuple(parts),
+            tuple(self.connections(element)),
+            channels=self.channels(element),
+            notes=tuple(self.notes),
+        )
+        return system.with_values(values)
+
+    def renamed(self, name: str, kind: str, taken: Container[str] = ()) -> str:
+        """The identifier for a name of the file; a note if it is another one."""
+        found = identifier_for(name, taken)
+        if found != name:
+            self.notes.append(f"{self.file}: {kind} {shown(name)} is called {found} here")
+        return found
+
+    def name_components(self, system: Element) -> None:
+        """Find the identifiers of all components; names that are some keep theirs."""
+        names = [child.get("name", "") for child in system.iterfind("ssd:Elements/*", NAMESPACES)]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise self.refusal(f"component name {shown(twice[0])} stands twice; rename one")
+        self.names.update({name: name for name in names if is_identifier(name)})
+        for name in names:
+            if name not in self.names and name:
+                taken = set(self.names.values())
+                self.names[name] = self.renamed(name, "component", taken)
+
+    def path_here(self, path: str) -> str:
+        """A path `component.variable` of the file with the component's identifier."""
+        part, dot, variable = path.partition(".")
+        return f"{self.names.get(part, part)}{dot}{variable}"
+
+    def refusal(self, text: str) -> StructureError:
+        return StructureError(f"{self.file}: {text}")
+
+    def part(self, element: Element) -> tuple[PartSpec, Mapping[str, PartVariable]]:
+        kind, name = local_name(element), element.get("name", "")
+        if kind == "System":
+            raise self.refusal(f"nested system '{name}' is not supported; flatten it")
+        if kind == "SignalDictionaryReference":
+            raise self.refusal(
+                f"signal dictionary reference '{name}' is not supported; connect directly"
+            )
+        if not name or "." in name:
+            raise self.refusal(f"component name '{name}': it must not be empty or contain a dot")
+        if (found := element.get("type", FMU_TYPE)) != FMU_TYPE:
+            raise self.refusal(f"component '{name}' is of type {found}; an FMU is needed")
+        if element.get("implementation", "any") not in {"any", "CoSimulation"}:
+            raise self.refusal(f"component '{name}' wants model exchange; use co-simulation")
+        fmu = self.path(element.get("source", ""), f"component '{name}'")
+        try:
+            variables = read_variables(read_fmu(fmu))
+        except FmuError as error:
+            raise FmuError(f"{self.file}: component '{name}': {error}") from error
+        values = self.values(element, f"component '{name}'", variables)
+        return PartSpec(self.names[name], fmu=fmu, values=values), variables
+
+    def path(self, source: str, where: str) -> Path:
+        """File of a source, which must lie in the .ssp."""
+        parsed = urlparse(source)
+        path = (self.folder / unquote(parsed.path)).resolve()
+        if parsed.scheme or parsed.netloc or not path.is_relative_to(self.folder.resolve()):
+            raise self.refusal(f"{where}: source '{source}' lies outside the file; pack it")
+        if not is_file(path):
+            raise self.refusal(f"{where}: there is no '{source}' in the file")
+        return path
+
+    def connections(self, system: Element) -> Iterator[tuple[str, str]]:
+        for element in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
+            ends = [
+                (element.get(f"{end}Element"), element.get(f"{end}Connector"))
+                for end in ("start", "end")
+            ]
+            where = "connection " + " - ".join(f"'{a or 'system'}.{b}'" for a, b in ends)
+            if any(part is None or name is None for part, name in ends):
+                raise self.refusal(f"{where}: connectors of the system are not supported")
+            for child in element:
+                if local_name(child) not in {"ConnectionGeometry", "Annotations"}:
+                    raise self.refusal(f"{where}: {local_name(child)} is not supported")
+            first, second = (self.path_here(f"{part}.{name}") for part, name in ends)
+            yield first, second
+
+    def values(
+        self, element: Element, where: str, variables: Mapping[str, PartVariable]
+    ) -> dict[str, float | str]:
+        """Values of all parameter bindings of an element; later ones win."""
+        found: dict[str, float | str] = {}
+        for binding in element.iterfind("ssd:ParameterBindings/ssd:ParameterBinding", NAMESPACES):
+            for parameter in self.parameter_set(binding, where).iterfind(
+                "ssv:Parameters/ssv:Parameter", NAMESPACES
+            ):
+                name = parameter.get("name", "")
+                where_here = f"{where}, parameter '{name}'"
+                if element.tag == qualified("ssd:System"):
+                    name = self.path_here(name)
+                found[name] = self.value(parameter, variables.get(name), where_here)
+        return found
+
+    def parameter_set(self, binding: Element, where: str) -> Element:
+        if binding.find("ssd:ParameterMapping", NAMESPACES) is not None:
+            raise self.refusal(f"{where}: parameter mappings (.ssm) are not supported")
+        if binding.get("prefix"):
+            raise self.refusal(f"{where}: prefixes of parameter bindings are not supported")
+        if (found := binding.get("type", PARAMETER_TYPE)) != PARAMETER_TYPE:
+            raise self.refusal(f"{where}: parameter source of type {found} is not supported")
+        if binding.get("sourceBase", "SSD") != "SSD":
+            raise self.refusal(f"{where}: parameter sources inside an FMU are not supported")
+        source = binding.get("source")
+        inline = binding.find("ssd:ParameterValues/ssv:ParameterSet", NAMESPACES)
+        if source is None and inline is not None:
+            return inline
+        file = self.path(source or "", where)
+        root = parse_xml(file.read_bytes(), f"{self.file}: {source}")
+        if root.tag != qualified("ssv:ParameterSet"):
+            raise self.refusal(f"{where}: {source} is no SSP 1.0 parameter set")
+        return root
+
+    def value(self, parameter: Element, variable: PartVariable | None, where: str) -> float | str:
+        typed = next((c for c in parameter if local_name(c) != "Annotations"), None)
+        kind = "nothing" if typed is None else local_name(typed)
+        if typed is None or kind not in {*_TYPES, "String"}:
+            raise self.refusal(f"{where}: a value of type {kind} is not supported")
+        unit = typed.get("unit")
+        if unit and variable and variable.unit and unit != variable.unit:
+            raise self.refusal(
+                f"{where}: unit '{unit}' is not '{variable.unit}' of the variable; convert it"
+            )
+        text = typed.get("value", "")
+        try:
+            return text if kind == "String" else _TYPES[kind](text)
+        except ValueError:
+            raise self.refusal(f"{where}: '{text}' is no {kind}") from None
+
+    def channels(self, system: Element) -> dict[str, tuple[str, ...]]:
+        """Groups of result columns, which this package writes as an annotation."""
+        return {
+            check_name(channel.get("name", ""), f"{self.file}: channel"): tuple(
+                channel.get("columns", "").split()
+            )
+            for annotation in system.iterfind("ssd:Annotations/ssc:Annotation", NAMESPACES)
+            if annotation.get("type") == CHANNELS_ANNOTATION
+            for channel in annotation.iterfind("hb:Channels/hb:Channel", NAMESPACES)
+        }

@@ -1,0 +1,96 @@
+"""Writing a system as an SSP 1.0 file that other masters read.
+
+What masters differ in is avoided: one flat system, the customary prefixes declared on the root
+element only, one parameter file per component with bare variable names and the set name
+`PARAMETER_SET`. libcosim takes the step from the annotation in the default experiment, OMSimulator
+from the one in the system. libcosim sets start values of states only from its own format, which
+lies in the file as well (`osp_structure`).
+
+Connectors are the connected variables and all outputs that this master would record; signal nodes
+stay out, so that other masters hold inputs over a step.
+"""
+
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import cast
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from herringbone.core import StructureError
+from herringbone.core.part import Part
+from herringbone.cosim.ssp.format import STRUCTURE_FILE
+from herringbone.cosim.ssp.osp_structure import OSP_FILE, osp_structure
+from herringbone.cosim.ssp.structure import DescribedPart, structure, xml_root
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
+
+PARAMETER_SET = "start"
+"""Name of the parameter set of every component; ecos wants it in `init(parameter_set=...)`."""
+_TIMESTAMP = (1980, 1, 1, 0, 0, 0)
+_PERMISSIONS = 0o644 << 16
+
+
+def write_ssp(
+    system: System, fmus: Mapping[str, Path], file: Path, *, step: float, t_end: float
+) -> None:
+    """Write a system with its FMUs and start values; the same input gives the same bytes.
+
+    Args:
+        system: structure, with all values that are to be set.
+        fmus: FMU by component name; parts that are FMU files need none.
+        file: the .ssp file.
+        step: communication step size [s].
+        t_end: stop time of the default experiment [s].
+
+    Raises:
+        FmuError: an FMU cannot be read.
+        StructureError: the connections are wrong, or a unit name has two meanings.
+        ParameterError: a value does not belong to a variable, or its type has no place in SSP 1.0.
+    """
+    parts = [
+        DescribedPart(spec.name, spec.fmu or fmus[str(spec.component)], spec.values)
+        for spec in system.parts
+    ]
+    network = build_network(system, cast("list[Part]", parts))
+    sources = _resource_names(parts)
+    entries = {source: part.read_bytes() for part, source in sources.items()}
+    entries |= {part.values_file: _text(_parameter_set(part)) for part in parts if part.values}
+    entries[OSP_FILE] = _text(osp_structure(parts, network, sources, step))
+    entries[STRUCTURE_FILE] = _text(structure(system, parts, network, sources, step, t_end))
+    _write_zip(entries, file)
+
+
+def _resource_names(parts: Iterable[DescribedPart]) -> dict[Path, str]:
+    """Place of each FMU file in the .ssp; instances of one file share it."""
+    names: dict[Path, str] = {}
+    for part in parts:
+        if part.file not in names:
+            name = f"resources/{part.file.name}"
+            names[part.file] = f"resources/{part.name}.fmu" if name in names.values() else name
+    if len(set(names.values())) < len(names):
+        raise StructureError("two FMU files want the same name; rename one of them")
+    return names
+
+
+def _parameter_set(part: DescribedPart) -> Element:
+    root = xml_root("ssv:ParameterSet", ("ssv", "ssc"), name=PARAMETER_SET)
+    parameters = SubElement(root, "ssv:Parameters")
+    for name, kind, text in part.typed_values():
+        parameter = SubElement(parameters, "ssv:Parameter", name=name)
+        SubElement(parameter, f"ssv:{kind}", value=text)
+    return root
+
+
+def _text(root: Element) -> bytes:
+    indent(root)
+    return tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def _write_zip(entries: Mapping[str, bytes], file: Path) -> None:
+    """Stored, not compressed: FMUs are compressed, and the bytes do not depend on a zlib."""
+    with zipfile.ZipFile(file, "w") as archive:
+        for name in sorted(entries):
+            entry = zipfile.ZipInfo(name, _TIMESTAMP)
+            entry.create_system = 3
+            entry.external_attr = _PERMISSIONS
+            archive.writestr(entry, entries[name], zipfile.ZIP_STORED)

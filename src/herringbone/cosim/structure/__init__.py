@@ -1,0 +1,1 @@
+"""What a system consists of: parts, connections, nested systems, and its network."""

@@ -1,0 +1,250 @@
+"""A system's connections, resolved on its parts' variables and checked."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from herringbone.core import ParameterError, StructureError
+from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.structure.connection import Connection
+from herringbone.cosim.structure.roles import find_roles
+from herringbone.cosim.structure.system import System
+
+MOST_MULTIPLE = 100
+"""Most macro steps that a slow body may wait."""
+
+
+@dataclass(frozen=True)
+class Network:
+    """Instantiated parts and the connections between their variables.
+
+    Attributes:
+        parts: the participants.
+        connections: one per connected input.
+        elements: parts that pass inputs directly to outputs, in the order in which they depend on
+            each other; they are stepped after the bodies.
+        mixed: elements that also have motion of their own: outputs that no input passes to.
+        sources: parts without connected inputs.
+        notes: lines that the user should read, such as undeclared dependencies.
+        slow: bodies that step once in several macro steps, and in how many.
+        feedthrough: bodies whose motion depends directly on the forces on them.
+        undeclared: bodies of which that is not known.
+    """
+
+    parts: tuple[Part, ...]
+    connections: tuple[Connection, ...]
+    elements: tuple[int, ...]
+    sources: tuple[int, ...]
+    mixed: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = field(default=())
+    slow: Mapping[int, int] = field(default_factory=dict)
+    feedthrough: frozenset[int] = frozenset()
+    undeclared: frozenset[int] = frozenset()
+
+    @property
+    def bodies(self) -> tuple[int, ...]:
+        """Parts that are neither elements, sources nor slow, in the system's order."""
+        other = {*self.elements, *self.sources, *self.slow}
+        return tuple(i for i in range(len(self.parts)) if i not in other)
+
+    @property
+    def _that_can_be_slow(self) -> str:
+        names = [self.parts[p].name for p in self.bodies if p not in self.feedthrough]
+        return f"{', '.join(names)} can be slow" if names else "no part here can be slow"
+
+    def inputs(self, part: int) -> list[Connection]:
+        """Connections that feed a part."""
+        return [c for c in self.connections if c.target == part]
+
+    def with_slow(self, multiples: Mapping[str, int]) -> "Network":
+        """The network with some bodies stepping once in a number of macro steps.
+
+        Raises:
+            ParameterError: no such instance, no body, a multiple below 1, or no body is left.
+        """
+        index = {part.name: p for p, part in enumerate(self.parts)}
+        slow = {}
+        for name, multiple in multiples.items():
+            what = f"slow: {name}={multiple}"
+            if name not in index:
+                raise ParameterError(
+                    f"{what}: there is no instance '{name}'; {self._that_can_be_slow}"
+                )
+            if index[name] not in self.bodies or index[name] in self.feedthrough:
+                kind = "has no input" if index[name] in self.sources else "has direct feedthrough"
+                raise ParameterError(
+                    f"{what}: {name} {kind}; only bodies can be slow, which send motion: "
+                    f"{self._that_can_be_slow}"
+                )
+            if int(multiple) != multiple or not 1 <= multiple <= MOST_MULTIPLE:
+                raise ParameterError(f"{what}: it must be a whole number, 1 to {MOST_MULTIPLE}")
+            if multiple > 1:
+                slow[index[name]] = int(multiple)
+        found = replace(self, slow=slow)
+        if slow and not found.bodies and not found.mixed:
+            raise ParameterError("slow: no body is left at the macro step; use a longer step")
+        return found
+
+
+def build_network(system: System, parts: Sequence[Part]) -> Network:
+    """Resolve and check the connections of a system.
+
+    Raises:
+        StructureError: unknown part, port or variable; two outputs or two inputs; units that
+            differ; two sources on one input; an input of a connected port without source; two
+            bodies connected to each other; an algebraic loop.
+    """
+    index = {part.name: i for i, part in enumerate(parts)}
+    notes: list[str] = []
+    connections: list[Connection] = []
+    unchecked: dict[tuple[str, ...], list[str]] = {}
+    for first, second in system.connections:
+        for output, input_ in _pairs(first, second, system, parts, index):
+            connections.append(_connection(output, input_, index, unchecked))
+    for wheres in unchecked.values():
+        more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
+        notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
+    _check_single_sources(connections, parts)
+    roles = find_roles(connections, parts)
+    targets = {c.target for c in connections}
+    sources = tuple(i for i in range(len(parts)) if i not in targets)
+    return Network(
+        tuple(parts),
+        tuple(connections),
+        roles.elements,
+        sources,
+        roles.mixed,
+        (*notes, *roles.notes),
+        feedthrough=roles.feedthrough,
+        undeclared=roles.undeclared,
+    )
+
+
+def _split(
+    path: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
+) -> tuple[Part, str, list[str]]:
+    """Part, name inside it, and the suffixes of the port's variables ([] for one variable)."""
+    name, _, inner = path.partition(".")
+    if name not in index:
+        system.part(name)
+    part = parts[index[name]]
+    if inner in part.variables:
+        return part, inner, []
+    suffixes = [
+        v[len(inner) + 1 :]
+        for v, found in part.variables.items()
+        if v.startswith(f"{inner}.")
+        and found.causality in {"input", "output"}
+        and "." not in v[len(inner) + 1 :]
+    ]
+    if not suffixes:
+        raise StructureError(
+            f"connection '{path}': {name} has no variable or port '{inner}'; it has the ports "
+            + ", ".join(_ports(part))
+        )
+    return part, inner, suffixes
+
+
+def _ports(part: Part) -> list[str]:
+    real = {n: v for n, v in part.variables.items() if v.causality in {"input", "output"}}
+    return sorted({n.rpartition(".")[0] for n in real if "." in n and ".node" not in n})
+
+
+def _pairs(
+    first: str, second: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
+) -> Iterator[tuple[tuple[Part, str], tuple[Part, str]]]:
+    """(output, input) pairs of a connection between two variables or two ports."""
+    one, one_name, one_suffixes = _split(first, system, parts, index)
+    two, two_name, two_suffixes = _split(second, system, parts, index)
+    if not one_suffixes and not two_suffixes:
+        yield _directed((one, one_name), (two, two_name))
+        return
+    if not one_suffixes or not two_suffixes:
+        raise StructureError(f"connection '{first}' - '{second}': one is a port, the other is not")
+    fed: set[str] = set()
+    for a, b, names in ((one, two, one_suffixes), (two, one, two_suffixes)):
+        a_name, b_name = (one_name, two_name) if a is one else (two_name, one_name)
+        for suffix in names:
+            source, target = f"{a_name}.{suffix}", f"{b_name}.{suffix}"
+            if (
+                a.variables[source].causality == "output"
+                and target in b.variables
+                and b.variables[target].causality == "input"
+            ):
+                fed.add(f"{b.name}.{target}")
+                yield (a, source), (b, target)
+    if not fed:
+        given = [one.variables[f"{one_name}.{suffix}"] for suffix in one_suffixes]
+        outputs = [v for v in given if v.causality == "output"]
+        if outputs and all(v.dependencies for v in outputs):
+            raise StructureError(
+                f"connection '{first}' - '{second}': both give force and want motion (element to "
+                "element); put a body (with inertia) between them"
+            )
+        raise StructureError(
+            f"connection '{first}' - '{second}': both give motion and want force (body to body); "
+            "insert a shaft_coupling or another compliant element between them"
+        )
+    for part, name, suffixes in ((one, one_name, one_suffixes), (two, two_name, two_suffixes)):
+        for suffix in suffixes:
+            path = f"{part.name}.{name}.{suffix}"
+            if part.variables[f"{name}.{suffix}"].causality == "input" and path not in fed:
+                raise StructureError(
+                    f"connection '{first}' - '{second}': input '{path}' finds no output "
+                    f"'{suffix}' at the other port"
+                )
+
+
+def _directed(
+    one: tuple[Part, str], two: tuple[Part, str]
+) -> tuple[tuple[Part, str], tuple[Part, str]]:
+    causality = [part.variables[name].causality for part, name in (one, two)]
+    if causality == ["output", "input"]:
+        return one, two
+    if causality == ["input", "output"]:
+        return two, one
+    raise StructureError(
+        f"connection '{one[0].name}.{one[1]}' ({causality[0]}) - '{two[0].name}.{two[1]}' "
+        f"({causality[1]}): it must join an output and an input"
+    )
+
+
+def _connection(
+    output: tuple[Part, str],
+    input_: tuple[Part, str],
+    index: Mapping[str, int],
+    unchecked: dict[tuple[str, ...], list[str]],
+) -> Connection:
+    source, target = (part.variables[name] for part, name in (output, input_))
+    where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
+    for part, variable in ((output[0], source), (input_[0], target)):
+        if not variable.is_real:
+            raise StructureError(
+                f"connection {where}: '{part.name}.{variable.name}' is of type {variable.type}; "
+                "only scalars of type Real (FMI 2) or Float64 (FMI 3) can be connected"
+            )
+    if source.unit is None or target.unit is None:
+        between = tuple(sorted((output[0].name, input_[0].name)))
+        unchecked.setdefault(between, []).append(where)
+    else:
+        _check_units(source, target, where)
+    return Connection(index[output[0].name], source.name, index[input_[0].name], target.name)
+
+
+def _check_units(source: PartVariable, target: PartVariable, where: str) -> None:
+    if source.unit != target.unit and (
+        source.dimension is None or source.dimension != target.dimension
+    ):
+        raise StructureError(
+            f"connection {where}: units differ, '{source.unit}' and '{target.unit}'"
+        )
+
+
+def _check_single_sources(connections: Sequence[Connection], parts: Sequence[Part]) -> None:
+    seen: dict[tuple[int, str], Connection] = {}
+    for c in connections:
+        if (other := seen.setdefault((c.target, c.input), c)) is not c:
+            raise StructureError(
+                f"input '{parts[c.target].name}.{c.input}' has two sources: "
+                f"'{parts[other.source].name}.{other.output}' and "
+                f"'{parts[c.source].name}.{c.output}'"
+            )

@@ -1,0 +1,193 @@
+"""Reading a system from `system.toml`.
+
+name = "gearbox"
+description = "..."
+
+connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
+
+[parts.gear_mesh]
+component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
+set = { backlash = 1.8e-4 }
+
+[ports]                          # offered to an outer system
+pinion = "gear_mesh.pinion"
+
+[channels]                       # result columns on which errors are measured
+bearing_force = ["bearing_supports.shaft.*.f_?"]
+"""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import StructureError, reason
+from herringbone.core.files import is_file
+from herringbone.core.names import check_name, identifier_for, shown
+from herringbone.core.paths import systems_folder
+from herringbone.cosim.structure.system import PartSpec, System
+
+FILE_NAME = "system.toml"
+_KEYS: dict[str, type] = {
+    "name": str, "description": str, "connections": list, "parts": dict, "ports": dict,
+    "channels": dict,
+}  # fmt: skip
+_TYPE_NAMES = {str: "a text", list: "a list", dict: "a table"}
+_KINDS = ("component", "fmu", "system")
+
+
+VALUE_HINT = 'it takes a number or a text; quote a name that has dots: "a.b" = 1.0'
+
+
+def is_value(value: object) -> bool:
+    """True if a variable can be set to this value from TOML (Booleans: for foreign FMUs)."""
+    return isinstance(value, float | int | str)
+
+
+def find_system(reference: str | Path) -> Path:
+    """Folder of a system, by the name of a shipped one or by its path.
+
+    Raises:
+        StructureError: there is no such system.
+    """
+    for folder in (systems_folder() / reference, Path(reference)):
+        if is_file(folder / FILE_NAME):
+            return folder
+    shipped = ", ".join(sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}")))
+    raise StructureError(
+        f"there is no system {shown(str(reference))}: give one of {shipped}, a folder with "
+        f"{FILE_NAME}, or an .ssp file"
+    )
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises:
+        StructureError: it cannot be read.
+    """
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise StructureError(f"cannot read {file}: {reason(error)}") from error
+
+
+def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
+    """Read a system and everything nested in it.
+
+    Raises:
+        StructureError: not found, not readable, unknown key, or systems that contain each other.
+    """
+    folder = find_system(reference).resolve()
+    if folder in _outer:
+        raise StructureError(f"system '{reference}' contains itself")
+    file = folder / FILE_NAME
+    data = read_toml(file)
+    unknown = set(data) - set(_KEYS)
+    if unknown:
+        raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
+    for key, kind in _KEYS.items():
+        _check_type(data.get(key, kind()), kind, key, file)
+    _check_names(data, file)
+    for name, path in data.get("ports", {}).items():
+        _check_type(path, str, f"port '{name}'", file)
+    for name, patterns in data.get("channels", {}).items():
+        _check_type(patterns, list, f"channel '{name}'", file)
+        for pattern in patterns:
+            _check_type(pattern, str, f"channel '{name}': pattern", file)
+    parts: list[PartSpec] = []
+    nested: dict[str, System] = {}
+    for name, table in data.get("parts", {}).items():
+        spec = _part(name, table, folder, file)
+        if spec:
+            parts.append(spec)
+        else:
+            inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
+            nested[name] = inner.with_values(table.get("set", {}))
+    return _assemble(data, file, parts, nested)
+
+
+def _check_names(data: Mapping[str, Any], file: Path) -> None:
+    for name in (data["name"],) if "name" in data else ():
+        check_name(name, f"{file}: name")
+    for key in ("parts", "ports", "channels"):
+        for name in data.get(key, {}):
+            check_name(name, f"{file}: {key.removesuffix('s')}")
+
+
+def _check_type(value: object, kind: type, what: str, file: Path) -> None:
+    if not isinstance(value, kind):
+        raise StructureError(f"{file}: {what} = {value!r}: it takes {_TYPE_NAMES[kind]}")
+
+
+def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> PartSpec | None:
+    _check_type(table, dict, f"part '{name}'", file)
+    kinds = [kind for kind in _KINDS if kind in table]
+    unknown = set(table) - {*_KINDS, "set"}
+    if len(kinds) != 1 or unknown:
+        raise StructureError(
+            f"{file}, part '{name}': give exactly one of {', '.join(_KINDS)}, and 'set'"
+            + (f"; unknown: {', '.join(sorted(unknown))}" if unknown else "")
+        )
+    _check_type(table[kinds[0]], str, f"part '{name}': {kinds[0]}", file)
+    if not table[kinds[0]].isprintable():
+        raise StructureError(
+            f"{file}: part '{name}': {shown(table[kinds[0]])} is no name of a file"
+        )
+    values = table.get("set", {})
+    _check_type(values, dict, f"part '{name}': set", file)
+    for variable, value in values.items():
+        if not is_value(value):
+            raise StructureError(f"{file}: {name}.{variable} = {value!r}: {VALUE_HINT}")
+    if kinds[0] == "system":
+        return None
+    if kinds[0] == "fmu":
+        return PartSpec(name, fmu=(folder / table["fmu"]).resolve(), values=values)
+    return PartSpec(name, component=table["component"], values=values)
+
+
+def _nested_reference(reference: str, folder: Path) -> str | Path:
+    inside = folder / reference
+    return inside if is_file(inside / FILE_NAME) else reference
+
+
+def _assemble(
+    data: Mapping[str, Any], file: Path, parts: list[PartSpec], nested: Mapping[str, System]
+) -> System:
+    """One flat system; paths through a nested system's ports become paths of its parts."""
+
+    def resolve(path: str) -> str:
+        name, _, port = path.partition(".")
+        if name not in nested:
+            return path
+        head, _, rest = port.partition(".")
+        if head not in nested[name].ports:
+            known = ", ".join(nested[name].ports)
+            raise StructureError(f"{file}: '{path}': '{name}' offers the ports {known}")
+        return nested[name].ports[head] + (f".{rest}" if rest else "")
+
+    channels: dict[str, tuple[str, ...]] = {}
+    connections: list[tuple[str, str]] = []
+    for inner in nested.values():
+        parts += inner.parts
+        connections += inner.connections
+        channels |= inner.channels
+    for pair in data.get("connections", []):
+        texts = isinstance(pair, list) and all(isinstance(path, str) for path in pair)
+        if not texts or len(pair) != 2:
+            raise StructureError(f"{file}: a connection is a pair of paths, not {pair!r}")
+        connections.append((resolve(pair[0]), resolve(pair[1])))
+    channels |= {name: tuple(p) for name, p in data.get("channels", {}).items()}
+    own_name = data.get("name", file.parent.name)
+    name = identifier_for(own_name)
+    renamed = (f"{file}: the system is called {name} here",) if name != own_name else ()
+    inner_notes = tuple(note for inner in nested.values() for note in inner.notes)
+    return System(
+        name,
+        data.get("description", ""),
+        tuple(parts),
+        tuple(connections),
+        {name: resolve(path) for name, path in data.get("ports", {}).items()},
+        channels,
+        (*inner_notes, *renamed),
+    )

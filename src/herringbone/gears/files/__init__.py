@@ -1,0 +1,1 @@
+"""Files of gear pairs: gear files, REXS, and the data of the component gear_mesh."""

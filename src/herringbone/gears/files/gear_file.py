@@ -1,0 +1,103 @@
+"""Gear files: a pair and what to compute, in TOML, with units.
+
+[gear_pair]                      # arguments of `GearPair`; two values: pinion, wheel
+number_of_teeth = [27, 81]
+normal_module = "3.5 mm"         # text with a unit, or a number in SI
+helix_angle = "30 deg"
+face_width = "47.3 mm"           # of one half
+
+[modification]                   # optional; see `Modification`
+tip_relief = ["5 um", "5 um"]
+
+[table]                          # optional; see `GearJob`
+torque = "200 N m"
+"""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import ResourceError, reason
+from herringbone.gears.files.quantity import quantity
+from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.job import GearJob
+
+_LENGTHS = {
+    "normal_module", "face_width", "center_distance", "tip_radius", "tooth_thickness_allowance",
+    "bore_diameter", "gap_width", "groove_diameter", "shaft_diameter", "stub_length",
+    "relief_length", "helix_crowning", "tip_relief",
+}  # fmt: skip
+_KINDS = {
+    **dict.fromkeys(_LENGTHS, "length"),
+    "normal_pressure_angle": "angle",
+    "helix_angle": "angle",
+    "youngs_modulus": "stress",
+    "density": "density",
+    "torque": "torque",
+    "loads": "force",
+}
+_INTEGERS = {"number_of_teeth", "halves", "phases", "slices"}
+_FLAGS = {"corner_contact"}
+_TABLE_KEYS = {field.name for field in fields(GearJob)} - {"pair", "modification"}
+_REQUIRED = ("number_of_teeth", "normal_module", "face_width")
+
+
+def read_gear_file(file: Path) -> GearJob:
+    """Read a gear file.
+
+    Raises:
+        ResourceError: not readable, unknown or missing key, or another unit.
+        ParameterError: a value that is not possible.
+    """
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
+    known = {
+        "gear_pair": {field.name for field in fields(GearPair)},
+        "modification": {field.name for field in fields(Modification)},
+        "table": _TABLE_KEYS,
+    }
+    for section, keys in content.items():
+        if section not in known or not isinstance(keys, dict):
+            raise ResourceError(f"{file}: [{section}] is unknown; it takes {', '.join(known)}")
+        if unknown := sorted(set(keys) - known[section]):
+            raise ResourceError(
+                f"{file}: [{section}] {unknown[0]} is unknown; it takes "
+                f"{', '.join(sorted(known[section]))}"
+            )
+    given = content.get("gear_pair", {})
+    if missing := [name for name in _REQUIRED if name not in given]:
+        raise ResourceError(f"{file}: [gear_pair] {missing[0]} is missing")
+    values = {
+        section: _converted(content.get(section, {}), f"{file}: [{section}]") for section in known
+    }
+    return GearJob(
+        GearPair(**values["gear_pair"]),
+        Modification(**values["modification"]),
+        **values["table"],
+    )
+
+
+def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
+    return {
+        name: [_value(name, item, f"{where} {name}") for item in value]
+        if isinstance(value, list)
+        else _value(name, value, f"{where} {name}")
+        for name, value in section.items()
+    }
+
+
+def _value(name: str, value: object, where: str) -> float | bool:
+    if name in _FLAGS:
+        if not isinstance(value, bool):
+            raise ResourceError(f"{where} = {value!r} must be true or false")
+        return value
+    if name in _INTEGERS:
+        if not isinstance(value, int) or isinstance(value, bool):
+            raise ResourceError(f"{where} = {value!r} must be an integer")
+        return value
+    return quantity(value, _KINDS.get(name, "number"), where)

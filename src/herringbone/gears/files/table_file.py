@@ -1,0 +1,56 @@
+"""Writer of the stiffness table that the gear_mesh component reads."""
+
+import math
+from pathlib import Path
+
+from herringbone.core import HerringboneError
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
+
+SIDES = ("left", "right")
+
+
+def table_text(stiffness: MeshStiffness) -> str:
+    """The table as CSV (grammar: `components.resources.stiffness_table`), origin in comments."""
+    lines = [
+        "# units: load N, phase 1, stiffness N/m",
+        *(f"# {line}" for line in origin(stiffness)),
+    ]
+    lines.append("side,load,phase,stiffness")
+    for side in SIDES:
+        for load, row in zip(stiffness.loads, stiffness.secant, strict=True):
+            lines += [
+                f"{side},{load:.6f},{phase:.6f},{value:.7e}"
+                for phase, value in zip(stiffness.phases, row, strict=True)
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def origin(stiffness: MeshStiffness) -> list[str]:
+    """What the table is of, and how it was computed."""
+    pair, modification = stiffness.pair, stiffness.modification
+    z1, z2 = pair.number_of_teeth
+    x1, x2 = pair.profile_shift_coefficient
+    relief = " and ".join(f"{1e6 * amount:g}" for amount in modification.tip_relief)
+    return [
+        "Secant stiffness (force / deflection, normal to the flank) of one half over its own normal"
+        " force; both halves have the same.",
+        f"Pair: z {z1}/{z2}, m_n {1e3 * pair.normal_module:g} mm, alpha_n "
+        f"{math.degrees(pair.normal_pressure_angle):g} deg, beta "
+        f"{math.degrees(pair.helix_angle):g} deg, x {x1:.4g}/{x2:.4g}, a "
+        f"{1e3 * pair.center_distance:.4f} mm, b {1e3 * pair.face_width:g} mm per half.",
+        f"Tip relief of pinion and wheel {relief} um over {1e3 * modification.relief_length:g} mm, "
+        f"helix crowning {1e6 * modification.helix_crowning:g} um.",
+        f"Method: {stiffness.method}.",
+    ]
+
+
+def write_table(stiffness: MeshStiffness, file: Path) -> None:
+    """Write the table.
+
+    Raises:
+        HerringboneError: the file cannot be written.
+    """
+    try:
+        file.write_text(table_text(stiffness), encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise HerringboneError(f"cannot write {file}: {error.strerror}") from error

@@ -1,0 +1,1 @@
+"""Geometry of a gear pair: involutes, teeth, contact, modifications, masses."""

@@ -1,0 +1,1 @@
+"""Mesh stiffness and load sharing: slices, compliance of teeth, loaded contact."""

@@ -1,0 +1,95 @@
+"""Mesh stiffness of models whose contact points support each other, from their compliance."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from herringbone.gears.stiffness.contact_slices import ContactSlices, Slices
+from herringbone.gears.stiffness.equilibrium import ContactPoints, balance
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, checked_loads
+from herringbone.gears.stiffness.slices import PHASES
+
+_TOUCHING = 1e-3
+"""Load [N] at which the stiffness at zero load is taken; the contact is linear far above it."""
+
+Line = tuple[np.ndarray, np.ndarray, Slices]
+"""Positions on path and face [m] and slices of one contact line, each (n,)."""
+Progress = Callable[[str, float], None]
+"""Called with what is done and how much of it, 0 to 1."""
+
+
+def silent(what: str, done: float) -> None:
+    """Progress that tells nothing."""
+
+
+class PointMesh(ABC):
+    """Contact lines, gaps and contact of the slices, with a structure of its own behind them."""
+
+    lines: ContactSlices
+    progress: Progress = staticmethod(silent)
+
+    @abstractmethod
+    def compliance(self, lines: list[Line]) -> np.ndarray:
+        """Compliance of teeth and bodies among the points of lines [m/N]."""
+
+    @abstractmethod
+    def describe(self) -> str:
+        """The model in one line."""
+
+    def points(self, phase: float) -> ContactPoints:
+        """Points that may touch at a phase [mesh periods]."""
+        lines = self.lines.lines(phase)
+        slices = Slices(*(np.concatenate(v) for v in zip(*(s for _, _, s in lines), strict=True)))
+        return ContactPoints(
+            self.compliance(lines), slices.length, slices.gap, partial(self.lines.contact, slices)
+        )
+
+    def solve(self, loads: Sequence[float], phases: int = PHASES) -> MeshStiffness:
+        """Deflection and tangent stiffness at loads, over one mesh period.
+
+        Args:
+            loads: normal forces of the half [N], ascending, zero or positive.
+            phases: number of equidistant phases.
+
+        Raises:
+            ParameterError: loads not ascending, no equilibrium, or a relief so large that at the
+                largest load the contact ratio falls below 1.
+        """
+        forces = checked_loads(loads)
+        at = np.arange(phases) / phases
+        deflection, tangent = np.empty((2, forces.size, phases))
+        touching = np.empty(phases)
+        for i, phase in enumerate(at):
+            points = self.points(phase)
+            touching[i] = _touching_stiffness(points)
+            pressed = None
+            for j, force in enumerate(forces):
+                if force > 0.0:
+                    found = balance(points, force, pressed)
+                    deflection[j, i], tangent[j, i] = found.deflection, found.tangent
+                    pressed = found.forces
+                else:
+                    deflection[j, i], tangent[j, i] = points.gap.min(), touching[i]
+            self.progress("contact", (i + 1) / phases)
+        self.lines.check_contact_ratio(forces[-1], deflection[-1].max())
+        return MeshStiffness(
+            self.lines.pair,
+            self.lines.modification,
+            self.describe(),
+            forces,
+            at,
+            deflection,
+            tangent,
+            touching,
+        )
+
+
+def _touching_stiffness(points: ContactPoints) -> float:
+    """Stiffness [N/m] at zero load: of the points without gap, zero if there are none."""
+    if points.gap.min() > 0.0:
+        return 0.0
+    touching = replace(points, gap=np.where(points.gap > 0.0, np.inf, points.gap))
+    return balance(touching, _TOUCHING).tangent

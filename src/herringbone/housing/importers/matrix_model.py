@@ -1,0 +1,210 @@
+"""Mass and stiffness matrices of a foreign program, and how they become a housing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from herringbone.components.ports import HALVES
+from herringbone.core import ResourceError, reason
+from herringbone.housing.importers.mode_set import make_frame, make_point
+from herringbone.housing.importers.seat_file import SeatFile, Selection
+from herringbone.housing.modal_model import AXES, ModalHousing, Point
+from herringbone.housing.reduction.reduce import reduce_model
+from herringbone.housing.reduction.reduced_housing import RESIDUAL_DAMPING
+
+Row = tuple[int, int]
+"""Node and component (1, 2, 3: translations) of a matrix row."""
+_DAMPING = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixModel:
+    """A held structure by its matrices, in the units of its file.
+
+    Attributes:
+        stiffness, mass: (N, N).
+        rows: label of each row; None if the file has none.
+        coordinates: of nodes, as far as the file tells.
+        seat_input: (N, 12) forces by unit seat forces in the gearbox frame; None if the seats are
+            given by nodes.
+        source: what made them.
+    """
+
+    stiffness: sp.sparray
+    mass: sp.sparray
+    rows: tuple[Row, ...] | None
+    coordinates: Mapping[int, np.ndarray]
+    seat_input: np.ndarray | None
+    source: Mapping[str, Any]
+
+
+def only_name(names: Sequence[str], letter: str, path: Path) -> str:
+    """The one matrix whose name begins with a letter: K is stiffness, M mass."""
+    found = [name for name in names if name.startswith(letter)]
+    if len(found) != 1:
+        raise ResourceError(
+            f"{path}: one matrix whose name begins with {letter} is needed; "
+            f"it has {', '.join(names) or 'none'}"
+        )
+    return found[0]
+
+
+def read_rows(path: Path) -> tuple[Row, ...]:
+    """Labels of matrix rows, one "node.axis" a line; raises ResourceError."""
+    try:
+        lines = path.read_text(encoding="ascii").split()
+        rows = tuple((int(node), int(axis)) for node, axis in (li.split(".") for li in lines))
+    except OSError as error:
+        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+    except ValueError as error:
+        raise ResourceError(f"{path}: each line must be 'node.axis', such as 12.3") from error
+    if bad := [row for row in rows if not 1 <= row[1] <= 6]:
+        raise ResourceError(f"{path}: axis of '{bad[0][0]}.{bad[0][1]}' must lie between 1 and 6")
+    return rows
+
+
+def housing_from_matrices(
+    model: MatrixModel,
+    seats: SeatFile | None,
+    *,
+    band_hz: float,
+    tolerance: float,
+    most_modes: int,
+    progress: Callable[[str], None] = lambda what: None,
+) -> ModalHousing:
+    """Reduce matrices to a housing, in SI units and the gearbox frame.
+
+    Args:
+        model: the matrices.
+        seats: may be None if the model has its seat input.
+        band_hz, tolerance, most_modes, progress: see `reduce_model`.
+
+    Raises:
+        HerringboneError: a node or the labels of the rows are missing, or see `reduce_model`.
+    """
+    if seats is None:
+        return _without_seat_file(model, band_hz, tolerance, most_modes, progress)
+    rows = _labels(model, seats)
+    selected = [s for s in seats.selections if s.role == "sensor" or model.seat_input is None]
+    inputs = {s.name: _selected_input(s, rows, model.mass.shape[0], seats) for s in selected}
+    seat_input = model.seat_input
+    if seat_input is None:
+        seat_input = np.hstack([inputs[name] for name in HALVES])
+    found = reduce_model(
+        model.stiffness * (seats.mass / seats.time**2),
+        model.mass * seats.mass,
+        seat_input,
+        band_hz=band_hz,
+        tolerance=tolerance,
+        most_modes=most_modes,
+        progress=progress,
+    )
+    points = tuple(make_point(s, _position(s, model, seats), seats) for s in seats.selections)
+    sensors = [
+        inputs[s.name][:, [AXES.index(dof) for dof in s.dofs]].T @ found.vectors
+        for s in seats.selections
+        if s.role == "sensor"
+    ]
+    housing = _housing(
+        found, points, sensors, seats.damping_ratio, seats.damping_source, band_hz, model.source
+    )
+    description = {"description": seats.source} if seats.source else {}
+    return replace(
+        housing,
+        boundary=seats.boundary,
+        frame=make_frame(seats),
+        source={**housing.source, **description},
+    )
+
+
+def _without_seat_file(
+    model: MatrixModel,
+    band_hz: float,
+    tolerance: float,
+    most_modes: int,
+    progress: Callable[[str], None],
+) -> ModalHousing:
+    if model.seat_input is None:
+        raise ResourceError("where are the seats? Give --seats SEATS.toml, or a matrix (N, 12)")
+    found = reduce_model(
+        model.stiffness, model.mass, model.seat_input, band_hz=band_hz, tolerance=tolerance,
+        most_modes=most_modes, progress=progress,
+    )  # fmt: skip
+    points = tuple(Point(name, "seat", (0.0, 0.0, 0.0)) for name in HALVES)
+    source = {**model.source, "positions": "not given"}
+    return _housing(found, points, [], _DAMPING, "assumed", band_hz, source)
+
+
+def _housing(
+    found: Any,  # noqa: ANN401
+    points: tuple[Point, ...],
+    sensors: Sequence[np.ndarray],
+    damping_ratio: float,
+    damping_source: str,
+    band_hz: float,
+    source: Mapping[str, Any],
+) -> ModalHousing:
+    residual = np.array([kind == "residual" for kind in found.kind])
+    return ModalHousing(
+        found.kind,
+        found.frequency_hz,
+        np.where(residual, RESIDUAL_DAMPING, damping_ratio),
+        points,
+        np.vstack([found.seat_shapes, *sensors]),
+        band_hz,
+        {
+            "model": "viscous-modal",
+            "source": f"{damping_source}; residual modes {RESIDUAL_DAMPING:g}, assumed",
+        },
+        source=source,
+        static=found.static,
+        certificate=found.certificate,
+    )
+
+
+def _labels(model: MatrixModel, seats: SeatFile) -> Mapping[Row, int]:
+    size = model.mass.shape[0]
+    rows = read_rows(seats.rows) if seats.rows else model.rows
+    if rows is None:
+        if size % 3:
+            raise ResourceError(
+                f"{seats.path}: the matrices have {size} rows without labels, which are not 3 per "
+                "node; give [matrix] rows, a file of 'node.axis' lines"
+            )
+        rows = tuple((row // 3 + 1, row % 3 + 1) for row in range(size))
+    if len(rows) != size:
+        raise ResourceError(
+            f"{seats.rows or seats.path}: {len(rows)} labels for matrices of {size} rows"
+        )
+    return {row: i for i, row in enumerate(rows)}
+
+
+def _selected_input(
+    selection: Selection, rows: Mapping[Row, int], size: int, seats: SeatFile
+) -> np.ndarray:
+    """(N, 3) forces by unit forces on a selection along the gearbox axes."""
+    found = np.zeros((size, 3))
+    for node, weight in zip(selection.nodes, selection.weights, strict=True):
+        at = [rows.get((node, axis)) for axis in (1, 2, 3)]
+        if None in at:
+            raise ResourceError(
+                f"{seats.path}: {selection.role} {selection.name}: the matrices have no rows for "
+                f"the three directions of node {node}"
+            )
+        found[at] += weight * seats.rotation.T
+    return found
+
+
+def _position(selection: Selection, model: MatrixModel, seats: SeatFile) -> np.ndarray:
+    if selection.position is not None:
+        return np.array(selection.position)
+    if missing := [n for n in selection.nodes if n not in model.coordinates]:
+        raise ResourceError(
+            f"{seats.path}: {selection.role} {selection.name}: node {missing[0]} has no "
+            "coordinates; give 'position'"
+        )
+    return selection.weights @ np.array([model.coordinates[n] for n in selection.nodes])

@@ -1,0 +1,1 @@
+"""Reduction of housings to few oscillators, and how wrong that is."""

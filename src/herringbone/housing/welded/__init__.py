@@ -1,0 +1,1 @@
+"""The parametric welded housing: dimensions, mesh, finite elements, shipped data."""

@@ -1,0 +1,1 @@
+"""Running one system: loading, starting, recording, reporting, exporting."""

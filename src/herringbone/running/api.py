@@ -1,0 +1,176 @@
+"""Running a system: from names and options to a result."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from herringbone.analysis.stability.diagnosis import diagnose
+from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
+from herringbone.analysis.twin.monolithic import refuse_foreign_parts
+from herringbone.core.energy_report import Verdict
+from herringbone.core.files import same_folder
+from herringbone.core.part import Part, closing_all
+from herringbone.cosim.algorithms import (
+    AUTO,
+    Algorithm,
+    choose_algorithm,
+    parse_algorithm,
+    with_tolerance,
+)
+from herringbone.cosim.exit_guard import exit_guard
+from herringbone.cosim.record import Grid
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.run import Progress
+from herringbone.cosim.simulation import check_grid, make_grid, simulate
+from herringbone.cosim.structure.system import System
+from herringbone.fmi.kind import AUTO as AUTO_FMU
+from herringbone.fmi.kind import choose_kind
+from herringbone.result.result import Result
+from herringbone.running.loading import (
+    load_scene,
+    load_system,
+    open_parts,
+    with_options,
+    with_replacements,
+)
+from herringbone.running.run_result import decimated, make_result, twin_error
+from herringbone.running.start import started
+from herringbone.scenes import Scene
+
+_SAME = 1.0 - 1e-6
+
+
+def run(
+    system: str | Path | System,
+    *,
+    scene: str | Scene | None = None,
+    algorithm: str | Algorithm | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    slow: Mapping[str, int] | None = None,
+    t_end: float | None = None,
+    record_step: float | None = None,
+    start: str | None = None,
+    fmu: str = AUTO_FMU,
+    replace_parts: Mapping[str, str | Path] | None = None,
+    values: Mapping[str, float | str] | None = None,
+    reference: bool = False,
+    progress: Progress | None = None,
+    recorded: Callable[[Result], None] | None = None,
+) -> Result:
+    """Run a system.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
+        scene: name or file of a scene; the system's "loaded" if not given.
+        algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
+            default, takes li if all parts can repeat a step, and jacobi otherwise.
+        step: communication step size [s]; the algorithm's default if not given. With a tolerance
+            the largest one, and the others go down to 1/200 of it.
+        tolerance: relative error (see `analysis.accuracy.error`) for which `li` adapts its step, as
+            in "li:tolerance=1e-3".
+        slow: heavy bodies that step once in several macro steps, and in how many, such as
+            {"drive_motor": 5, "load_motor": 5}; the others see their predicted motion.
+        t_end: duration [s]; the scene's if not given.
+        record_step: time between records [s]; the scene's if not given.
+        start: "equilibrium", "ramp" or "rest"; the scene's if not given.
+        fmu: "native", "python", "in-process" (the same kernels without FMU), or "auto": native
+            FMUs if there is a C compiler, Python FMUs otherwise.
+        replace_parts: FMU files by instance name; a housing is tested against the contract of
+            housings first, and what it breaks becomes a note.
+        values: variables to set, by `instance.variable`.
+        reference: also solve the monolithic twin, and report the errors against it.
+        progress: called with the simulated time reached and its end [s].
+        recorded: called with the result as soon as the run has ended, before the parts are
+            terminated and freed, which a part may not survive; errors against the twin, and
+            why a run is unstable, are found after that, and are in the result that is returned.
+
+    Returns:
+        The result; a run that ends early or is unstable is an outcome of it, not an exception.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    chosen = with_options(load_scene(folder, scene), t_end, record_step, start, values)
+    coupling = _asked_for(algorithm, tolerance)
+    check_grid(chosen.t_end, step, chosen.record_step)
+    structure, broken = with_replacements(structure, replace_parts or {})
+    structure, notes = started(structure, chosen)
+    if reference:
+        refuse_foreign_parts(structure)
+    fmu, why = choose_kind(fmu)
+    notes = [*notes, *broken, *why]
+    with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as parts:
+        if coupling is None:
+            coupling, why = _chosen_for(parts, tolerance)
+            notes.append(why)
+        asked, step = step, coupling.start_step if step is None else step
+        notes += _stability_notes(structure, coupling, step, slow)
+        grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
+        notes += _record_notes(record_step, coupling, grid)
+        bond = fastest_bond(structure)
+        recording = simulate(
+            structure, parts, coupling, grid, progress, bond_frequency=bond, slow=slow
+        )
+        notes += _step_notes(asked, coupling, recording)
+        every = make_result(structure, chosen, coupling, fmu, recording, notes)
+        result = decimated(every, chosen.record_step) if reference else every
+        if recorded:
+            recorded(result)
+    if reference:
+        result = replace(result, error=twin_error(every, structure))
+    if _unstable(recording):
+        why_unstable = diagnose(structure, coupling, recording.step)
+        result = replace(result, info=replace(result.info, why=why_unstable))
+    return result
+
+
+def _asked_for(algorithm: str | Algorithm | None, tolerance: float | None) -> Algorithm | None:
+    """The algorithm that was asked for; None for the automatic choice."""
+    if algorithm is None or algorithm == AUTO:
+        return None
+    found = parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
+    return found if tolerance is None else with_tolerance(found, tolerance)
+
+
+def _chosen_for(parts: Sequence[Part], tolerance: float | None) -> tuple[Algorithm, str]:
+    """The algorithm that suits the parts, and why."""
+    found, why = choose_algorithm(parts, tolerance)
+    return (found if tolerance is None else with_tolerance(found, tolerance)), why
+
+
+def _stability_notes(
+    system: System, algorithm: Algorithm, step: float, slow: Mapping[str, int] | None
+) -> list[str]:
+    """A line if the step is unstable; nothing is predicted with slow bodies.
+
+    An adaptive step needs none: it finds the limit, and goes below.
+    """
+    if system.foreign_parts or algorithm.adaptive or slow:
+        return []
+    warning = warn_if_unstable(system, algorithm, step)
+    return [warning] if warning else []
+
+
+def _record_notes(record_step: float | None, algorithm: Algorithm, grid: Grid) -> list[str]:
+    """A line if records were asked for inside a communication step."""
+    if record_step is None or record_step >= grid.step or algorithm.adaptive:
+        return []
+    return [f"record_step = {record_step:g} s: records are taken at communication points, every "
+            f"{grid.step:g} s; use a shorter step for more"]  # fmt: skip
+
+
+def _step_notes(asked: float | None, algorithm: Algorithm, recording: Recording) -> list[str]:
+    """A line if the step that was asked for was shortened."""
+    used = recording.step
+    if asked is None or algorithm.adaptive or used >= _SAME * asked:
+        return []
+    return [f"step = {asked:g} s: shortened to {used:g} s, of which a whole number makes the end "
+            "of the run"]  # fmt: skip
+
+
+def _unstable(recording: Recording) -> bool:
+    """True if a run diverged, or its coupling was seen to add energy without end."""
+    energy = recording.energy
+    return recording.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)

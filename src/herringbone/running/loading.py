@@ -1,0 +1,140 @@
+"""From names to what a run takes: the system, its scene, its parts."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.components.registry import component
+from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
+from herringbone.core.files import is_file
+from herringbone.core.part import Part
+from herringbone.cosim.fmu.file import require_file
+from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.cosim.ssp.format import is_ssp
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.cosim.structure.system_file import find_system, read_system
+from herringbone.fmi.build import build_python_fmus
+from herringbone.fmi.kind import choose_kind
+from herringbone.fmi.native import build_native_fmus
+from herringbone.running.housing_check import replacement_notes
+from herringbone.running.ssp_import import load_ssp, ssp_scene
+from herringbone.scenes import Scene, Start, find_scene, read_scene
+from herringbone.scenes.scene import DEFAULT_SCENE
+
+_BUILDERS = {"native": build_native_fmus, "python": build_python_fmus}
+
+
+def load_system(reference: str | Path) -> tuple[System, Path]:
+    """A system by name, folder or .ssp file, and the folder (or .ssp file) that has its scenes.
+
+    Raises:
+        StructureError: it cannot be found or read.
+    """
+    if is_ssp(Path(reference)):
+        return load_ssp(Path(reference)), Path(reference)
+    return read_system(reference), find_system(reference)
+
+
+def load_scene(folder: Path, scene: str | Scene | None) -> Scene:
+    """A scene by name or file; the system's default scene, or plain defaults if it has none.
+
+    An .ssp file has start values and a stop time in place of scenes.
+
+    Raises:
+        ParameterError: there is no such scene.
+    """
+    if isinstance(scene, Scene):
+        return scene
+    if scene is None and is_ssp(folder):
+        return ssp_scene(folder)
+    if scene is None and not is_file(folder / "scenes" / f"{DEFAULT_SCENE}.toml"):
+        return Scene("default")
+    return read_scene(find_scene(folder, scene or DEFAULT_SCENE))
+
+
+def with_options(
+    scene: Scene,
+    t_end: float | None,
+    record_step: float | None,
+    start: str | None,
+    values: Mapping[str, float | str] | None,
+) -> Scene:
+    """The scene with what the caller overrides.
+
+    Raises:
+        ParameterError: there is no such start.
+    """
+    if start is not None and start not in list(Start):
+        raise ParameterError(f"start = {start!r}; it must be one of {', '.join(Start)}")
+    return replace(
+        scene,
+        t_end=scene.t_end if t_end is None else t_end,
+        record_step=scene.record_step if record_step is None else record_step,
+        start=scene.start if start is None else Start(start),
+        values={**scene.values, **(values or {})},
+    )
+
+
+def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[System, list[str]]:
+    """The system with FMU files in the place of instances, and what replaced housings break.
+
+    Raises:
+        HerringboneError: there is no such instance, or an FMU cannot be used.
+    """
+    notes: list[str] = []
+    for instance, file in files.items():
+        with _named(instance):
+            require_file(Path(file))
+        if system.part(instance).component == MODAL_HOUSING.name:
+            notes += replacement_notes(Path(file))
+        system = system.with_fmu(instance, Path(file))
+    return system, notes
+
+
+def open_parts(system: System, fmu: str) -> list[Part]:
+    """Instantiate all parts and set their start values.
+
+    Args:
+        system: the parts.
+        fmu: kind of the parts' FMUs, see `api.run`.
+
+    Raises:
+        HerringboneError: an FMU cannot be used, or a value is wrong.
+    """
+    kind, _ = choose_kind(fmu)
+    wanted = {str(spec.component) for spec in system.parts if not spec.foreign}
+    for name in wanted:
+        component(name)
+    files = _BUILDERS[kind](sorted(wanted)) if kind in _BUILDERS and wanted else {}
+    parts: list[Part] = []
+    try:
+        for spec in system.parts:
+            parts.append(_open_part(spec, files))
+            for name, value in spec.values.items():
+                parts[-1].set(name, value)
+    except HerringboneError:
+        for part in parts:
+            part.close()
+        raise
+    return parts
+
+
+@contextmanager
+def _named(instance: str) -> Iterator[None]:
+    """What is wrong with an FMU is said of the instance."""
+    try:
+        yield
+    except FmuError as error:
+        raise FmuError(f"{instance}: {error}") from error
+
+
+def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
+    if spec.fmu is not None:
+        with _named(spec.name):
+            return open_fmu(spec.name, spec.fmu)
+    if str(spec.component) in files:
+        return open_fmu(spec.name, files[str(spec.component)])
+    return InProcessPart(Instance(component(str(spec.component)), spec.name))

@@ -1,0 +1,117 @@
+"""From a recording to a result: names, figures, errors against the twin."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.components.registry import COMPONENTS
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.recording import Recording
+from herringbone.cosim.simulation import make_grid
+from herringbone.cosim.structure.system import System
+from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.scenes import Scene
+
+
+def make_result(
+    system: System,
+    scene: Scene,
+    algorithm: Algorithm,
+    fmu: str,
+    recording: Recording,
+    notes: Sequence[str],
+) -> Result:
+    """What a recording and the ways it came about make together.
+
+    Args:
+        system: with its parts' values.
+        scene: of the run.
+        algorithm: of the run.
+        fmu: kind of the parts' FMUs.
+        recording: of the run.
+        notes: lines that the user should read, besides those of the recording.
+    """
+    data = pd.DataFrame(
+        np.column_stack([recording.time, recording.values]), columns=[TIME, *recording.names]
+    )
+    parameters = _parameters(system)
+    info = RunInfo(
+        system=system.name,
+        scene=scene.name,
+        model={p.name: p.component or str(p.fmu) for p in system.parts},
+        t_end=scene.t_end,
+        communication_step=recording.step,
+        record_step=recording.record_step,
+        micro_steps={
+            name.removesuffix(".micro_step"): value
+            for name, value in parameters.items()
+            if name.endswith(".micro_step")
+        },
+        algorithm=str(algorithm),
+        fmu=fmu,
+        macro_steps=recording.macro_steps,
+        passes=recording.passes,
+        rollbacks=recording.rollbacks,
+        wall_s=recording.wall_seconds,
+        notes=(*notes, *recording.notes),
+        steps=recording.steps and recording.steps._asdict(),
+        energy=recording.energy,
+        slow=recording.slow,
+        parameters=parameters,
+        resources=_resources(system),
+    )
+    units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
+    return Result(data, units, recording.outcome, info, system.channels)
+
+
+def _parameters(system: System) -> dict[str, float]:
+    """All real parameters of the known parts, as used, by `instance.variable`."""
+    return {
+        f"{part.name}.{v.name}": float(part.values.get(v.name, v.start))
+        for part in system.parts
+        if part.component
+        for v in COMPONENTS[part.component].declaration.parameters
+        if v.name != "interface_degree"
+    }
+
+
+def _resources(system: System) -> dict[str, str]:
+    """Files that the known parts read, as given, by `instance.variable`."""
+    return {
+        f"{part.name}.{text.name}": str(part.values.get(text.name, text.start))
+        for part in system.parts
+        if part.component
+        for text in COMPONENTS[part.component].declaration.texts
+    }
+
+
+def twin_error(result: Result, system: System) -> dict[str, float] | None:
+    """Errors against the monolithic twin at the communication points that were reached.
+
+    By channel group; None without channels or macro steps.
+    """
+    groups = {name: result.channel(name) for name in system.channels}
+    columns = [column for names in groups.values() for column in names]
+    time = result.data[TIME].to_numpy()
+    if time.size < 2 or not columns:
+        return None
+    twin = pd.DataFrame(Twin(system).solve(time, columns), columns=columns)
+    uneven = time if result.info.steps else None
+    return {
+        name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
+        for name, names in groups.items()
+    }
+
+
+def decimated(result: Result, record_step: float) -> Result:
+    """Keep the records that the scene asks for; all of an adaptive run."""
+    if result.info.steps:
+        return result
+    every = make_grid(result.info.t_end, result.info.communication_step, record_step).every
+    data = result.data.iloc[::every].reset_index(drop=True)
+    info = replace(result.info, record_step=every * result.info.communication_step)
+    return replace(result, data=data, info=info)

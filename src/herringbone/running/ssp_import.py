@@ -1,0 +1,45 @@
+"""Systems from .ssp files: FMUs that these sources would build are known as components again."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.ssp.read import read_ssp, read_stop_time
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.fmi.model_description import model_description
+from herringbone.scenes import Scene, Start
+
+
+def load_ssp(file: Path) -> System:
+    """The system of an .ssp file or unpacked folder.
+
+    An FMU whose GUID is that of a component of these sources becomes that component, so that
+    equilibrium and monolithic twin are known; every other FMU stays foreign.
+
+    Raises:
+        StructureError, FmuError: the file cannot be read; see `read_ssp`.
+    """
+    system = read_ssp(file)
+    return replace(system, parts=tuple(_recognised(part) for part in system.parts))
+
+
+def ssp_scene(file: Path) -> Scene:
+    """What an .ssp file asks for: its start values, and the stop time of its default experiment.
+
+    Raises:
+        StructureError: the file cannot be read.
+    """
+    scene = Scene(file.stem, start=Start.REST)
+    stop_time = read_stop_time(file)
+    return scene if stop_time is None else replace(scene, t_end=stop_time)
+
+
+def _recognised(part: PartSpec) -> PartSpec:
+    if part.fmu is None:
+        return part
+    model = read_fmu(part.fmu)
+    own = COMPONENTS.get(model.coSimulation.modelIdentifier)
+    if own is None or model.guid != model_description(own).get("guid"):
+        return part
+    return replace(part, component=own.name, fmu=None)

@@ -1,0 +1,84 @@
+"""Start values of a run: equilibrium, the thesis' gradual load, or rest."""
+
+from dataclasses import replace
+
+from herringbone.analysis.equilibrium import equilibrium
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import EquilibriumError
+from herringbone.cosim.structure.system import System, Values
+from herringbone.scenes import Scene, Start
+
+LOAD_RAMP_TIME = 0.02
+"""Time over which the load rises in a gradual start [s]; the thesis discards its first 0.02 s."""
+_RAMP = "load_ramp_time"
+
+
+def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
+    """The system with a scene's values and start values set, and lines that the user should read.
+
+    Raises:
+        HerringboneError: a value is wrong, or there is no equilibrium.
+    """
+    system = system.with_values(scene.values)
+    notes = system.notes
+    start = scene.start
+    if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
+        notes += ("all parts are foreign; the run starts with the values that they declare",)
+        start = Start.REST
+    elif start is Start.EQUILIBRIUM and system.foreign_parts:
+        names = ", ".join(system.foreign_parts)
+        notes += (
+            f"{names}: foreign, so the equilibrium is not known; the load rises from zero over "
+            f"{LOAD_RAMP_TIME:g} s instead",
+        )
+        start = Start.RAMP
+    if start is Start.RAMP:
+        system = system.with_values(_ramps(system))
+    if start is not Start.REST:
+        try:
+            system = system.with_values(_equilibrium_values(system))
+        except EquilibriumError:
+            if not system.foreign_parts:
+                raise
+            notes += (
+                "no steady rotation exists without the foreign part; the run starts from rest, "
+                "with the start values that the parts declare",
+            )
+    return system.with_values(_offsets(system, scene.start_offset)), notes
+
+
+def _ramps(system: System) -> Values:
+    """Ramp times of all parts that have one and whose user gave none."""
+    found = {}
+    for part in system.parts:
+        if part.component and _RAMP in COMPONENTS[part.component].declaration.index:
+            found[f"{part.name}.{_RAMP}"] = part.values.get(_RAMP) or LOAD_RAMP_TIME
+    return found
+
+
+def _equilibrium_values(system: System) -> Values:
+    """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
+    foreign = set(system.foreign_parts)
+    known = replace(
+        system,
+        parts=tuple(part for part in system.parts if part.name not in foreign),
+        connections=tuple(
+            pair
+            for pair in system.connections
+            if not foreign & {path.partition(".")[0] for path in pair}
+        ),
+    )
+    return equilibrium(known).values
+
+
+def _offsets(system: System, offsets: Values) -> Values:
+    """Start values plus the scene's offsets."""
+    found = {}
+    for path, offset in offsets.items():
+        instance, _, variable = path.partition(".")
+        part = system.part(instance)
+        start = part.values.get(variable)
+        if start is None and part.component:
+            start = COMPONENTS[part.component].declaration.variable(variable).start
+        found[path] = float(start or 0.0) + float(offset)
+    return found

@@ -1,0 +1,66 @@
+"""A whole system as one native FMU."""
+
+import pickle
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from herringbone.analysis.twin.composite import make_composite
+from herringbone.core import Component, ParameterError
+from herringbone.cosim.structure.system import System
+from herringbone.fmi.native.build import build_models
+from herringbone.fmi.native.model import Model
+from herringbone.running.export import prepared, written
+from herringbone.scenes import Scene
+
+_FACTORY = f"{__name__}:unpacked_component"
+
+
+def export_fmu(
+    system: str | Path,
+    file: str | Path,
+    *,
+    outside: Sequence[str] = (),
+    scene: str | Scene | None = None,
+    values: Mapping[str, float | str] | None = None,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
+) -> Path:
+    """Write a system as one native FMU, without any coupling delay inside.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, or .ssp file; no foreign FMUs.
+        file: the .fmu file to write.
+        outside: instances that stay outside; what they feed becomes inputs of the FMU.
+        scene: name or file of the scene that gives start values; the system's default if not given.
+        values: variables to set, by `instance.variable`.
+        platforms: see `herringbone.fmi.native.PLATFORMS`; this one if not given.
+        fmi: FMI version, 2 or 3.
+
+    Returns:
+        The file.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or the FMU cannot be built.
+    """
+    file = Path(file)
+    if file.suffix != ".fmu":
+        raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
+    structure, _ = prepared(system, scene, values)
+    composite = make_composite(structure, tuple(outside))
+    model = Model(
+        composite.component,
+        _FACTORY,
+        pickle.dumps((structure, tuple(outside))).hex(),
+        composite.resources,
+    )
+    (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
+    with written(file):
+        shutil.copyfile(built, file)
+    return file
+
+
+def unpacked_component(argument: str) -> Component:
+    """The component of a pickled (system, outside); for the process that compiles its kernels."""
+    found: tuple[System, tuple[str, ...]] = pickle.loads(bytes.fromhex(argument))
+    return make_composite(*found).component

@@ -1,0 +1,146 @@
+"""The command line: help, list, version, build, check, export, exit codes."""
+
+import zipfile
+
+import pytest
+
+import herringbone
+from herringbone.commands.main import BAD_INPUT, EXIT_CODES, main
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import OutcomeKind
+
+
+def shown(capsys, *arguments, code=0):
+    assert main(arguments) == code
+    return capsys.readouterr().out
+
+
+def ended(capsys, *arguments):
+    """Exit code, output and errors of what argparse ends itself."""
+    with pytest.raises(SystemExit) as error:
+        main(arguments)
+    return error.value.code, *capsys.readouterr()
+
+
+def refused(capsys, *arguments):
+    """The one line that a refused command leaves."""
+    assert main(arguments) == BAD_INPUT
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    return err
+
+
+@pytest.mark.parametrize("command", ["list", "build", "check", "run", "export"])
+def test_help(capsys, command):
+    code, out, _ = ended(capsys, "--help")
+    assert code == 0
+    assert f"    {command} " in out
+    code, out, _ = ended(capsys, command, "--help")
+    assert code == 0
+    assert out.startswith(f"usage: herringbone {command}")
+
+
+def test_version(capsys):
+    assert ended(capsys, "--version") == (0, herringbone.__version__ + "\n", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((), "the following arguments are required: COMMAND"),
+        (("frobnicate",), "invalid choice: 'frobnicate'"),
+        (("run",), "the following arguments are required: system"),
+        (("run", "test_rig", "--step", "abc"), "--step: invalid float value: 'abc'"),
+        (("run", "test_rig", "--frobnicate"), "unrecognized arguments: --frobnicate"),
+    ],
+)
+def test_wrong_arguments_are_one_line(capsys, arguments, said):
+    code, out, err = ended(capsys, *arguments)
+    assert (code, out) == (BAD_INPUT, "")
+    assert len(err.splitlines()) == 1
+    assert said in err
+    assert "--help'" in err
+
+
+def test_list(capsys):
+    out = shown(capsys, "list")
+    for name in (*COMPONENTS, "gearbox", "test_rig", "loaded", "runup", "separation", "jacobi"):
+        assert f"  {name}" in out
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_list_component(capsys, name):
+    lines = shown(capsys, "list", name).splitlines()
+    declaration = COMPONENTS[name].declaration
+    assert lines[0] == f"{name}: {declaration.description}"
+    rows = {line.split()[0]: line for line in lines if line.startswith("  ")}
+    assert set(rows) == {v.name for v in (*declaration.variables, *declaration.texts)}
+    for v in declaration.variables:
+        assert rows[v.name].split(v.description)[0].split()[-1] == v.unit
+
+
+@pytest.mark.parametrize("command", ["list", "build"])
+def test_unknown_component(capsys, command):
+    assert "no component 'nope'; there are: gear_mesh" in refused(capsys, command, "nope")
+
+
+@pytest.mark.parametrize(
+    ("option", "item", "form"),
+    [
+        ("--set", "gear_mesh.backlash", "INSTANCE.VARIABLE=VALUE"),
+        ("--set", "=1", "INSTANCE.VARIABLE=VALUE"),
+        ("--set", "gear_mesh.backlash=", "INSTANCE.VARIABLE=VALUE"),
+        ("--set", "backlash=1", "INSTANCE.VARIABLE"),
+        ("--replace", "modal_housing", "INSTANCE=FILE.fmu"),
+    ],
+)
+def test_assignments_say_their_form(capsys, option, item, form):
+    assert f"must be {form}\n" in refused(capsys, "run", "test_rig", option, item)
+
+
+def test_exit_codes_cover_all_outcomes():
+    assert set(EXIT_CODES) == set(OutcomeKind)
+    zero = [kind for kind, code in EXIT_CODES.items() if code == 0]
+    assert zero == [OutcomeKind.COMPLETED]
+
+
+def test_debug_shows_the_traceback(capsys):
+    assert main(["--debug", "run", "nope"]) == BAD_INPUT
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_build(capsys, tmp_path):
+    out = shown(capsys, "build", "shaft_coupling", "-o", str(tmp_path / "fmus"))
+    file = tmp_path / "fmus" / "shaft_coupling.fmu"
+    assert out.split() == [str(file)]
+    assert "modelDescription.xml" in zipfile.ZipFile(file).namelist()
+
+
+def test_check(capsys, python_fmus):
+    file = str(python_fmus["shaft_coupling"])
+    assert shown(capsys, "check", file) == f"{file}: no problems\n"
+
+
+def test_check_of_no_fmu(capsys, tmp_path):
+    file = tmp_path / "x.fmu"
+    assert refused(capsys, "check", str(file)) == f"herringbone: there is no file {file}\n"
+    file.write_text("not a zip")
+    assert shown(capsys, "check", str(file), code=1).startswith(f"{file} is not an FMU")
+
+
+def test_export(capsys, tmp_path):
+    file = tmp_path / "rig.ssp"
+    assert shown(capsys, "export", "test_rig", "-o", str(file)) == f"{file}\n"
+    assert "SystemStructure.ssd" in zipfile.ZipFile(file).namelist()
+
+
+def test_export_of_bad_input(capsys, tmp_path):
+    assert "there is no system 'nope'" in refused(capsys, "export", "nope")
+    wrong = str(tmp_path / "rig.zip")
+    assert "must end in .ssp" in refused(capsys, "export", "test_rig", "-o", wrong)
+
+
+def test_modal_data_belong_to_the_test_of_a_housing(capsys):
+    said = refused(capsys, "check", "housing.fmu", "--against", "data")
+    assert "--against belongs to the test of a housing; add --as housing" in said

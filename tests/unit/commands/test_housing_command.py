@@ -1,0 +1,93 @@
+"""The commands `herringbone housing reduce` and `import` as a user sees them."""
+
+import json
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+from support.housing import small_housing
+
+from herringbone.commands import main as cli
+from herringbone.housing import read_housing, write_housing
+from herringbone.housing.reduction.error import drive_point_errors
+from herringbone.housing.reduction.reduced_housing import reduce_housing
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def data(here):
+    write_housing(small_housing(static=None, residual=None, certificate={}), "data")
+    return here / "data"
+
+
+def test_reduce(data, capsys):
+    assert cli.main(["housing", "reduce", "data", "--band", "600", "--tolerance", "0.3"]) == 0
+    out = capsys.readouterr().out
+    full, reduced = read_housing("data"), read_housing("results/data-600Hz")
+    count = reduced.frequency_hz.size
+    assert f"20 oscillators became {count}: " in out
+    assert count < 20
+    assert (data.parent / "results/data-600Hz/data-600Hz.png").stat().st_size > 20_000
+    assert reduced.certificate["band_hz"] == 600.0
+    bound = reduced.certificate["error_bound"]
+    errors = drive_point_errors(full, reduced, np.linspace(1.0, 600.0, 50))
+    assert 0.0 < errors.max() <= bound <= 0.3
+    assert f"error certified below {100 * bound:.2g} % of the static compliance" in out
+
+
+def test_reduce_as_json(data, capsys):
+    assert cli.main(["housing", "reduce", "data", "--band", "600", "--json", "-o", "r.zip"]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    expected = reduce_housing(read_housing("data"), band_hz=600.0, tolerance=0.05)
+    assert figures["oscillators"] == expected.frequency_hz.size
+    assert figures["files"] == ["r.zip", "r.png"]
+    np.testing.assert_array_equal(read_housing("r.zip").shapes, expected.shapes)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["reduce", "nowhere"], "there is no file or folder nowhere"),
+        (["reduce", "data", "--band", "2500"], "band 2500 Hz is beyond valid_to_hz = 2000 Hz"),
+        (["reduce", "data", "--tolerance", "2"], "tolerance 2 must lie between 0 and 1"),
+        (["import", "modes.op2"], "modes.op2: '.op2' cannot be imported; export DMIG cards"),
+        (["reduce", "data", "-o", "data"], "-o data would overwrite the full data"),
+        (["import", "modes"], "modes: a file without suffix cannot be imported; it takes .mtx"),
+        (["build", "none.toml"], "cannot read none.toml: No such file or directory\n"),
+        (["import", "K.mtx"], "1 Matrix Market file(s); give stiffness, mass"),
+    ],
+)
+def test_one_line_and_nothing_written(data, capsys, arguments, expected):
+    before = sorted(data.parent.rglob("*"))
+    assert cli.main(["housing", arguments[0], "-o", "out", *arguments[1:]]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("herringbone: ")
+    assert said.err.count("\n") == 1
+    assert expected in said.err
+    assert sorted(data.parent.rglob("*")) == before
+
+
+def test_import(here, capsys):
+    """A chain of 15 masses on springs: its static compliance is known."""
+    size = 15
+    stiffness = 1e8 * sp.diags_array([2.0 * np.ones(size), -np.ones(size - 1)], offsets=[0, 1])
+    stiffness = stiffness + sp.triu(stiffness, 1).T
+    scipy.io.mmwrite("K.mtx", stiffness.tocoo(), precision=17)
+    scipy.io.mmwrite("M.mtx", sp.eye_array(size).tocoo())
+    scipy.io.mmwrite("B.mtx", np.eye(size)[:, :12])
+    files = ["K.mtx", "M.mtx", "B.mtx"]
+    assert cli.main(["housing", "import", *files, "--band", "500", "-o", "chain"]) == 0
+    found = read_housing("chain")
+    j = np.arange(1, 13)
+    expected = np.minimum.outer(j, j) * (1 - np.maximum.outer(j, j) / (size + 1)) / 1e8
+    np.testing.assert_allclose(found.static_compliance(), expected, rtol=1e-10)
+    out = capsys.readouterr().out
+    assert f"{1e-6 / expected[0, 0]:.0f}, " in out
+    assert "Files: chain" in out

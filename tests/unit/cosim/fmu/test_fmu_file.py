@@ -1,0 +1,163 @@
+"""What is checked of an FMU file before anything of it is loaded."""
+
+import re
+import zipfile
+
+import fmpy
+import pytest
+
+from herringbone.core import FmuError
+from herringbone.cosim.fmu import file as fmu_file
+from herringbone.cosim.fmu.file import extract_fmu, read_fmu
+
+BINARY = f"binaries/{fmpy.platform}/model{fmpy.sharedLibraryExtension}"
+CO_SIMULATION = '<CoSimulation modelIdentifier="model"/>'
+MODEL_EXCHANGE = '<ModelExchange modelIdentifier="model"/>'
+
+
+def description(*, version="2.0", kinds=CO_SIMULATION, before=""):
+    return (
+        f'<?xml version="1.0" encoding="UTF-8"?>{before}'
+        f'<fmiModelDescription fmiVersion="{version}" modelName="m" guid="{{0}}">{kinds}'
+        '<ModelVariables><ScalarVariable name="y" valueReference="0" causality="output">'
+        "<Real/></ScalarVariable></ModelVariables>"
+        '<ModelStructure><Outputs><Unknown index="1"/></Outputs></ModelStructure>'
+        "</fmiModelDescription>"
+    )
+
+
+def write(folder, text=None, names=(BINARY,)):
+    file = folder / "x.fmu"
+    with zipfile.ZipFile(file, "w") as archive:
+        if text is not None:
+            archive.writestr("modelDescription.xml", text)
+        for name in names:
+            archive.writestr(name, b"")
+    return file
+
+
+def refused(message, file):
+    with pytest.raises(FmuError, match=re.escape(message)) as error:
+        read_fmu(file)
+    assert str(file) in str(error.value)
+    return str(error.value)
+
+
+def test_good_file(tmp_path):
+    model = read_fmu(write(tmp_path, description()))
+    assert model.coSimulation.modelIdentifier == "model"
+    assert [v.name for v in model.modelVariables] == ["y"]
+
+
+def test_both_kinds_are_good(tmp_path):
+    assert read_fmu(write(tmp_path, description(kinds=MODEL_EXCHANGE + CO_SIMULATION)))
+
+
+def test_missing_file(tmp_path):
+    refused("there is no file", tmp_path / "none.fmu")
+
+
+def test_folder(tmp_path):
+    refused("is a folder; give an .fmu file", tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"not a zip", b"PK\x03\x04 cut"])
+def test_no_zip(tmp_path, content):
+    file = tmp_path / "x.fmu"
+    file.write_bytes(content)
+    refused("is not an FMU", file)
+
+
+def test_damaged_description(tmp_path):
+    file = write(tmp_path, description())
+    data = bytearray(file.read_bytes())
+    at = data.index(b"fmiModelDescription")
+    data[at : at + 3] = b"XXX"  # its check sum is wrong now
+    file.write_bytes(data)
+    refused("is not an FMU", file)
+
+
+def test_no_description(tmp_path):
+    refused("is not an FMU: it contains no modelDescription.xml", write(tmp_path))
+
+
+@pytest.mark.parametrize("version", ["1.0", "3.0-beta.1", "3.1", "30"])
+def test_other_versions(tmp_path, version):
+    said = refused(f"is an FMI {version} unit", write(tmp_path, description(version=version)))
+    assert "FMI 2.0 or 3.0 for co-simulation is needed" in said
+
+
+def test_unknown_version(tmp_path):
+    refused("is an FMI unknown unit", write(tmp_path, "<fmiModelDescription/>"))
+
+
+def test_model_exchange_only(tmp_path):
+    refused("is for model exchange only", write(tmp_path, description(kinds=MODEL_EXCHANGE)))
+
+
+@pytest.mark.parametrize(
+    ("names", "have"),
+    [
+        (("binaries/amiga68k/model.so", "binaries/vax/model.so"), "amiga68k, vax"),
+        ((), "none"),
+        ((BINARY.replace("model", "other"),), fmpy.platform),
+    ],
+)
+def test_no_binary_for_the_platform(tmp_path, names, have):
+    said = refused("has no binary for this platform", write(tmp_path, description(), names))
+    assert f"({BINARY}); it has: {have}" in said
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../evil", "resources/../../evil", "/etc/evil", "..\\evil", "C:\\evil", "c:/evil", "\\evil"],
+)
+def test_entries_outside_the_folder(tmp_path, name):
+    said = refused("would be written outside its folder; refused",
+                   write(tmp_path, description(), (BINARY, name)))  # fmt: skip
+    assert "evil" in said
+
+
+def test_dots_in_names_are_no_climbing(tmp_path):
+    assert read_fmu(write(tmp_path, description(), (BINARY, "resources/a..b", "resources/...")))
+
+
+BOMB = '<!DOCTYPE x [<!ENTITY a "ha"><!ENTITY b "&a;&a;">]>'
+
+
+@pytest.mark.parametrize(
+    "before", [BOMB, "<!DOCTYPE x>", "<!doctype x>", '<!ENTITY a SYSTEM "file:///etc/passwd">']
+)
+def test_doctype_and_entities(tmp_path, before):
+    refused("declares a DOCTYPE or an entity; refused", write(tmp_path, description(before=before)))
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-32"])
+def test_doctype_in_another_encoding(tmp_path, encoding):
+    """Two bytes per character do not hide it; that the version is unreadable refuses as well."""
+    text = description(before=BOMB).replace("UTF-8", encoding.upper())
+    file = write(tmp_path, text.encode(encoding))
+    with pytest.raises(FmuError, match=re.escape(str(file))):
+        read_fmu(file)
+
+
+def test_xml_that_is_cut(tmp_path):
+    said = refused("modelDescription.xml cannot be read", write(tmp_path, description()[:-40]))
+    assert "x.fmu" in said
+
+
+def test_extract(tmp_path, monkeypatch):
+    monkeypatch.setattr(fmu_file.tempfile, "tempdir", str(tmp_path))
+    folder = extract_fmu(write(tmp_path, description()))
+    assert folder.parent == tmp_path
+    assert (folder / BINARY).is_file() and (folder / "modelDescription.xml").is_file()
+
+
+@pytest.mark.parametrize("name", ["with ü", "with#", "with%20"])
+def test_extract_refuses_paths_that_python_fmus_cannot_load_from(tmp_path, monkeypatch, name):
+    temporary = tmp_path / name
+    temporary.mkdir()
+    monkeypatch.setattr(fmu_file.tempfile, "tempdir", str(temporary))
+    with pytest.raises(FmuError, match="set TMPDIR to a plain ASCII path"):
+        extract_fmu(write(tmp_path, description()))
+    assert not list(temporary.iterdir())

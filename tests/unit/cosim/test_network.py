@@ -1,0 +1,229 @@
+"""Every check of a system's connections, with its message."""
+
+import re
+
+import pytest
+from support.parts import FakePart, Mass, SpringDamper
+
+from herringbone.core import ParameterError, StructureError
+from herringbone.cosim.algorithms import GaussSeidel, Predict
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import PartSpec, System
+
+
+def network(parts, *connections):
+    system = System("fake", "", tuple(PartSpec(p.name) for p in parts), connections)
+    return build_network(system, parts)
+
+
+def refused(message, parts, *connections):
+    with pytest.raises(StructureError, match=re.escape(message)) as error:
+        network(parts, *connections)
+    return str(error.value)
+
+
+def mass(name):
+    return Mass(name, 1.0)
+
+
+def spring(name="spring"):
+    return SpringDamper(name, 1.0, 0.0)
+
+
+def passing(name, unit="1"):
+    """A part that passes its input u to its output y."""
+    return FakePart(name).real("u", "input", unit).real("y", "output", unit, frozenset({"u"}))
+
+
+def test_ports_pair_outputs_and_inputs_by_suffix():
+    found = network([mass("m"), spring()], ("m.flange", "spring.a"))
+    pairs = {(c.source, c.output, c.target, c.input) for c in found.connections}
+    assert pairs == {
+        (0, "flange.s", 1, "a.s"), (0, "flange.v", 1, "a.v"), (1, "a.f", 0, "flange.f")
+    }  # fmt: skip
+
+
+def test_order_of_a_connections_ends_does_not_matter():
+    parts = [mass("m"), spring()]
+    one = network(parts, ("m.flange", "spring.a")).connections
+    assert set(one) == set(network(parts, ("spring.a", "m.flange")).connections)
+
+
+def test_classes_of_parts():
+    source = FakePart("source").real("y", "output", "N")
+    parts = [spring(), mass("m"), source, mass("n")]
+    found = network(parts, ("m.flange", "spring.a"), ("spring.b", "n.flange"))
+    assert (found.elements, found.bodies, found.sources) == ((0,), (1, 3), (2,))
+
+
+def test_unknown_part_names_those_that_exist():
+    said = refused("has no part 'gear'", [mass("m"), spring()], ("gear.flange", "spring.a"))
+    assert "it has: m, spring" in said
+
+
+def test_unknown_port_names_those_that_exist():
+    said = refused("no variable or port 'left'", [mass("m"), spring()], ("spring.left", "m.flange"))
+    assert "it has the ports a, b" in said and "'spring.left'" in said
+
+
+def test_path_without_port():
+    refused("has no variable or port ''", [mass("m"), spring()], ("m", "spring.a"))
+
+
+def test_port_against_variable():
+    refused(
+        "'m.flange' - 'spring.a.s': one is a port, the other is not",
+        [mass("m"), spring()], ("m.flange", "spring.a.s"),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("pair", "causality"),
+    [(("m.flange.s", "n.flange.s"), "output"), (("m.flange.f", "n.flange.f"), "input")],
+)
+def test_two_outputs_or_two_inputs(pair, causality):
+    said = refused("it must join an output and an input", [mass("m"), mass("n")], pair)
+    assert said.count(f"({causality})") == 2
+    assert all(f"'{path}'" in said for path in pair)
+
+
+def test_parameter_cannot_be_connected():
+    part = FakePart("p").real("k", "parameter")
+    refused("'p.k' (parameter)", [part, passing("q")], ("p.k", "q.u"))
+
+
+def test_units_differ():
+    parts = [FakePart("p").real("y", "output", "N"), FakePart("q").real("u", "input", "N.m")]
+    refused("connection 'p.y' -> 'q.u': units differ, 'N' and 'N.m'", parts, ("p.y", "q.u"))
+
+
+def test_same_unit_under_two_names():
+    dimension = (1.0, 0.0, (("kg", 1), ("m", 2), ("s", -2)))
+    parts = [
+        FakePart("p").real("y", "output", "Nm", dimension=dimension),
+        FakePart("q").real("u", "input", "N.m", dimension=dimension),
+    ]
+    assert not network(parts, ("p.y", "q.u")).notes
+
+
+def test_same_dimension_with_another_factor_is_refused():
+    si, milli = (1.0, 0.0, (("m", 1),)), (1e-3, 0.0, (("m", 1),))
+    parts = [
+        FakePart("p").real("y", "output", "m", dimension=si),
+        FakePart("q").real("u", "input", "mm", dimension=milli),
+    ]
+    refused("units differ, 'm' and 'mm'", parts, ("p.y", "q.u"))
+
+
+def test_undeclared_unit_is_noted():
+    parts = [FakePart("p").real("y", "output", "N"), FakePart("q").real("u", "input", None)]
+    (note,) = network(parts, ("p.y", "q.u")).notes
+    assert note == "connection 'p.y' -> 'q.u': a unit is not declared, so it was not checked"
+
+
+def test_only_reals():
+    parts = [
+        FakePart("p").real("y", "output", type="Integer"), FakePart("q").real("u", "input")
+    ]  # fmt: skip
+    refused("'p.y' -> 'q.u': 'p.y' is of type Integer; only scalars", parts, ("p.y", "q.u"))
+
+
+def test_two_sources_on_one_input():
+    parts = [passing("p"), passing("q"), passing("r")]
+    refused("input 'r.u' has two sources: 'p.y' and 'q.y'", parts, ("p.y", "r.u"), ("q.y", "r.u"))
+
+
+def test_one_output_may_feed_many():
+    parts = [passing("p"), passing("q"), passing("r")]
+    assert len(network(parts, ("p.y", "q.u"), ("p.y", "r.u")).connections) == 2
+
+
+def test_body_to_body():
+    said = refused("insert a shaft_coupling", [mass("m"), mass("n")], ("m.flange", "n.flange"))
+    assert "'m.flange' - 'n.flange'" in said
+
+
+def test_unmatched_input():
+    other = FakePart("other").real("a.s", "output", "m").real("a.f", "input", "N")
+    pair = ("spring.b", "other.a")
+    said = refused("finds no output 'v' at the other port", [spring(), other], pair)
+    assert "'spring.b.v'" in said
+
+
+def test_algebraic_loop_is_named():
+    parts = [passing("p"), passing("q"), mass("m")]
+    said = refused("algebraic loop: ", parts, ("p.y", "q.u"), ("q.y", "p.u"))
+    loop = said.removeprefix("algebraic loop: ").split(";")[0].split(" -> ")
+    assert loop[0] == loop[-1] and set(loop) == {"p", "q"}
+    assert "put a body" in said
+
+
+def test_element_to_element_asks_for_a_body():
+    said = refused("'p.a' - 'q.a'", [spring("p"), spring("q")], ("p.a", "q.a"))
+    assert "put a body" in said and "shaft_coupling" not in said
+
+
+def test_elements_are_ordered_as_they_feed_each_other():
+    sink = FakePart("sink").real("u", "input").real("x", "output")
+    source = FakePart("s").real("y", "output")
+    parts = [passing("c"), sink, passing("b"), passing("a"), source]
+    pairs = ("c.y", "sink.u"), ("b.y", "c.u"), ("a.y", "b.u"), ("s.y", "a.u")
+    found = network(parts, *pairs)
+    assert [parts[i].name for i in found.elements] == ["a", "b", "c"]
+
+
+def body_and_element(name):
+    """Motion x moves under force f; reaction r is a direct answer to seat motion q."""
+    return (
+        FakePart(name).real("f", "input", "N").real("q", "input", "m")
+        .real("x", "output", "m", frozenset()).real("r", "output", "N", frozenset({"q"}))
+    )  # fmt: skip
+
+
+def test_a_part_may_be_body_and_element_at_once():
+    link = FakePart("link").real("x", "input", "m").real("f", "output", "N", frozenset({"x"}))
+    seat = FakePart("seat").real("r", "input", "N").real("q", "output", "m", frozenset())
+    parts = [link, body_and_element("box"), seat]
+    pairs = (("box.x", "link.x"), ("link.f", "box.f"), ("seat.q", "box.q"), ("box.r", "seat.r"))
+    found = network(parts, *pairs)
+    assert (found.elements, found.bodies, found.mixed) == ((1, 0), (2,), {1})
+    for algorithm in (GaussSeidel(), Predict()):
+        with pytest.raises(ParameterError, match=r"box is body and element at once .*; use li"):
+            algorithm.prepare(found)
+
+
+def yielding(name):
+    """A body that gives way directly under its force."""
+    return (
+        FakePart(name).real("a.f", "input", "N").real("a.s", "output", "m", frozenset({"a.f"}))
+        .real("a.v", "output", "m/s", frozenset())
+    )  # fmt: skip
+
+
+def test_loop_is_cut_at_the_force_on_a_body():
+    parts = [spring(), yielding("seat"), mass("m")]
+    found = network(parts, ("seat.a", "spring.a"), ("m.flange", "spring.b"))
+    assert (found.elements, found.bodies) == ((0,), (1, 2))
+    assert (found.feedthrough, found.mixed) == ({1}, frozenset())
+    with pytest.raises(ParameterError, match="seat has direct feedthrough"):
+        found.with_slow({"seat": 2})
+
+
+def undeclared(name):
+    part = FakePart(name).real("u", "input").real("y", "output")
+    part.variables["y"] = type(part.variables["y"])("y", 1, "output", "1", dependencies=None)
+    return part
+
+
+def test_undeclared_dependencies_count_as_an_element():
+    source = FakePart("s").real("y", "output")
+    parts = [undeclared("p"), source, passing("q")]
+    found = network(parts, ("s.y", "p.u"), ("p.y", "q.u"))
+    assert 0 in found.elements
+    assert "p declares no output dependencies; taken as an element" in found.notes
+
+
+def test_undeclared_dependencies_in_a_circle_make_a_body():
+    found = network([undeclared("p"), passing("q")], ("p.y", "q.u"), ("q.y", "p.u"))
+    assert (found.elements, found.bodies) == ((1,), (0,))
+    assert found.notes == ("p declares no output dependencies; taken as a body",)

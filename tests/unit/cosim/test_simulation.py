@@ -1,0 +1,289 @@
+"""The run around the compiled loop: grid, end time, outcomes, interruption, determinism."""
+
+import math
+import os
+import signal
+import threading
+import time
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from support.parts import (
+    TWO_MASS_SYSTEM,
+    TwoMass,
+    columns,
+    dawdle,
+    fail_at,
+    spoil_at,
+)
+
+from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.part import closing_all
+from herringbone.cosim.algorithms import GaussSeidel, Jacobi
+from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.structure.system import System
+
+PROBLEM = TwoMass(zeta=0.05)
+ALGORITHMS = [Jacobi(order=2), Jacobi(order=1, schedule="parallel"), GaussSeidel(order=2)]
+
+
+# -- grid ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bad", [0.0, -1e-5, math.nan, math.inf])
+@pytest.mark.parametrize("name", ["step", "t_end", "record_step"])
+def test_grid_refuses(name, bad):
+    values = {"t_end": 1.0, "step": 0.1, "record_step": 0.1} | {name: bad}
+    with pytest.raises(ParameterError, match=f"{name} = .* s: it must be positive and finite"):
+        make_grid(**values)
+
+
+def test_grid_refuses_an_end_before_the_first_step():
+    with pytest.raises(ParameterError, match=r"t_end = 0\.05 s is shorter than one step of 0\.1 s"):
+        make_grid(0.05, 0.1, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("t_end", "step", "count"),
+    [(0.2, 1e-5, 20000), (0.1, 0.03, 4), (1.0, 1.0, 1), (0.3, 0.1, 3), (0.02, 2.0000001e-5, 1000)],
+)
+def test_grid_shortens_the_step_to_hit_the_end(t_end, step, count):
+    grid = make_grid(t_end, step, step)
+    assert grid.count == count
+    assert grid.step <= step * (1.0 + 1e-9)
+    assert grid.step * grid.count == pytest.approx(t_end, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("record_step", "every"),
+    [(1e-5, 1), (1e-9, 1), (2e-5, 2), (2.5e-5, 2), (3e-5, 3), (1.0, 10**5)],
+)
+def test_records_are_whole_numbers_of_steps(record_step, every):
+    assert make_grid(1.0, 1e-5, record_step).every == every
+
+
+# -- a run --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+@pytest.mark.parametrize(("h", "t_end"), [(0.1, 3.0), (0.07, 1.0), (1.0, 1.0)])
+def test_end_is_hit_exactly(algorithm, h, t_end):
+    recording = PROBLEM.run(algorithm, h, t_end)
+    assert recording.outcome.kind is OutcomeKind.COMPLETED
+    assert recording.outcome.message == recording.outcome.culprit == ""
+    assert recording.outcome.time == pytest.approx(t_end, rel=1e-15)
+    assert recording.time[-1] == recording.outcome.time
+    assert recording.time.size == recording.macro_steps + 1 == len(recording.values)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+def test_each_part_steps_once_a_macro_step(algorithm):
+    parts = PROBLEM.parts()
+    recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(2.0, 0.1, 0.1))
+    assert [part.steps for part in parts] == [20, 20, 20] == list(recording.passes.values())
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+def test_two_runs_are_bit_identical(algorithm):
+    first, second = (PROBLEM.run(algorithm, 0.1, 20.0) for _ in range(2))
+    assert first.values.tobytes() == second.values.tobytes()
+    assert first.time.tobytes() == second.time.tobytes()
+
+
+def test_chunks_do_not_change_the_result():
+    """Slow parts make other chunks; the result is the same."""
+    quick = PROBLEM.run(Jacobi(order=2), 0.1, 4.0)
+    slow = PROBLEM.run(Jacobi(order=2), 0.1, 4.0, misbehave=dawdle(0.004))
+    assert quick.values.tobytes() == slow.values.tobytes()
+
+
+def test_records_are_every_nth_point():
+    fine = PROBLEM.run(Jacobi(order=2), 0.1, 2.0)
+    grid = make_grid(2.0, 0.1, 0.3)
+    coarse = simulate(TWO_MASS_SYSTEM, PROBLEM.parts(), Jacobi(order=2), grid)
+    assert coarse.time == pytest.approx(np.arange(7) * 0.3)
+    assert coarse.values.tobytes() == fine.values[::3].tobytes()
+    assert (coarse.step, coarse.record_step) == (grid.step, 3 * grid.step)
+
+
+def test_first_record_is_the_consistent_start():
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1.0)
+    stretch = PROBLEM.start[0] - PROBLEM.start[1]
+    found = columns(recording, ("left.flange.s", "right.flange.s", "spring.a.f"))[0]
+    assert found == pytest.approx([*PROBLEM.start, -PROBLEM.stiffness * stretch], rel=1e-15)
+
+
+def test_names_and_units():
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1.0)
+    units = dict(zip(recording.names, recording.units, strict=True))
+    assert units == {
+        "left.flange.s": "m", "left.flange.v": "m/s",
+        "right.flange.s": "m", "right.flange.v": "m/s",
+        "spring.a.f": "N", "spring.b.f": "N",
+    }  # fmt: skip
+
+
+def test_progress_ends_at_the_end():
+    seen = []
+    grid = make_grid(2.0, 0.1, 0.1)
+    simulate(
+        TWO_MASS_SYSTEM, PROBLEM.parts(), Jacobi(order=2), grid, lambda *told: seen.append(told)
+    )
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx((2.0, 2.0))
+
+
+# -- runs that end early ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+def test_a_part_that_fails(algorithm):
+    whole = PROBLEM.run(algorithm, 0.1, 2.0)
+    recording = PROBLEM.run(algorithm, 0.1, 2.0, misbehave=fail_at(1.0))
+    outcome = recording.outcome
+    assert outcome.kind is OutcomeKind.PART_FAILED
+    assert outcome.culprit == "left"
+    assert outcome.time == pytest.approx(0.9)
+    assert outcome.message.startswith("left refused its step at 0.9 s")
+    assert recording.time == pytest.approx(np.arange(10) * 0.1)
+    assert recording.values.tobytes() == whole.values[:10].tobytes()
+
+
+@pytest.mark.parametrize("status", [2, 3, 4])
+def test_discard_error_and_fatal_are_failures(status):
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 2.0, misbehave=fail_at(1.0, status))
+    assert recording.outcome.kind is OutcomeKind.PART_FAILED
+
+
+def test_a_warning_is_no_failure():
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 2.0, misbehave=fail_at(1.0, 1))
+    assert recording.outcome.kind is OutcomeKind.COMPLETED
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+def test_values_that_are_not_finite(algorithm, value):
+    whole = PROBLEM.run(algorithm, 0.1, 2.0)
+    recording = PROBLEM.run(algorithm, 0.1, 2.0, misbehave=spoil_at(1.0, value))
+    outcome = recording.outcome
+    assert outcome.kind is OutcomeKind.DIVERGED
+    assert outcome.culprit == "left.flange.v"
+    assert outcome.time == pytest.approx(1.0)
+    assert "left.flange.v is not finite at 1 s" in outcome.message
+    assert "use a step below 0.1 s" in outcome.message
+    assert recording.time == pytest.approx(np.arange(10) * 0.1)
+    assert recording.values.tobytes() == whole.values[:10].tobytes()
+
+
+def test_failure_in_the_first_step_keeps_the_start():
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 2.0, misbehave=fail_at(0.0))
+    assert recording.outcome.time == 0.0
+    assert recording.time.tolist() == [0.0]
+    assert np.isfinite(recording.values).all()
+
+
+# -- interruption -------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def handler():
+    """A SIGINT handler of the caller's, which a run has to give back."""
+    calls = []
+
+    def mine(number, frame):
+        calls.append(number)
+
+    before = signal.signal(signal.SIGINT, mine)
+    yield mine, calls
+    signal.signal(signal.SIGINT, before)
+
+
+def interrupted_after(seconds):
+    """SIGINT to this process from a timer thread; the list then holds the time it was sent."""
+    sent = []
+
+    def send():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(seconds, send).start()
+    return sent
+
+
+STEP_TIME = 0.02
+
+
+def test_interrupt_ends_the_run_in_time(handler):
+    mine, calls = handler
+    sent = interrupted_after(0.2)
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1000.0, misbehave=dawdle(STEP_TIME))
+    assert time.perf_counter() - sent[0] < 0.5 + STEP_TIME
+    outcome = recording.outcome
+    assert outcome.kind is OutcomeKind.INTERRUPTED
+    assert outcome.message == f"stopped at {outcome.time:g} s; results so far are kept"
+    assert 0 < recording.macro_steps < 100
+    assert recording.time[-1] == pytest.approx(outcome.time)
+    assert np.isfinite(recording.values).all()
+    assert calls == []
+    assert signal.getsignal(signal.SIGINT) is mine
+
+
+def test_interrupt_of_quick_parts(handler):
+    sent = interrupted_after(0.2)
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1e5)
+    assert time.perf_counter() - sent[0] < 0.5
+    assert recording.outcome.kind is OutcomeKind.INTERRUPTED
+    assert recording.time.size == recording.macro_steps + 1
+    assert np.isfinite(recording.values).all()
+
+
+def test_handler_is_restored_after_an_error(handler):
+    mine, _ = handler
+    with pytest.raises(ZeroDivisionError), InterruptFlag():
+        raise ZeroDivisionError
+    assert signal.getsignal(signal.SIGINT) is mine
+
+
+def test_runs_in_another_thread(handler):
+    """Python delivers signals to the main thread only; elsewhere the handler is left alone."""
+    mine, _ = handler
+    found = []
+    thread = threading.Thread(
+        target=lambda: found.append(PROBLEM.run(Jacobi(order=2), 0.1, 2.0).outcome.kind)
+    )
+    thread.start()
+    thread.join()
+    assert found == [OutcomeKind.COMPLETED]
+    assert signal.getsignal(signal.SIGINT) is mine
+
+
+def test_parts_without_connected_inputs_only():
+    """A system without connections runs: every part is a source."""
+    recording = simulate(
+        System("free", "", TWO_MASS_SYSTEM.parts, ()),
+        TwoMass(start=(1.0, 2.0)).parts(), Jacobi(order=2), make_grid(1.0, 0.1, 0.1),
+    )  # fmt: skip
+    assert columns(recording, ("left.flange.s", "right.flange.s"))[-1].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+def test_unconnected_inputs_keep_their_start_value(algorithm):
+    """A force that nothing feeds, and whose signal nodes nobody sets, acts on both masses alike."""
+    parts = TwoMass(start=(0.0, 0.0)).parts()
+    for part in parts[:2]:
+        part.set("load.f", 3.0 * part.mass)
+    recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(2.0, 0.1, 0.1))
+    found = columns(recording, ("left.flange.s", "right.flange.s", "spring.a.f"))[-1]
+    assert found == pytest.approx([6.0, 6.0, 0.0], abs=1e-12)  # s = a t^2 / 2
+
+
+def test_all_parts_are_closed_after_an_error():
+    closed = []
+    parts = [SimpleNamespace(close=partial(closed.append, name)) for name in ("left", "right")]
+    with pytest.raises(HerringboneError), closing_all(parts) as opened:
+        assert opened is parts
+        raise HerringboneError("a part refuses to initialise")
+    assert closed == ["left", "right"]

@@ -1,0 +1,109 @@
+"""The error of a macro step against closed forms and against a mass that the force pushes."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.loops.step_error import AMPLIFICATION, FLOOR, ORDER, step_error, update_scale
+
+KAPPA = {1: 1 / 12, 2: 1 / 960, 3: 1 / 6480, 4: 1 / 387072}
+SPACING = (1.25, 0.8)
+"""The two steps before, in units of the present one."""
+ONE = np.array([0], dtype=np.int64)
+
+
+def found_force(force, degree, scale=1.0):
+    """Node plan and buffers after a step from 0 to 1 that found force(t), without residual."""
+    nothing = np.zeros(0, dtype=np.int64)
+    nodes = NodePlan(degree, ONE, *[nothing] * 9)
+    past = [0.0, -SPACING[0], -sum(SPACING)]
+    history = np.array([[0.0], *([force(t)] for t in past)])
+    values = np.array([[force(j / degree)] for j in range(degree + 1)])
+    empty = np.zeros((degree, 1))
+    buffers = Buffers(
+        history, values, empty, empty.copy(), np.array([scale]), np.zeros(1), nothing, nothing,
+        np.zeros(3, dtype=np.int64), np.zeros(2), np.array(SPACING), np.zeros((2, 1)),
+    )  # fmt: skip
+    return nodes, buffers
+
+
+def error(force, degree, *, held=0, known=9, scale=1.0):
+    nodes, buffers = found_force(force, degree, scale)
+    return step_error(nodes, buffers, ONE, np.array([held], np.int64), np.zeros(1), known)[0]
+
+
+@pytest.mark.parametrize("degree", KAPPA)
+def test_error_of_a_power(degree):
+    """h^q f^(q) of t^q is q!, at any spacing of the steps before; lower powers have no error."""
+    q = int(ORDER[degree])
+    wanted = AMPLIFICATION * KAPPA[degree] * math.factorial(q)
+    assert error(lambda t: (t + 0.3) ** q, degree) == pytest.approx(wanted, rel=1e-9)
+    assert error(lambda t: (t + 0.3) ** (q - 1), degree) < 1e-9 * wanted
+
+
+@pytest.mark.parametrize("degree", KAPPA)
+def test_a_held_force_errs_as_degree_1(degree):
+    assert error(lambda t: t * t, degree, held=1) == pytest.approx(AMPLIFICATION / 6.0, rel=1e-9)
+
+
+def pushed(degree, p, steps):
+    """Position at communication points of a mass that polynomials through cos(w t) push; p = w h.
+
+    m = h = 1. The start is that of the exact motion -cos(w t) / w^2.
+    """
+    c = np.arange(degree + 1) / degree
+    fit = np.linalg.inv(np.vander(c, increasing=True))
+    j = np.arange(degree + 1)
+    s, v, found = -1.0 / p**2, 0.0, []
+    for n in range(steps):
+        found.append(s)
+        a = fit @ np.cos(p * (n + c))
+        s, v = s + v + (a / ((j + 1) * (j + 2))).sum(), v + (a / (j + 1)).sum()
+    return np.array(found)
+
+
+@pytest.mark.parametrize("degree", KAPPA)
+def test_the_position_of_a_pushed_mass_errs_as_kappa_says(degree):
+    """A force wrong by kappa h^q f^(q) moves it by kappa (w h)^q times its own motion.
+
+    The periodic part of the error is that; a start that is off by as much adds a drift.
+    """
+    p, steps = 0.2, 2000
+    t = np.arange(steps)
+    off = pushed(degree, p, steps) + np.cos(p * t) / p**2
+    basis = np.column_stack([np.cos(p * t), np.sin(p * t), np.ones(steps), t])
+    cosine = abs(np.linalg.lstsq(basis, off, rcond=None)[0][0]) * p**2
+    assert cosine == pytest.approx(KAPPA[degree] * p ** ORDER[degree], rel=0.03)
+
+
+def test_without_history_a_lower_derivative_stands_in():
+    """The third difference of t^3 over cubic nodes, 3!, where the fourth derivative is zero."""
+    assert error(lambda t: t**3, 3, known=1) == pytest.approx(AMPLIFICATION * 6 / 6480, rel=1e-9)
+    assert error(lambda t: t**3, 3, known=2) < 1e-12
+
+
+def test_what_is_left_of_the_correction_counts():
+    nodes, buffers = found_force(lambda t: 0.0, 3)
+    buffers.rest[:] = [[1.0], [2.0], [-3.0]]
+    assert step_error(nodes, buffers, ONE, 0 * ONE, np.zeros(1), 9)[0] == 3.0
+
+
+def test_size_of_the_forces_is_their_standard_deviation():
+    """Over time with uneven steps, and not below a thousandth of the largest value."""
+    w, mean = 2.0 * math.pi, 50.0
+    rng = np.random.default_rng(1)
+    times = np.sort(np.concatenate([[0.0, 10.0], rng.uniform(0.0, 10.0, 3000)]))
+    moments, weight = np.zeros((4, 1)), np.zeros(1)
+    nodes, buffers = found_force(lambda t: mean, 3)
+    update_scale(nodes, buffers, ONE * 0, moments, weight, 0.0)
+    assert buffers.scale[0] == pytest.approx(FLOOR * mean)
+    for start, end in pairwise(times):
+        at = start + (end - start) * np.arange(4) / 3
+        buffers.nodes[:, 0] = mean + 3.0 * np.sin(w * at)
+        update_scale(nodes, buffers, ONE * 0, moments, weight, end - start)
+    assert weight[0] == pytest.approx(10.0)
+    # Values at nodes stand for the third before them: off by (w h / 3) / 2 of the amplitude.
+    assert buffers.scale[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=0.01)

@@ -1,0 +1,223 @@
+"""Building native FMUs: reproducible, cached, small, and nothing of Python inside."""
+
+import importlib.util
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.model_description import read_model_description
+from fmpy.validation import validate_fmu
+
+from herringbone.commands.main import main
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.paths import resources_folder
+from herringbone.fmi import kind
+from herringbone.fmi.native import (
+    PLATFORMS,
+    build,
+    build_native_fmus,
+    compiler,
+    own_platform,
+    symbols,
+)
+from herringbone.fmi.native.model import registered_model
+from herringbone.running.export import build_fmus
+
+OWN = own_platform()
+LARGEST = 300_000
+"""Bytes of an FMU with all platforms, resources aside: the limit that the project sets itself."""
+
+
+def library(fmu, folder):
+    """The own platform's library of an FMU."""
+    with zipfile.ZipFile(fmu) as archive:
+        name = f"binaries/{OWN.folder}/{fmu.stem}.{OWN.extension}"
+        return archive.extract(name, folder)
+
+
+def test_two_builds_are_identical(native_fmus, tmp_path, monkeypatch):
+    monkeypatch.setattr(build, "cache_folder", lambda _: tmp_path)
+    again = build_native_fmus(["drive_motor"])["drive_motor"]
+    assert tmp_path in again.parents
+    assert again.read_bytes() == native_fmus["drive_motor"].read_bytes()
+
+
+def test_a_build_is_used_again(native_fmus, monkeypatch):
+    monkeypatch.setattr(build, "_compile_kernels", lambda *_: pytest.fail("built again"))
+    assert build_native_fmus(["drive_motor"]) == {"drive_motor": native_fmus["drive_motor"]}
+
+
+def test_other_resources_make_another_fmu(tmp_path):
+    model = registered_model("bench_controller")
+    name, file = next(iter(model.resources.items()))
+    other = tmp_path / name
+    other.write_bytes(file.read_bytes() + b"# other\n")
+    changed = type(model)(
+        model.component, model.factory, model.argument, {**model.resources, name: other}
+    )
+    assert changed.key != model.key
+    assert registered_model("bench_controller").key == model.key
+
+
+def test_library_has_the_functions_of_its_version_alone(native_fmus, fmi3_fmus):
+    for version, other, fmus in ((2, 3, native_fmus), (3, 2, fmi3_fmus)):
+        with zipfile.ZipFile(fmus["drive_motor"]) as archive:
+            (name,) = (n for n in archive.namelist() if n.endswith(OWN.extension))
+            data = archive.read(name)
+        assert f"fmi{version}DoStep".encode() in data
+        assert f"fmi{other}DoStep".encode() not in data
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_library_needs_libc_alone(name, native_fmus, tmp_path):
+    file = library(native_fmus[name], tmp_path)
+    data = Path(file).read_bytes()
+    symbols.check_library(data, OWN, name)
+    assert b"PyErr" not in data
+    assert b"numba" not in data
+    if OWN.extension == "so" and shutil.which("nm"):
+        listed = subprocess.run(
+            ["nm", "-D", "--undefined-only", "--without-symbol-versions", file],
+            capture_output=True, text=True, check=True,
+        ).stdout.split()  # fmt: skip
+        assert symbols.undefined(data) == {word for word in listed if word not in {"U", "w"}}
+        assert max(symbols.glibc_versions(data)) <= (2, 17)
+
+
+@pytest.fixture
+def compiled(tmp_path):
+    """Function that compiles C to an object file, or to a library with the given libraries."""
+    if not shutil.which("cc") or OWN.extension != "so":
+        pytest.skip("needs cc that makes ELF files")
+
+    def make(source, *link):
+        file = tmp_path / "part.c"
+        file.write_text(source)
+        kind = ["-shared", "-fPIC"] if link else ["-c"]
+        target = tmp_path / "part.out"
+        subprocess.run(["cc", "-O1", *kind, file, "-o", target, *link], check=True)
+        return target.read_bytes()
+
+    return make
+
+
+def test_gate_refuses_functions_of_libm_and_of_python(compiled):
+    sine = "double sin(double); double f(double x) { return sin(x); }"
+    with pytest.raises(FmuError, match=r"the kernels of part for \S+ would need sin at run time"):
+        symbols.check_object(compiled(sine), OWN, "part")
+    with pytest.raises(FmuError, match=r"the library of part for .* would need sin"):
+        symbols.check_library(compiled(sine, "-lm"), OWN, "part")
+    python = "void PyErr_Clear(void); void f(void) { PyErr_Clear(); }"
+    with pytest.raises(FmuError, match="PyErr_Clear"):
+        symbols.check_object(compiled(python), OWN, "part")
+    symbols.check_object(compiled("double f(double x) { return 2.0 * x; }"), OWN, "part")
+
+
+def test_gate_refuses_a_young_libc(compiled, monkeypatch):
+    data = compiled("#include <stdlib.h>\nvoid *f(void) { return malloc(8); }", "-lc")
+    symbols.check_library(data, OWN, "part")
+    monkeypatch.setattr(symbols, "_NEWEST_GLIBC", (2, 0))
+    with pytest.raises(FmuError, match="would need GLIBC_2"):
+        symbols.check_library(data, OWN, "part")
+
+
+@pytest.mark.slow
+def test_kernels_for_all_platforms_need_no_functions(tmp_path):
+    models = [registered_model(name) for name in ("gear_mesh", "modal_housing")]
+    build._compile_kernels(tmp_path, list(PLATFORMS.values()), models)
+    for platform in PLATFORMS.values():
+        for model in models:
+            data = (tmp_path / platform.name / f"{model.name}.o").read_bytes()
+            symbols.check_object(data, platform, model.name)
+            assert symbols.undefined(data) <= symbols._IN_OBJECTS
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not importlib.util.find_spec("ziglang"), reason="ziglang is not installed")
+@pytest.mark.parametrize("fmi", build.VERSIONS)
+def test_all_platforms_in_one_small_file(fmi, tmp_path, capsys):
+    arguments = ["--native", "--platforms", "all", "--fmi", str(fmi), "-o", str(tmp_path)]
+    assert main(["build", "gear_mesh", *arguments]) == 0
+    said = capsys.readouterr().out.splitlines()
+    file = tmp_path / {2: "gear_mesh.fmu", 3: "gear_mesh_fmi3.fmu"}[fmi]
+    assert said[0] == str(file)
+    assert said[1] == "built, not run: x86_64-darwin, aarch64-darwin"
+    assert validate_fmu(str(file)) == []
+    with zipfile.ZipFile(file) as archive:
+        entries = archive.infolist()
+        documentation = archive.read("documentation/index.html").decode()
+    size = sum(e.compress_size for e in entries if not e.filename.startswith("resources/"))
+    assert size <= LARGEST
+    folders = {e.filename.split("/")[1] for e in entries if e.filename.startswith("binaries/")}
+    assert folders == {p.name if fmi == 3 else p.folder for p in PLATFORMS.values()}
+    assert "x86_64-darwin (built, not run)" in documentation
+    assert "x86_64-linux (built" not in documentation
+
+
+def test_both_fmi_versions_fit_into_one_folder(tmp_path):
+    for fmi in build.VERSIONS:
+        build_fmus(["shaft_coupling"], tmp_path, native=True, fmi=fmi)
+    found = {file.name: read_model_description(file).fmiVersion for file in tmp_path.iterdir()}
+    assert found == {"shaft_coupling.fmu": "2.0", "shaft_coupling_fmi3.fmu": "3.0"}
+
+
+def test_resources_lie_in_the_file(native_fmus):
+    for name, fmu in native_fmus.items():
+        with zipfile.ZipFile(fmu) as archive:
+            for file in resources_folder(name).glob("*.csv"):
+                assert archive.read(f"resources/{file.name}") == file.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--native", "--platforms", "amiga"], "platform 'amiga' is unknown; there are: x86_64-l"),
+        (["--native", "--fmi", "1"], "FMI version 1; it must be 2 or 3"),
+        (["--fmi", "3"], "--platforms and --fmi choose among native FMUs; add --native"),
+        (["--set", "modal_housing.modes=x.csv"], "--set puts files into native FMUs; add --native"),
+        (["--native", "--set", "modes"], "--set modes: it must be COMPONENT.PARAMETER=FILE"),
+        (["gearbox", "--native"], "there is no component 'gearbox'"),
+    ],
+)
+def test_bad_options_give_one_line(arguments, said, capsys):
+    assert main(["build", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert (out, len(err.splitlines())) == ("", 1)
+    assert said in err
+
+
+def test_without_compiler_native_is_refused_and_auto_takes_python(monkeypatch):
+    monkeypatch.setattr(compiler.shutil, "which", lambda _: None)
+    monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
+    with pytest.raises(
+        FmuError, match=r"no C compiler for .* with .pip install herringbone\[native\]"
+    ):
+        compiler.require_compiler(OWN)
+    chosen, notes = kind.choose_kind("auto")
+    assert chosen == "python"
+    assert "Python FMUs instead of native ones" in notes[0]
+
+
+def test_kinds_that_are_asked_for_are_taken():
+    assert kind.choose_kind("in-process") == ("in-process", ())
+    with pytest.raises(ParameterError, match="must be one of auto, native, python, in-process"):
+        kind.choose_kind("wasm")
+
+
+def test_failure_of_the_compiler_is_one_line(tmp_path):
+    found = compiler.find_compiler(OWN) if OWN else None
+    if found is None:
+        pytest.skip("no C compiler for native FMUs was found")
+    description = tmp_path / "part.c"
+    description.write_text("#error this part is wrong\n")
+    with pytest.raises(FmuError, match=r"failed: .*this part is wrong") as error:
+        compiler.compile_library(found, OWN, description, tmp_path / "none.o", tmp_path / "part.so")
+    assert "\n" not in str(error.value)
+
+
+def test_binaries_run_on_this_platform(native_fmus):
+    assert fmpy.supported_platforms(str(native_fmus["gear_mesh"])) == [fmpy.platform]

@@ -1,0 +1,184 @@
+"""Gear files in TOML and REXS: what is read, and the message for each kind of bad one."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+from support.gears import THESIS, gear_pair
+
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.paths import component_folder
+from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.job import GearJob
+
+STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
+"""First stage of the FVA two-stage industrial gear unit, as its public REXS model has it."""
+
+GOOD = """
+[gear_pair]
+number_of_teeth = [27, 81]
+normal_module = "3.5 mm"
+helix_angle = "30 deg"
+face_width = 0.0473
+groove_diameter = ["95 mm", 0.310]
+[modification]
+tip_relief = ["5 um", 0.0]
+[table]
+torque = "0.2 kN m"
+corner_contact = true
+"""
+
+
+@pytest.fixture
+def message(tmp_path):
+    """The message with which a changed gear file is refused."""
+
+    def read(old: str, new: str) -> str:
+        assert old in GOOD
+        file = tmp_path / "bad.toml"
+        file.write_text(GOOD.replace(old, new), encoding="utf-8")
+        with pytest.raises(HerringboneError) as caught:
+            read_gear_file(file)
+        assert "\n" not in str(caught.value)
+        return str(caught.value)
+
+    return read
+
+
+def test_units_become_si(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(GOOD, encoding="utf-8")
+    job = read_gear_file(file)
+    assert job.pair.normal_module == 3.5e-3
+    assert job.pair.helix_angle == math.radians(30.0)
+    assert job.pair.groove_diameter == (0.095, 0.310)
+    assert job.modification.tip_relief == (5e-6, 0.0)
+    assert job.torque == 200.0
+    assert job.task().corner_contact
+
+
+def test_pair_of_the_gear_mesh_component():
+    job = read_gear_file(component_folder("gear_mesh") / "gear_pair.toml")
+    assert job.pair == gear_pair(THESIS)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"3.5 mm"', '"3.5 inch"', "normal_module: unit 'inch' is no length; it takes m, mm, um"),
+        ('"3.5 mm"', '"3.5"', "unit 'none' is no length"),
+        ('"3.5 mm"', '"large"', "normal_module = 'large' is no length; give a number in SI or"),
+        ('"30 deg"', '"30 mm"', "helix_angle: unit 'mm' is no angle; it takes rad, deg"),
+        ('"30 deg"', "30.0", "angles are given in rad"),
+        ("[27, 81]", "[27.5, 81]", "number_of_teeth = 27.5 must be an integer"),
+        ("helix_angle", "helix", "[gear_pair] helix is unknown; it takes"),
+        ("normal_module", "#", "[gear_pair] normal_module is missing"),
+        ("[table]", "[tables]", "[tables] is unknown; it takes gear_pair, modification, table"),
+        ("corner_contact = true", "corner_contact = 1", "corner_contact = 1 must be true or false"),
+        ("[27, 81]", "[27, 81", "cannot read"),
+        ('"5 um"', '"-5 um"', "not negative"),
+    ],
+)
+def test_bad_gear_file(message, old, new, expected):
+    assert expected in message(old, new)
+
+
+def test_missing_gear_file(tmp_path):
+    with pytest.raises(HerringboneError, match=r"cannot read .*none\.toml"):
+        read_gear_file(tmp_path / "none.toml")
+
+
+def test_loads_follow_from_the_torque():
+    """From zero to 25 times the normal force; without a torque 100 N/mm of tangential load."""
+    job = GearJob(gear_pair(THESIS), torque=200.0)
+    loads = job.task().loads
+    assert loads[0] == 0.0
+    assert loads[-1] == pytest.approx(25.0 * 2252.228)
+    forces = gear_pair(THESIS).tooth_forces(GearJob(gear_pair(THESIS)).pinion_torque)
+    assert forces.tangential / (2 * 47.3) == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"loads": [100.0, 1e4]}, "must begin with zero and go on, in N per half; they begin with"),
+        ({"loads": []}, "they begin with nothing"),
+        ({"loads": [0.0, 1000.0]}, "largest load 1000 N of the stiffness table is below the 2252"),
+        ({"torque": -1.0}, "torque -1 N m must be positive"),
+        ({"phases": 2}, "phases = 2 must lie between 4 and 128"),
+    ],
+)
+def test_tables_without_zero_or_large_loads(changes, expected):
+    with pytest.raises(ParameterError, match=re.escape(expected)):
+        GearJob(**{"pair": gear_pair(THESIS), "torque": 200.0, **changes}).task()
+
+
+def test_rexs_stage():
+    """Its centre distance is that of its profile shifts without backlash, to the digits given."""
+    pair = read_rexs(STAGE)
+    assert pair.number_of_teeth == (27, 51)
+    assert pair.helix_angle == math.radians(21.0)
+    assert pair.center_distance == 0.190
+    assert abs(pair.normal_backlash) < 1e-7
+    assert pair.youngs_modulus == 2.1e11
+    assert pair.density == 7850.0
+    assert pair.halves == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('id="normal_module" unit="mm">4.5', 'id="modul" unit="mm">4.5',
+         "cylindrical_gear 'Pinion', normal_module is missing"),
+        ('"normal_pressure_angle" unit="deg"', '"normal_pressure_angle" unit="rad/s"',
+         "normal_pressure_angle: unit 'rad/s' is no angle; it takes rad, deg"),
+        ('"center_distance" unit="mm"', '"center_distance" unit="inch"',
+         "cylindrical_stage 'First stage', center_distance: unit 'inch' is no length"),
+        ('"center_distance"', '"distance"', "center_distance is missing"),
+        ('"addendum_modification_coefficient"', '"x"', "addendum_modification_coefficient is mis"),
+        ('deg">-21', 'deg">21', "helix angles 21 and 21 deg of an external pair must be opposite"),
+        ('unit="">27', 'unit="">many', "number_of_teeth = 'many' is no number"),
+        ('unit="">27', 'unit="">27.5', "number of teeth 27.5 must be an integer"),
+        ('type="cylindrical_stage"', 'type="bevel_stage"', "it has no cylindrical_stage"),
+        ('role="gear_2"', 'role="gear_3"', "has no relation to two cylindrical_gears"),
+        ("<model", "<models", "cannot read"),
+        ('mm">190', 'mm">18', "center distance 18.0000 mm is impossible"),
+    ],
+)  # fmt: skip
+def test_bad_rexs(tmp_path, old, new, expected):
+    text = STAGE.read_text(encoding="utf-8")
+    assert old in text
+    file = tmp_path / "bad.rexs"
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(HerringboneError, match=re.escape(expected)) as caught:
+        read_rexs(file)
+    assert "\n" not in str(caught.value)
+
+
+def test_flanks_that_differ(tmp_path):
+    text = STAGE.read_text(encoding="utf-8").replace("0.231415", "0.231", 1)
+    file = tmp_path / "unequal.rexs"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(HerringboneError, match="'Pinion' has several values of addendum_mod"):
+        read_rexs(file)
+
+
+def test_stage_is_chosen(tmp_path):
+    text = STAGE.read_text(encoding="utf-8")
+    second = '<component id="20" name="Second stage" type="cylindrical_stage"/></components>'
+    file = tmp_path / "two.rexs"
+    file.write_text(text.replace("</components>", second), encoding="utf-8")
+    with pytest.raises(HerringboneError, match=r"choose one of 10 \(First.*20 \(Second stage\)"):
+        read_rexs(file)
+    assert read_rexs(file, stage="First stage") == read_rexs(file, stage="10")
+    with pytest.raises(HerringboneError, match="stage 'Third' is none of"):
+        read_rexs(file, stage="Third")
+
+
+def test_other_xml(tmp_path):
+    file = tmp_path / "page.xml"
+    file.write_text("<html/>", encoding="utf-8")
+    with pytest.raises(HerringboneError, match="root element 'html' is not the 'model'"):
+        read_rexs(file)

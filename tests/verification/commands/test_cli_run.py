@@ -1,0 +1,162 @@
+"""`herringbone run`: files, JSON, and the interrupt."""
+
+import csv
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+
+import pandas as pd
+import pytest
+
+from herringbone.commands.main import main
+from herringbone.components.registry import COMPONENTS
+from herringbone.core.variable import Causality
+from herringbone.cosim.structure.system_file import read_system
+
+KEYS = {
+    "outcome", "scene", "model", "t_end", "communication_step", "micro_step", "algorithm",
+    "macro_steps", "passes", "rollbacks", "wall_s", "results",
+}  # fmt: skip
+PARTS = {part.name: part.component for part in read_system("test_rig").parts}
+
+
+def run(capsys, folder, *arguments):
+    """The JSON object of a run of 5 ms, which is all that is printed."""
+    options = ("--t-end", "0.005", "-o", str(folder), "--json", *arguments)
+    assert main(["run", "test_rig", *options]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert len(out.splitlines()) == 1
+    return json.loads(out)
+
+
+def columns():
+    """All outputs of all parts."""
+    return {
+        f"{part}.{v.name}"
+        for part, component in PARTS.items()
+        for v in COMPONENTS[component].declaration.variables
+        if v.causality is Causality.OUTPUT
+    }
+
+
+JACOBI = ("--algorithm", "jacobi:order=2")
+
+
+def test_default_algorithm(tmp_path, capsys):
+    """All our parts can repeat a step: li with one correction is two passes and one rollback."""
+    found = run(capsys, tmp_path, "--fmu", "in-process")
+    assert found["algorithm"].startswith("li:degree=3")
+    assert found["macro_steps"] == 125
+    jacobian = 1 + 3 * 24  # one pass per unknown: 24 forces at 3 nodes
+    first = 1  # the first step, predicted from one point, is corrected twice
+    assert found["passes"]["gear_mesh"] == 2 * 125 + jacobian + first
+    assert found["rollbacks"] == 125 + jacobian + first
+    assert found["notes"][0].startswith("auto: li:degree=3")
+
+
+@pytest.mark.parametrize("fmu", ["python", "in-process"])
+def test_json(tmp_path, capsys, fmu):
+    found = run(capsys, tmp_path, "--fmu", fmu, *JACOBI)
+    assert set(found) >= KEYS
+    assert "error" not in found
+    assert (found["outcome"], found["scene"], found["model"]) == ("completed", "loaded", PARTS)
+    assert (found["t_end"], found["communication_step"]) == (0.005, 1e-5)
+    assert found["micro_step"] == 2.5e-6
+    assert found["algorithm"].startswith("jacobi:order=2")
+    assert (found["macro_steps"], found["rollbacks"]) == (500, 0)
+    assert found["passes"] == dict.fromkeys(PARTS, 500)
+    assert 0.0 < found["wall_s"] < 60.0
+    assert str(tmp_path / "results.csv") in found["results"]
+    assert all(os.path.getsize(file) for file in found["results"])  # noqa: PTH202 (any file)
+    assert json.loads((tmp_path / "summary.json").read_text()).items() >= found.items()
+
+
+def test_reference(tmp_path, capsys):
+    """At 10 us, order 2, the README's 0.17 % of bearing force over 20 ms; 1 % is a bound."""
+    found = run(capsys, tmp_path, "--reference", "--fmu", "in-process", *JACOBI)
+    assert set(found["error"]) == {"bearing_force", "seat_velocity"}
+    assert all(0.0 < error < 0.01 for error in found["error"].values())
+    assert found["record_step"] == 2e-5
+    assert len(pd.read_csv(tmp_path / "results.csv", comment="#")) == 251
+
+
+def test_results_csv(tmp_path, capsys):
+    run(capsys, tmp_path, "--parquet", "--fmu", "in-process", *JACOBI)
+    lines = (tmp_path / "results.csv").read_text().splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    assert comments == lines[:1]
+    header = lines[1].split(",")
+    assert header[0] == "time"
+    assert len(header) == len(set(header))
+    assert set(header[1:]) == columns()
+    units = dict(item.rsplit(" ", 1) for item in comments[0].removeprefix("# units: ").split(", "))
+    assert list(units) == header
+    assert units["time"] == "s"
+    assert units["gear_mesh.pinion_left.s_y"] == "m"
+    rows = list(csv.reader(lines[2:]))
+    assert len(rows) == 251
+    assert all(len(row) == len(header) for row in rows)
+    assert (rows[0][0], float(rows[-1][0])) == ("0.0", 0.005)
+    assert all(repr(float(x)) == x for row in rows[::50] for x in row)
+    parquet = pd.read_parquet(tmp_path / "results.parquet")
+    table = pd.read_csv(tmp_path / "results.csv", comment="#", float_precision="round_trip")
+    pd.testing.assert_frame_equal(parquet, table, check_exact=True)
+
+
+def test_default_folder(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ("--t-end", "0.001", "--scene", "runup", "--start", "rest", "--fmu", "in-process")
+    assert main(["run", "test_rig", *options]) == 0
+    assert capsys.readouterr().out.startswith("test_rig, scene runup: completed")
+    assert (tmp_path / "results" / "test_rig-runup" / "results.csv").is_file()
+
+
+def read_until(terminal, text, seconds):
+    """What a terminal shows, up to a text."""
+    shown, end = b"", time.monotonic() + seconds
+    while text not in shown:
+        ready, _, _ = select.select([terminal], [], [], max(0.0, end - time.monotonic()))
+        assert ready, f"{text} was not shown within {seconds} s; shown: {shown!r}"
+        shown += os.read(terminal, 4096)
+    return shown
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo terminal")
+@pytest.mark.parametrize("fmu", ["python", "in-process"])
+def test_interrupt(tmp_path, fmu):
+    """Ctrl-C while the progress bar moves: the bar ends within 0.5 s, then files are written."""
+    import termios
+
+    command = [sys.executable, "-m", "herringbone", "run", "test_rig", "--t-end", "60"]
+    terminal, stderr = os.openpty()
+    termios.tcsetwinsize(stderr, (40, 120))
+    with subprocess.Popen(
+        [*command, "--fmu", fmu, "-o", str(tmp_path)], stdout=subprocess.PIPE, stderr=stderr
+    ) as process:
+        os.close(stderr)
+        try:
+            read_until(terminal, b"simulated", 60.0)
+            process.send_signal(signal.SIGINT)
+            sent = time.monotonic()
+            said = read_until(terminal, b"\n", 10.0).partition(b"\n")[2]
+            ended = time.monotonic() - sent
+            said = (said if b"\n" in said else said + read_until(terminal, b"\n", 60.0)).decode()
+            process.communicate(timeout=60)
+        finally:
+            process.kill()
+            os.close(terminal)
+    assert process.returncode == 130
+    assert ended < 0.5
+    assert said.startswith("herringbone: interrupted")
+    assert f"results so far are kept, and are being written to {tmp_path}" in said
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["outcome"] == "interrupted"
+    table = pd.read_csv(tmp_path / "results.csv", comment="#")
+    assert table.notna().all(axis=None)
+    assert 0.0 < summary["t_reached"] < 60.0
+    assert table["time"].iloc[-1] == pytest.approx(summary["t_reached"], abs=2e-5)

@@ -1,0 +1,177 @@
+"""`herringbone stability`: what it prints, as text and as JSON, what it writes, and its picture."""
+
+import json
+
+import numpy as np
+import pytest
+
+from herringbone.analysis.stability import limits as stability_module
+from herringbone.analysis.stability.atlas import Panel
+from herringbone.analysis.stability.bonds import Bond
+from herringbone.analysis.stability.limits import Stability, StepLimits, default_algorithms
+from herringbone.analysis.stability.linear_parts import MeshStiffness
+from herringbone.analysis.stability.recommendation import Recommendation
+from herringbone.analysis.stability.report import stability_summary, stability_text
+from herringbone.analysis.stability.simulated_limit import nonlinear_limit
+from herringbone.commands.main import main
+from herringbone.core import HerringboneError
+from herringbone.cosim.algorithms import Jacobi
+from herringbone.plotting.stability_atlas import atlas_picture, write_atlas
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("stability")
+
+
+@pytest.fixture(scope="module")
+def printed(folder):
+    """JSON that the command writes for one algorithm."""
+    arguments = ["stability", "test_rig", "--algorithm", "jacobi:order=2"]
+    arguments += ["--simulate", "-o", str(folder)]
+    assert main(arguments) == 0
+    return json.loads((folder / "stability.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+def test_json_has_limits_bonds_and_a_recommendation(printed):
+    (found,) = printed["algorithms"]
+    assert found["algorithm"] == "jacobi:order=2,schedule=bodies_first"
+    assert set(found["mesh_stiffness"]) == {"minimum", "mean", "maximum"}
+    assert found["limit"] == min(found["mesh_stiffness"].values())
+    assert found["unstable_bands"][0][0] == found["mesh_stiffness"]["mean"]
+    assert found["unstable_bands"][-1][1] is None
+    assert found["limit"] < found["simulated_limit"] < 1.1 * found["limit"]
+    assert len(printed["bonds"]) == 8
+    assert {"bond", "frequency", "damping_ratio", "masses", "limits"} <= set(printed["bonds"][0])
+    recommended = printed["recommended"]
+    assert recommended["algorithm"] == found["algorithm"]
+    assert 0.0 < recommended["step"] < found["limit"]
+
+
+@pytest.mark.slow
+def test_text_says_the_same(printed, folder):
+    text = (folder / "stability.txt").read_text(encoding="utf-8")
+    assert f"from {1e6 * printed['algorithms'][0]['unstable_bands'][-1][0]:.1f}" in text
+    assert f"--step {printed['recommended']['step']:.3g}" in text
+    assert "bearing_supports.shaft.pinion_left.f_y" in text
+
+
+@pytest.mark.slow
+def test_one_step_is_judged_and_explained(capsys):
+    arguments = ["stability", "test_rig", "--algorithm", "jacobi:order=2", "--json", "--step"]
+    assert main([*arguments, "2e-5"]) == 0
+    (stable,) = json.loads(capsys.readouterr().out)
+    assert stable["stable"] and stable["growth"] < 0.0 and stable["why"] is None
+    assert main([*arguments, "5e-5"]) == 0
+    (unstable,) = json.loads(capsys.readouterr().out)
+    assert not unstable["stable"]
+    assert unstable["growth"] >= unstable["why"]["growth"] > 0.01
+    assert unstable["why"]["bonds"][0][0].startswith("bearing_supports.shaft.pinion")
+    assert sum(share for _, share in unstable["why"]["bonds"]) == pytest.approx(1.0)
+    assert unstable["why"]["remedies"][0].startswith("a step below")
+
+
+def test_no_limit_is_looked_for_without_a_prediction():
+    assert nonlinear_limit(None, Jacobi(2), np.inf) is None
+
+
+def made_up():
+    """A result with long names and many bands."""
+    bands = tuple((700e-6 + 1e-5 * k, 705e-6 + 1e-5 * k) for k in range(6))
+    limits = [
+        StepLimits(
+            str(algorithm),
+            (*bands, (1.1e-3, np.inf)),
+            dict.fromkeys(MeshStiffness, 7e-4),
+            73.0,
+            7e-4,
+        )
+        for algorithm in default_algorithms()
+    ]
+    name, bodies = "bearing_supports.shaft.pinion_right.f_y", ("gear_mesh", "modal_housing")
+    bond = Bond(name, bodies, (6.5, 6.284), 6.34e8, 2.5e3, 14087.0, 0.029)
+    recommended = Recommendation(str(Jacobi(2)), 1e-5, 4.4e-8, 5e-5, "micro steps")
+    return Stability(
+        "test_rig", "loaded", tuple(limits), (bond,), 14e3, 1e-3, recommended, ("word " * 40,)
+    )
+
+
+def test_text_fits_in_100_columns_and_says_everything():
+    text = stability_text(made_up())
+    assert max(map(len, text.splitlines())) <= 100
+    for algorithm in default_algorithms():
+        assert str(algorithm).removesuffix(",schedule=bodies_first") + " " in text
+    for low in range(700, 760, 10):
+        assert text.count(f"{low}.0-{low + 5}.0") == len(default_algorithms())
+    assert text.count("from 1100.0") == len(default_algorithms())
+    assert "gear_mesh 6.5 kg, modal_housing 6.284 kg" in text
+    assert text.count("word") == 40
+
+
+def test_what_bounds_the_error_is_said():
+    said = "expected error 4.4e-06 %, bounded by micro steps; 0.005 % where teeth separate"
+    assert said in stability_text(made_up()).splitlines()
+    recommended = stability_summary(made_up())["recommended"]
+    assert recommended["expected_error"] == 4.4e-8
+    assert recommended["separation_error"] == 5e-5
+    assert recommended["bounded_by"] == "micro steps"
+
+
+def test_written_files_are_named(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(stability_module, "stability", lambda *_, **__: made_up())
+    arguments = ["stability", "test_rig", "-o", str(tmp_path)]
+    files = [str(tmp_path / f"stability.{kind}") for kind in ("txt", "json")]
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "Files: " + ", ".join(files)
+    assert main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["results"] == files
+    (tmp_path / "stability.json").unlink()
+    (tmp_path / "stability.json").mkdir()
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        f"herringbone: cannot write to {tmp_path}: Is a directory; choose another folder with -o"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--algorithm", "jacobi:order=7"], "order=7; it must be 0, 1 or 2"),
+        (["--algorithm", "jacobi:order=2", "--tolerance", "3"], "tolerance = 3"),
+        (["--tolerance", "1e-12"], "tolerance = 1e-12: it must lie between 1e-08 and 1"),
+        (["--scene", "nothing"], "nothing"),
+        (["--step", "-1"], "step = -1 s: it must be positive"),
+        (["--step", "1e-5", "--atlas"], "--step asks about one step; leave --atlas out"),
+    ],
+)
+def test_bad_input_is_one_line(arguments, words, capsys):
+    assert main(["stability", "test_rig", *arguments]) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert words in lines[-1]
+    assert lines[-1].startswith("herringbone: ")
+
+
+def test_picture_has_a_line_and_points_per_algorithm():
+    values = (0.01, 0.1)
+    nothing = (np.nan, np.nan)
+    limits = {"jacobi:order=1,schedule=bodies_first": (0.4, 0.9), "li": (5.0, 5.5)}
+    points = {"jacobi:order=1,schedule=bodies_first": nothing, "li": (5.1, np.nan)}
+    figure = atlas_picture([Panel("title", "damping ratio", values, limits, points)])
+    (ax,) = figure.axes
+    assert ax.get_xlabel() == "damping ratio"
+    drawn = [tuple(line.get_ydata()) for line in ax.get_lines()]
+    assert {(0.4, 0.9), (5.0, 5.5)} <= set(drawn)
+    (seen,) = (line for line in ax.get_lines() if line.get_marker() != "None")
+    assert seen.get_ydata()[0] == 5.1
+    legends = [[text.get_text() for text in legend.get_texts()] for legend in figure.legends]
+    assert legends[0] == ["jacobi:order=1", "li"]
+    assert "mesh frozen at mean stiffness" in legends[1][1]
+
+
+def test_picture_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "stability_atlas.png").mkdir()
+    panel = Panel("title", "damping ratio", (0.1,), {"li": (5.0,)}, {"li": (5.1,)})
+    with pytest.raises(HerringboneError, match=r"cannot write .*atlas.png: Is a directory; choose"):
+        write_atlas([panel], tmp_path / "stability_atlas.png")

@@ -1,0 +1,97 @@
+"""What two-way coupling of bearings and housing changes on the test rig; the README's numbers."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import herringbone as hb
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.housing import default_housing, write_housing
+from herringbone.running import api, start
+
+STIFFENING = 1e-4
+"""Factor on the shapes: the seats move 1e-8 as much, so the bearings stand on rigid ground."""
+T_END, STEP = 0.2, 1e-5
+BELOW_HZ = 300.0
+
+
+@pytest.fixture(scope="module")
+def one_way(tmp_path_factory) -> dict[str, str]:
+    """Values that make the housing rigid."""
+    folder = tmp_path_factory.mktemp("rigid")
+    housing = default_housing()
+    rigid = replace(housing, shapes=STIFFENING * housing.shapes, static=None, gram=None)
+    write_housing(replace(rigid, certificate={}), folder)
+    return {f"modal_housing.{name}": str(folder / f"{name}.csv") for name in ("modes", "shapes")}
+
+
+def told(pattern: str) -> list[float]:
+    """Numbers in the component's equations, which are its README."""
+    text = " ".join(MODAL_HOUSING.equations.split())
+    found = re.search(pattern, text)
+    assert found, f"the equations of modal_housing do not tell '{pattern}'"
+    return [float(number) for number in found.groups()]
+
+
+def vibration(values: dict[str, str]) -> dict[str, float]:
+    """Rms of bearing forces about their mean [N], both halves together."""
+    result = hb.run("test_rig", t_end=T_END, step=STEP, fmu="in-process", values=values)
+    late = result.data[result.data["time"] > T_END / 3]
+    return {
+        f"{gear} {axis}": float(
+            np.sqrt(
+                (
+                    late[result.columns(f"bearing_supports.shaft.{gear}_*.f_{axis}")].std() ** 2
+                ).mean()
+            )
+        )
+        for gear, axis in (("pinion", "y"), ("wheel", "y"), ("wheel", "z"))
+    }
+
+
+def test_bearing_forces(one_way):
+    """Ratios of the vibration with the housing's motion to that without."""
+    with_motion, without = vibration({}), vibration(one_way)
+    number = r"(\d+\.\d+)"
+    expected = told(
+        f"a factor of {number} radially at the pinion, {number} radially and {number} axially at "
+        "the wheel"
+    )
+    found = [with_motion[name] / without[name] for name in with_motion]
+    # The axial vibration is a slow beat of lightly damped modes.
+    assert found[:2] == pytest.approx(expected[:2], rel=0.05)
+    assert found[2] == pytest.approx(expected[2], rel=0.1)
+
+
+def frequencies(values: dict[str, str]) -> np.ndarray:
+    """Damped structural modes of the rig below the limit [Hz]; slower ones are of the drive."""
+    system, folder = api.load_system("test_rig")
+    scene = api.load_scene(folder, None)
+    system, _ = start.started(system, replace(scene, values={**scene.values, **values}))
+    twin = Twin(system)
+    x = twin.state.copy()
+    sizes = np.maximum(1e-6 * np.abs(x), 1e-9)
+    jacobian = np.empty((x.size, x.size))
+    for k, size in enumerate(sizes):
+        sides = []
+        for sign in (1.0, -1.0):
+            moved = x.copy()
+            moved[k] += sign * size
+            sides.append(twin.rhs(0.0, moved).copy())
+        jacobian[:, k] = (sides[0] - sides[1]) / (2.0 * size)
+    values = np.linalg.eigvals(jacobian)
+    found = np.sort(np.abs(values[values.imag > 1.0])) / (2.0 * np.pi)
+    return found[(found > 100.0) & (found < BELOW_HZ)]
+
+
+def test_lowest_modes(one_way):
+    number = r"(\d+\.?\d*)"
+    alone = told(
+        f"modes of the rig on rigid ground and of the housing alone lie at {number} and {number} Hz"
+    )
+    coupled = told(f"coupled, they lie at {number} and {number} Hz")
+    np.testing.assert_allclose(frequencies(one_way), alone, rtol=0.01)
+    np.testing.assert_allclose(frequencies({}), coupled, rtol=0.01)

@@ -1,0 +1,173 @@
+"""The contract of housings: what ships holds it; each kind of wrong housing fails its own test."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.parts import OK, CallbackPart
+
+from herringbone.analysis.housing import behaviour as housing_behaviour
+from herringbone.analysis.housing.behaviour import FORCES, POSITIONS, VELOCITIES, least_work
+from herringbone.analysis.housing.contract import STEP, check_housing
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.core import Instance, ParameterError
+from herringbone.core.paths import resources_folder
+from herringbone.cosim.loops.drive import drive
+from herringbone.housing import default_housing, write_housing
+from herringbone.housing.reduction.reduced_housing import reduce_housing
+
+RESOURCES = resources_folder("modal_housing")
+
+
+def component(modes: Path, shapes: Path) -> InProcessPart:
+    part = InProcessPart(Instance(MODAL_HOUSING, "housing"))
+    part.set("modes", str(modes))
+    part.set("shapes", str(shapes))
+    return part
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory) -> dict[str, tuple[Path, Path]]:
+    """Every housing that ships, and the default one reduced to 800 Hz."""
+    folder = tmp_path_factory.mktemp("reduced")
+    write_housing(reduce_housing(default_housing(), band_hz=800.0, tolerance=0.05), folder)
+    return {
+        "default": (RESOURCES / "modes.csv", RESOURCES / "shapes.csv"),
+        "thesis": (RESOURCES / "thesis_modes.csv", RESOURCES / "thesis_shapes.csv"),
+        "reduced": (folder / "modes.csv", folder / "shapes.csv"),
+    }
+
+
+@pytest.mark.parametrize("name", ["default", "thesis", "reduced"])
+def test_passivity_of_what_ships(shipped, name):
+    """100 random records that start at zero: never more work out than in, but for rounding."""
+
+    def run(forces: np.ndarray) -> np.ndarray:
+        part = component(*shipped[name])
+        part.enter_initialization(0.0, 1.0)
+        part.exit_initialization()
+        return drive(part, FORCES, forces, POSITIONS, STEP)
+
+    assert min(least_work(run, seed, STEP) for seed in range(100)) >= -1e-12
+
+
+def test_the_default_holds_the_contract(shipped):
+    housing = default_housing()
+    findings = check_housing(
+        lambda: component(*shipped["default"]), static=housing.static_compliance()
+    )
+    assert [f.test for f in findings if not f.holds] == []
+    assert len(findings) == 10
+
+
+def test_other_statics_are_noticed(shipped):
+    findings = check_housing(
+        lambda: component(*shipped["default"]), static=1.03 * default_housing().static_compliance()
+    )
+    assert [f.test for f in findings if not f.holds] == ["static compliance"]
+
+
+MASS, STIFFNESS, DAMPING = 50.0, 1e9, 2e4
+
+
+class Seats(CallbackPart):
+    """Twelve oscillators of 712 Hz, semi-implicit Euler; subclasses spoil one thing each."""
+
+    def __init__(self, outputs=(*POSITIONS, *VELOCITIES)):
+        super().__init__("housing", FORCES, outputs, nodes=False, state=False)
+        self.s, self.v = np.zeros(12), np.zeros(12)
+
+    def force(self, f, s, v):
+        return f - STIFFNESS * s - DAMPING * v
+
+    def shown(self, s, f):
+        return s
+
+    def step(self, t, h):
+        f = np.array(self.memory[24:36])
+        self.v = self.v + h * self.force(f, self.s, self.v) / MASS
+        self.s = self.s + h * self.v
+        self.memory[:24] = [*self.shown(self.s, f), *self.v]
+        return OK
+
+    def out(self):
+        pass
+
+
+class Active(Seats):
+    def force(self, f, s, v):
+        return f - STIFFNESS * s + DAMPING * v
+
+
+class Directed(Seats):
+    """What acts at one seat is felt at the next, but not the other way round."""
+
+    def force(self, f, s, v):
+        return super().force(f + 0.1 * np.roll(f, 1), s, v)
+
+
+class Hardening(Seats):
+    def force(self, f, s, v):
+        return super().force(f, s, v) - 1e20 * s**3
+
+
+class Direct(Seats):
+    def shown(self, s, f):
+        return s + 1e-9 * f
+
+
+class Preloaded(Seats):
+    def force(self, f, s, v):
+        return super().force(f + 1.0, s, v)
+
+
+class Creeping(Seats):
+    """A damper in place of the spring: the deflection never settles."""
+
+    def force(self, f, s, v):
+        return f - 1e5 * v
+
+
+class Coarse(Seats):
+    """Damped by its own step: half of it gives twice the damping."""
+
+    def step(self, t, h):
+        self.v = self.v * np.exp(-h * h * 1e8)
+        return super().step(t, h)
+
+
+@pytest.mark.parametrize(
+    ("kind", "fails"),
+    [
+        (Seats, set()),
+        (Active, {"passivity"}),
+        (Directed, {"reciprocity"}),
+        (Hardening, {"superposition"}),
+        (Direct, {"no feedthrough"}),
+        (Preloaded, {"zero stays zero", "superposition"}),
+        (Creeping, {"static compliance"}),
+        (Coarse, {"step halving"}),
+    ],
+)
+def test_each_fault_fails_its_test(monkeypatch, kind, fails):
+    monkeypatch.setattr(housing_behaviour, "_SETTLING", 700)
+    found = {f.test for f in check_housing(kind) if not f.holds}
+    assert found == fails
+
+
+def test_missing_and_wrong_variables(monkeypatch):
+    findings = check_housing(lambda: Seats(POSITIONS))
+    assert [(f.test, f.holds) for f in findings] == [
+        ("variables", False), ("units", True), ("dependencies", True),
+    ]  # fmt: skip
+    assert findings[0].measured == (
+        "24 of 36; missing: pinion_left.v_x, pinion_left.v_y, pinion_left.v_z, ..."
+    )
+    monkeypatch.setattr(Seats, "feedthrough", True)
+    assert [f.test for f in check_housing(Seats) if not f.holds] == ["dependencies"]
+
+
+def test_bad_step():
+    with pytest.raises(ParameterError, match="step -1 s must be positive"):
+        check_housing(Seats, step=-1.0)
