@@ -61,7 +61,7 @@ class Run:
             for n in ns
         )
         self.record = prepared.record(grid, len(self.names))
-        self.history = np.zeros((HISTORY, prepared.plan.output_reference.size))
+        self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
 
     def go_around(
@@ -72,7 +72,7 @@ class Run:
         if growth < 1.0:
             self.loop_notes = (what,)
             return self.go(progress)
-        get_all(self.prepared.plan, self.history, self.record.values, 0)
+        get_all(self.prepared.layout, self.history, self.record.values, 0)
         instead = "" if loop.gain >= 1.0 else "use li, fixed_point or jacobi:order=0; or "
         message = (
             f"{what}: with {algorithm} the forces grow {growth:.3g} times per macro step, and no "
@@ -83,7 +83,7 @@ class Run:
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
-        get_all(self.prepared.plan, self.history, self.record.values, 0)
+        get_all(self.prepared.layout, self.history, self.record.values, 0)
         self.history[1:] = self.history[0]
         done, status, culprit, chunk = 0, DONE, -1, 1
         self._advance(0, 0)  # compiles the loop, or loads it from the cache

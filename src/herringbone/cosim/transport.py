@@ -25,15 +25,15 @@ def settle_derivatives(network: Network, prepared: PreparedRun) -> list[str]:
     Raises:
         FmuError: a part fails for good when it is asked.
     """
-    plan, notes = prepared.plan, []
-    signals = plan.derivatives
+    layout, notes = prepared.layout, []
+    signals = layout.derivatives
     for p, part in enumerate(network.parts):
         asked, rated = int(signals.order[p]), bool(signals.rated[p])
         if not asked and not rated:
             continue
         refused = _settle_inputs(prepared, part, p)
         taken = int(signals.order[p])
-        signals.fit[p] = input_fit(signals.samples.size - 1, taken, at_end=bool(plan.at_end[p]))
+        signals.fit[p] = input_fit(signals.samples.size - 1, taken, at_end=bool(layout.at_end[p]))
         if asked and not taken:
             signals.rated[p] = 0
         elif rated:
@@ -44,9 +44,9 @@ def settle_derivatives(network: Network, prepared: PreparedRun) -> list[str]:
 
 def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
     """Lower the order of a part's input derivatives until it takes them; what it refused."""
-    signals, refused = prepared.plan.derivatives, []
+    signals, refused = prepared.layout.derivatives, []
     for order in range(int(signals.order[p]), 0, -1):
-        status = set_derivatives(prepared.plan, p, order)
+        status = set_derivatives(prepared.layout, p, order)
         if status <= LAST_GOOD:
             break
         said = _refusal(part, status, f"input derivatives of order {order}")
@@ -57,10 +57,10 @@ def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
 
 def _settle_outputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
     """Use a part's rates unless it refuses them; what it refused."""
-    status = get_rates(prepared.plan, p, np.zeros(prepared.plan.output_reference.size))
+    status = get_rates(prepared.layout, p, np.zeros(prepared.layout.output_reference.size))
     if status <= LAST_GOOD:
         return []
-    prepared.plan.derivatives.rated[p] = 0
+    prepared.layout.derivatives.rated[p] = 0
     return [_refusal(part, status, "output derivatives")]
 
 
@@ -72,7 +72,7 @@ def _refusal(part: Part, status: int, what: str) -> str:
 
 
 def _note(prepared: PreparedRun, part: Part, p: int, asked: int, refused: list[str]) -> str:
-    signals = prepared.plan.derivatives
+    signals = prepared.layout.derivatives
     taken, rated = int(signals.order[p]), bool(signals.rated[p])
     ways = []
     if asked:

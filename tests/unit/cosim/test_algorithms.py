@@ -104,10 +104,10 @@ def test_only_the_part_without_nodes_is_downgraded():
 
 
 def stages(prepared):
-    plan = prepared.plan
+    layout = prepared.layout
     return [
-        plan.stage_part[a:b].tolist()
-        for a, b in zip(plan.stage_first[:-1], plan.stage_first[1:], strict=True)
+        layout.stage_part[a:b].tolist()
+        for a, b in zip(layout.stage_first[:-1], layout.stage_first[1:], strict=True)
     ]
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.step_error import AMPLIFICATION, FLOOR, ORDER, step_error, update_scale
 
 KAPPA = {1: 1 / 12, 2: 1 / 960, 3: 1 / 6480, 4: 1 / 387072}
@@ -16,9 +16,9 @@ ONE = np.array([0], dtype=np.int64)
 
 
 def found_force(force, degree, scale=1.0):
-    """Node plan and buffers after a step from 0 to 1 that found force(t), without residual."""
+    """Node layout and buffers after a step from 0 to 1 that found force(t), without residual."""
     nothing = np.zeros(0, dtype=np.int64)
-    nodes = NodePlan(degree, ONE, *[nothing] * 9)
+    nodes = NodeLayout(degree, ONE, *[nothing] * 9)
     past = [0.0, -SPACING[0], -sum(SPACING)]
     history = np.array([[0.0], *([force(t)] for t in past)])
     values = np.array([[force(j / degree)] for j in range(degree + 1)])

@@ -79,14 +79,14 @@ class Amplification:
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
         self._counts = [part.declaration.state_count for part in self._parts]
-        plan = algorithm.prepare(self.network).plan
-        self._outputs = plan.output_reference.size
-        self._first = plan.output_first
+        layout = algorithm.prepare(self.network).layout
+        self._outputs = layout.output_reference.size
+        self._first = layout.output_first
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
         self._base = np.zeros((HISTORY, self._outputs))
-        get_all(plan, self._base, self._records, 0)
+        get_all(layout, self._base, self._records, 0)
         self._base[1:] = self._base[0]
-        self._change = self._changes(plan.output_first, plan.output_reference)
+        self._change = self._changes(layout.output_first, layout.output_reference)
         self._used: np.ndarray | None = None
 
     def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:

@@ -134,8 +134,8 @@ class PreparedAdaptive(PreparedNodes):
             (c.source, c.output)
             for c in self.network.connections
             if self.degree[c.target] == 0
-            and self.plan.derivatives.order[c.target] < nodes.degree
-            and not self.plan.at_end[c.target]
+            and self.layout.derivatives.order[c.target] < nodes.degree
+            and not self.layout.at_end[c.target]
         }
         rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size
         adaptive = Adaptive(
@@ -171,7 +171,7 @@ class PreparedAdaptive(PreparedNodes):
             self._record.make_room()
             self._adaptive = self._adaptive._replace(times=self._record.row_times)
             status, done, culprit = run_adaptive(
-                self.plan,
+                self.layout,
                 self.nodes,
                 self._buffers,
                 Control(self.corrections, self.most, RESIDUAL_SHARE * self.tolerance, np.inf,

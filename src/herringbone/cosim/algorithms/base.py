@@ -13,8 +13,8 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
-from herringbone.cosim.layouts.layout import Chunk, Plan
-from herringbone.cosim.layouts.nodes import NodePlan
+from herringbone.cosim.layouts.layout import Chunk, Layout
+from herringbone.cosim.layouts.nodes import NodeLayout
 from herringbone.cosim.record import Grid, Record, UniformRecord
 from herringbone.cosim.recording import StepStatistics
 from herringbone.cosim.structure.network import Network
@@ -90,7 +90,7 @@ class PreparedRun(ABC):
     """A network laid out for an algorithm, ready to run; each part steps once a macro step.
 
     Attributes:
-        plan: parts and signals.
+        layout: parts and signals.
         degree: interface degree that each part is to be set to.
         notes: downgrades, and what they cost.
         problem: why the coupling cannot go on, if it cannot.
@@ -99,12 +99,12 @@ class PreparedRun(ABC):
         predicts: elements are evaluated before the bodies step.
     """
 
-    plan: Plan
+    layout: Layout
     degree: tuple[int, ...]
     notes: tuple[str, ...]
     problem: str
     culprit: str = ""
-    nodes: NodePlan | None = None
+    nodes: NodeLayout | None = None
     predicts: bool = False
 
     @property
@@ -114,7 +114,7 @@ class PreparedRun(ABC):
 
     def input_degree(self, part: int) -> int:
         """Degree of the polynomials that a part takes: its nodes, or its FMI derivatives."""
-        return max(self.degree[part], int(self.plan.derivatives.order[part]))
+        return max(self.degree[part], int(self.layout.derivatives.order[part]))
 
     @property
     @abstractmethod
@@ -144,7 +144,7 @@ class PreparedRun(ABC):
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""
-        taken = self.plan.slow.taken
+        taken = self.layout.slow.taken
         return [int(n) if n >= 0 else macro_steps for n in taken]
 
     @property

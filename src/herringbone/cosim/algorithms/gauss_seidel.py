@@ -76,5 +76,5 @@ class GaussSeidel(Algorithm):
             done.add(body)
         stages += [[element] for element in waiting]
         prepared = prepare_stages(network, stages, self.order)
-        starter = Jacobi(self.order).prepare(network).plan
-        return replace(prepared, starter=starter._replace(derivatives=prepared.plan.derivatives))
+        starter = Jacobi(self.order).prepare(network).layout
+        return replace(prepared, starter=starter._replace(derivatives=prepared.layout.derivatives))

@@ -14,8 +14,8 @@ from herringbone.cosim.algorithms.jacobian import (
     correction_matrix,
 )
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
-from herringbone.cosim.layouts.layout import Chunk, build_plan, connected_outputs, node_references
-from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs, node_references
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
 from herringbone.cosim.structure.network import Network
@@ -71,24 +71,24 @@ class PreparedNodes(PreparedRun):
         stages = [s for s in (network.sources, network.bodies) if s]
         stages += [(e,) for e in network.elements]
         derivatives = fmi_derivatives(network, degree, degrees)
-        self.plan = build_plan(
+        self.layout = build_layout(
             network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
         )
         self._outputs = connected_outputs(network)
-        self.nodes: NodePlan = self._node_plan(degree)
-        self.jacobian = InterfaceJacobian(network, self.plan, self.nodes, self._outputs)
+        self.nodes: NodeLayout = self._node_layout(degree)
+        self.jacobian = InterfaceJacobian(network, self.layout, self.nodes, self._outputs)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
         self._next_refresh = 0
         self.jacobians = 0
         self.problem = ""
 
-    def _node_plan(self, degree: int) -> NodePlan:
+    def _node_layout(self, degree: int) -> NodeLayout:
         network, parts = self.network, self.network.parts
         node_degrees = [0 if p in network.slow else d for p, d in enumerate(self.degree)]
-        unknown = np.unique(self.plan.input_source[self.plan.input_fresh == 0])
+        unknown = np.unique(self.layout.input_source[self.layout.input_fresh == 0])
         state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
-        return NodePlan(
+        return NodeLayout(
             degree,
             unknown,
             np.array(network.bodies, dtype=np.int64),
@@ -138,9 +138,9 @@ class PreparedNodes(PreparedRun):
         orthogonal to polynomials of degree q, also to those of the body's response. An element's
         inputs are right at the end. Outputs leave 4 with rates, else 3.
         """
-        signals = self.plan.derivatives
+        signals = self.layout.derivatives
         found = [self.full_order]
-        if self.network.inputs(part) and not self.plan.at_end[part]:
+        if self.network.inputs(part) and not self.layout.at_end[part]:
             found.append(2 * int(signals.order[part]) + 2)
         if self.inner_outputs:
             found.append(4 if signals.rated[part] else 3)
@@ -151,7 +151,7 @@ class PreparedNodes(PreparedRun):
         del macro_steps
         if self._buffers is None:
             return [0] * len(self.degree)
-        return np.maximum(self._buffers.passes, self.plan.slow.taken).tolist()
+        return np.maximum(self._buffers.passes, self.layout.slow.taken).tolist()
 
     @property
     def rollbacks(self) -> int:
@@ -205,7 +205,7 @@ class PreparedNodes(PreparedRun):
             until = min(end, self._next_refresh) if patient else end
             slow = SLOW if self.newton and not patient else np.inf
             status, done, culprit = run_iterated(
-                self.plan,
+                self.layout,
                 self.nodes,
                 self._buffers,
                 self._correction,

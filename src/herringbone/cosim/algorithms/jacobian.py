@@ -3,8 +3,8 @@
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.cosim.layouts.layout import Plan
-from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.layouts.layout import Layout
+from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_jacobian import sensitivity
 from herringbone.cosim.structure.network import Network
 
@@ -28,14 +28,14 @@ class InterfaceJacobian:
 
     Args:
         network: parts and connections.
-        plan, nodes: of the network.
+        layout, nodes: of the network.
         outputs: connected outputs of each part.
     """
 
     def __init__(
-        self, network: Network, plan: Plan, nodes: NodePlan, outputs: list[list[str]]
+        self, network: Network, layout: Layout, nodes: NodeLayout, outputs: list[list[str]]
     ) -> None:
-        self.network, self.plan, self.nodes = network, plan, nodes
+        self.network, self.layout, self.nodes = network, layout, nodes
         self.owners = [(p, name) for p, names in enumerate(outputs) for name in names]
         units = [network.parts[p].variables[name].unit for p, name in self.owners]
         kinds = list(dict.fromkeys(units))
@@ -59,7 +59,7 @@ class InterfaceJacobian:
         count = self.nodes.degree * self.nodes.unknown.size
         jacobian, off = np.zeros((count, count)), np.zeros(len(self.owners))
         failed = sensitivity(
-            self.plan, self.nodes, buffers, jacobian, off, _CHANGE * size, PREDICTION, t, h, known
+            self.layout, self.nodes, buffers, jacobian, off, _CHANGE * size, PREDICTION, t, h, known
         )
         if failed >= 0 or not np.isfinite(jacobian).all():
             name = self.network.parts[failed].name if failed >= 0 else "the coupling"

@@ -25,8 +25,8 @@ from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.algorithms.staged import prepare_stages, refuse_mixed
 from herringbone.cosim.layouts.layout import (
     Chunk,
-    Plan,
-    build_plan,
+    Layout,
+    build_layout,
     connected_outputs,
     node_references,
 )
@@ -80,9 +80,9 @@ class PreparedPrediction(PreparedRun):
             rates(part, moved[p]) if p in bodies else [] for p, part in enumerate(network.parts)
         ]
         self.degree, self.notes, self.problem = tuple(degree), tuple(staged.notes), ""
-        self.plan: Plan = build_plan(
+        self.layout: Layout = build_layout(
             network, stages, degree, parallel=False, extra=extra,
-            derivatives=staged.plan.derivatives,
+            derivatives=staged.layout.derivatives,
         )  # fmt: skip
         self._prediction = self._lay_out(network, connected_outputs(network, extra))
 
@@ -134,4 +134,4 @@ class PreparedPrediction(PreparedRun):
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""
-        return run_predicted(self.plan, self._prediction, history, chunk)
+        return run_predicted(self.layout, self._prediction, history, chunk)

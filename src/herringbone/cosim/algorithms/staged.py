@@ -10,7 +10,7 @@ from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.layouts.derivatives import lay_out_derivatives
-from herringbone.cosim.layouts.layout import Chunk, Plan, build_plan
+from herringbone.cosim.layouts.layout import Chunk, Layout, build_layout
 from herringbone.cosim.layouts.slow import slow_degrees
 from herringbone.cosim.loops.stages import run_stages
 from herringbone.cosim.structure.network import Network
@@ -21,18 +21,18 @@ class Prepared(PreparedRun):
     """A network laid out for an algorithm that steps stages.
 
     Attributes:
-        plan: parts, signals and stages.
+        layout: parts, signals and stages.
         degree: interface degree that each part is to be set to.
         order: degree of extrapolation.
         notes: downgrades, and what they cost.
-        starter: plan for the first `order` macro steps, if the scheme needs history.
+        starter: layout for the first `order` macro steps, if the scheme needs history.
     """
 
-    plan: Plan
+    layout: Layout
     degree: tuple[int, ...]
     order: int
     notes: tuple[str, ...]
-    starter: Plan | None = None
+    starter: Layout | None = None
     problem: str = ""
 
     @property
@@ -42,20 +42,20 @@ class Prepared(PreparedRun):
 
     def kept_order(self, part: int) -> int:
         """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
-        return self.full_order if self.plan.derivatives.order[part] else 1
+        return self.full_order if self.layout.derivatives.order[part] else 1
 
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth by the extrapolation over a step; parallel elements answer a step late."""
         degrees = [min(self.order, self.input_degree(c.target)) for c in loop.forces]
-        return extrapolated_growth(loop.matrix, degrees, 0 if self.plan.at_end.any() else 1)
+        return extrapolated_growth(loop.matrix, degrees, 0 if self.layout.at_end.any() else 1)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""
-        plan = self.plan
+        layout = self.layout
         if self.starter is not None and chunk.start < self.order:
-            plan = self.starter
+            layout = self.starter
             chunk = chunk._replace(count=min(chunk.count, self.order - chunk.start))
-        return run_stages(plan, history, self.order, chunk)
+        return run_stages(layout, history, self.order, chunk)
 
 
 def refuse_mixed(network: Network, algorithm: str) -> None:
@@ -103,5 +103,5 @@ def prepare_stages(
             wanted = 0
         degree.append(wanted)
     laid_out = lay_out_derivatives(network, order, derivatives)
-    plan = build_plan(network, stages, degree, parallel, derivatives=laid_out)
-    return Prepared(plan, tuple(degree), order, tuple(notes))
+    layout = build_layout(network, stages, degree, parallel, derivatives=laid_out)
+    return Prepared(layout, tuple(degree), order, tuple(notes))

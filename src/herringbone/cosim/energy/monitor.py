@@ -75,7 +75,7 @@ class EnergyMonitor(NamedTuple):
         force, position, velocity: outputs of each pair; none if nothing is watched. The position
             is -1 if the element takes none.
         force_input, position_input, velocity_input: places of the inputs that they feed in the
-            plan's list of all inputs.
+            layout's list of all inputs.
         element: part that gives the force.
         held: 1 for bodies that hold their inputs over a step.
         fast: 0 for slow bodies: their motion counts, but not the forces that are fitted for them.

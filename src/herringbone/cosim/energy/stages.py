@@ -71,7 +71,7 @@ def watch_stages(
     """Account for one macro step.
 
     Args:
-        input_fresh, at_end: of the plan.
+        input_fresh, at_end: of the layout.
         monitor: is written.
         history: row 0 the values at the end of the step, row 1 those at its start.
         order: degree of extrapolation and interpolation.

@@ -161,18 +161,18 @@ class EnergyWatch:
     def _output(self, c: Connection) -> int:
         """Index of a connection's output."""
         names = connected_outputs(self._network)[c.source]
-        return int(self._prepared.plan.output_first[c.source]) + names.index(c.output)
+        return int(self._prepared.layout.output_first[c.source]) + names.index(c.output)
 
     def _input(self, c: Connection) -> int:
         """Index of a connection's input among all."""
         names = [other.input for other in self._network.inputs(c.target)]
-        return int(self._prepared.plan.input_first[c.target]) + names.index(c.input)
+        return int(self._prepared.layout.input_first[c.target]) + names.index(c.input)
 
     def _elements_late(self) -> bool:
         """True if an element may see other motions than those that a step ends with."""
-        plan = self._prepared.plan
+        layout = self._prepared.layout
         return not all(
-            plan.at_end[pair.force.source] and plan.input_fresh[self._input(c)]
+            layout.at_end[pair.force.source] and layout.input_fresh[self._input(c)]
             for pair in self._pairs
             for c in (pair.velocity, pair.position)
             if c is not None

@@ -1,4 +1,4 @@
-"""What the adaptive loop works on, beside plan, nodes and buffers."""
+"""What the adaptive loop works on, beside layout, nodes and buffers."""
 
 from typing import NamedTuple
 

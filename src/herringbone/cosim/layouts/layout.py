@@ -18,7 +18,7 @@ HISTORY = 4
 """Rows of the signal history: the newest values, and the three communication points before."""
 
 
-class Plan(NamedTuple):
+class Layout(NamedTuple):
     """Parts, signals and stages as arrays; all offsets are CSR (first[i] ... first[i + 1]).
 
     Inputs of a part are set in one call: all inputs at node 0, then all at node 1, ...
@@ -173,7 +173,7 @@ def _places(
     return np.array([first[p] + names[p].index(name) for p, name in wanted], dtype=np.int64)
 
 
-def build_plan(
+def build_layout(
     network: Network,
     stages: Sequence[Sequence[int]],
     degree: Sequence[int],
@@ -181,7 +181,7 @@ def build_plan(
     extra: Sequence[Sequence[str]] | None = None,
     per: int = 1,
     derivatives: Derivatives | None = None,
-) -> Plan:
+) -> Layout:
     """Lay a network out for stages that are stepped one after another.
 
     Args:
@@ -208,7 +208,7 @@ def build_plan(
     sources = [(c.source, c.output) for row in inputs for c in row]
     read = [(p, name) for p, row in enumerate(outputs) for name in row]
     addresses = np.array([part.addresses[:4] for part in parts], dtype=np.int64)
-    return Plan(
+    return Layout(
         component=addresses[:, 0].copy(),
         set_real=addresses[:, 1].copy(),
         get_real=addresses[:, 2].copy(),

@@ -1,12 +1,12 @@
-"""What the iterated algorithms' compiled loop works on, beside the plan."""
+"""What the iterated algorithms' compiled loop works on, beside the layout."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 
-class NodePlan(NamedTuple):
-    """What a pass needs beside the plan.
+class NodeLayout(NamedTuple):
+    """What a pass needs beside the layout.
 
     Attributes:
         degree: p.

@@ -24,8 +24,8 @@ from herringbone.cosim.layouts.adaptive import (
     WANTED,
     Adaptive,
 )
-from herringbone.cosim.layouts.layout import Chunk, Plan
-from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.layouts.layout import Chunk, Layout
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import (
     DONE,
     LAST_GOOD,
@@ -76,23 +76,25 @@ def _next_rung(adaptive: Adaptive, rung: int, error: float, order: int) -> int:
 
 
 @inlined
-def _take_back(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
+def _take_back(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> int:
     """Parts and history as before the step; -1, or the part that refused."""
     history = buffers.history
     for row in range(history.shape[0] - 1):
         for i in range(history.shape[1]):
             history[row, i] = history[row + 1, i]
-    return restore(plan, nodes, buffers, True)
+    return restore(layout, nodes, buffers, True)
 
 
 @inlined
-def _record(plan: Plan, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, done: int) -> int:
+def _record(
+    layout: Layout, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, done: int
+) -> int:
     """A row, if it is time for one; -1, or the part whose outputs cannot be read."""
     row, t = adaptive.state[ROWS], chunk.t0 + done * chunk.h
     if done < adaptive.last and t < adaptive.times[row - 1] + (chunk.every - 0.5) * chunk.h:
         return -1
-    for p in range(plan.component.size):
-        if get_outputs(plan, history, p, chunk.records, row) > LAST_GOOD:
+    for p in range(layout.component.size):
+        if get_outputs(layout, history, p, chunk.records, row) > LAST_GOOD:
             return p
     adaptive.times[row] = t
     adaptive.state[ROWS] += 1
@@ -101,7 +103,7 @@ def _record(plan: Plan, adaptive: Adaptive, history: np.ndarray, chunk: Chunk, d
 
 @inlined
 def _accept(
-    nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, corrections: int, h: float
+    nodes: NodeLayout, buffers: Buffers, adaptive: Adaptive, corrections: int, h: float
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
@@ -116,8 +118,8 @@ def _accept(
 
 @inlined
 def _try(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     control: Control,
     adaptive: Adaptive,
@@ -130,9 +132,9 @@ def _try(
     buffers.spacing[0] = state[BEFORE] / adaptive.rungs[rung]
     buffers.spacing[1] = state[BEFORE_THAT] / adaptive.rungs[rung]
     buffers.counts[2] = 0
-    failed = begin(plan, nodes, buffers, control.order, known, t, h, False)
+    failed = begin(layout, nodes, buffers, control.order, known, t, h, False)
     if failed < 0:
-        failed, _ = converge(plan, nodes, buffers, adaptive.corrections[rung], control, t, h)
+        failed, _ = converge(layout, nodes, buffers, adaptive.corrections[rung], control, t, h)
     if failed >= 0:
         return failed, np.inf
     error, culprit = step_error(nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known)
@@ -142,20 +144,20 @@ def _try(
 
 @inlined
 def _complete(
-    plan: Plan, nodes: NodePlan, buffers: Buffers, adaptive: Adaptive, chunk: Chunk, done: int,
-    corrections: int, error: float,
+    layout: Layout, nodes: NodeLayout, buffers: Buffers, adaptive: Adaptive, chunk: Chunk,
+    done: int, corrections: int, error: float,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Book and record a step that was taken, and choose the next; result as of `_macro_step`."""
     state, rung = adaptive.state, adaptive.state[USED]
     ticks = adaptive.rungs[rung]
-    finish(plan, nodes, buffers)
-    culprit = not_finite(plan, buffers.history)
+    finish(layout, nodes, buffers)
+    culprit = not_finite(layout, buffers.history)
     if culprit >= 0:
         return NOT_FINITE, 0, culprit
     if is_watched(chunk.energy, ticks * chunk.h):
         watch_nodes(chunk.energy, buffers.nodes, buffers.trial, ticks * chunk.h)
     _accept(nodes, buffers, adaptive, corrections, ticks * chunk.h)
-    failed = _record(plan, adaptive, buffers.history, chunk, done + ticks)
+    failed = _record(layout, adaptive, buffers.history, chunk, done + ticks)
     if failed >= 0:
         return PART_FAILED, ticks, failed
     wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
@@ -169,7 +171,7 @@ def _complete(
 
 @inlined
 def _macro_step(
-    plan: Plan, nodes: NodePlan, buffers: Buffers, control: Control, adaptive: Adaptive,
+    layout: Layout, nodes: NodeLayout, buffers: Buffers, control: Control, adaptive: Adaptive,
     chunk: Chunk, done: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Try a macro step after `done` ticks: status, ticks made (0 if taken back), and who failed."""
@@ -180,24 +182,24 @@ def _macro_step(
         return REFRESH, 0, -1
     before = buffers.counts[1]
     t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
-    failed, error = _try(plan, nodes, buffers, control, adaptive, t, h)
+    failed, error = _try(layout, nodes, buffers, control, adaptive, t, h)
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
     if smaller and not error <= TOO_MUCH * adaptive.tolerance:
-        failed = _take_back(plan, nodes, buffers)
+        failed = _take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
         wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
         state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
         return PART_FAILED if failed >= 0 else DONE, 0, failed
     corrections = buffers.counts[1] - before
-    return _complete(plan, nodes, buffers, adaptive, chunk, done, corrections, error)
+    return _complete(layout, nodes, buffers, adaptive, chunk, done, corrections, error)
 
 
 @kernel
 def run_adaptive(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     control: Control,
     adaptive: Adaptive,
@@ -214,6 +216,6 @@ def run_adaptive(
     status, done, culprit = DONE, chunk.start, -1
     end, rows = chunk.start + chunk.count, adaptive.times.size
     while status == DONE and done < end and adaptive.state[ROWS] < rows:
-        status, ticks, culprit = _macro_step(plan, nodes, buffers, control, adaptive, chunk, done)
+        status, ticks, culprit = _macro_step(layout, nodes, buffers, control, adaptive, chunk, done)
         done += ticks
     return status, done, culprit

@@ -8,7 +8,7 @@ interpolated.
 
 import numpy as np
 
-from herringbone.cosim.layouts.layout import Chunk, Plan
+from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.loops.calls import do_step, exchange_reals
 from herringbone.cosim.loops.derivatives import set_derivatives, write_input
 from herringbone.kernels.jit import inlined
@@ -50,13 +50,13 @@ def signal(history: np.ndarray, index: int, fresh: int, order: int, known: int, 
 
 @inlined
 def exchange(
-    plan: Plan, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
+    layout: Layout, p: int, function: np.ndarray, references: np.ndarray, first: int, count: int,
     values: np.ndarray, at: int,
 ) -> int:  # fmt: skip
     """Set or get `count` reals of a part: references from `first`, values from `at` (flat)."""
     return exchange_reals(
         function[p],
-        plan.component[p],
+        layout.component[p],
         references.ctypes.data + _REFERENCE * first,
         count,
         values.ctypes.data + _REAL * at,
@@ -79,76 +79,84 @@ def record_row(chunk: Chunk, n: int) -> int:
 
 @inlined
 def _set_polynomials(
-    plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float
+    layout: Layout, history: np.ndarray, p: int, order: int, known: int, h: float
 ) -> int:
     """Set all connected inputs of a part by value and derivatives; FMI status."""
-    first, samples = plan.input_first[p], plan.derivatives.samples
-    count, at = plan.input_first[p + 1] - first, plan.set_first[p]
+    first, samples = layout.input_first[p], layout.derivatives.samples
+    count, at = layout.input_first[p + 1] - first, layout.set_first[p]
     for i in range(count):
-        source, fresh = plan.input_source[first + i], plan.input_fresh[first + i]
+        source, fresh = layout.input_source[first + i], layout.input_fresh[first + i]
         for node in range(samples.size):
             c = node / (samples.size - 1)
             samples[node] = signal(history, source, fresh, order, known, c)
-        write_input(plan, p, i, h)
-    status = exchange(plan, p, plan.set_real, plan.set_reference, at, count, plan.set_value, at)
-    return max(status, set_derivatives(plan, p, plan.derivatives.order[p]))
+        write_input(layout, p, i, h)
+    status = exchange(
+        layout, p, layout.set_real, layout.set_reference, at, count, layout.set_value, at
+    )
+    return max(status, set_derivatives(layout, p, layout.derivatives.order[p]))
 
 
 @inlined
-def set_inputs(plan: Plan, history: np.ndarray, p: int, order: int, known: int, h: float) -> int:
+def set_inputs(
+    layout: Layout, history: np.ndarray, p: int, order: int, known: int, h: float
+) -> int:
     """Set all connected inputs of a part, at nodes or by derivatives if it has them; FMI status."""
-    first, end = plan.input_first[p], plan.input_first[p + 1]
+    first, end = layout.input_first[p], layout.input_first[p + 1]
     if first == end:
         return 0
-    if plan.derivatives.order[p] > 0:
-        return _set_polynomials(plan, history, p, order, known, h)
-    at, degree = plan.set_first[p], plan.degree[p]
+    if layout.derivatives.order[p] > 0:
+        return _set_polynomials(layout, history, p, order, known, h)
+    at, degree = layout.set_first[p], layout.degree[p]
     for node in range(degree + 1):
         c = node / degree if degree > 0 else 0.0
         for i in range(first, end):
-            fresh = plan.input_fresh[i]
+            fresh = layout.input_fresh[i]
             # A held input of an element, or of a body whose source is known, is its newest value.
-            place = 1.0 if plan.at_end[p] or (degree == 0 and fresh) else c
-            plan.set_value[at] = signal(history, plan.input_source[i], fresh, order, known, place)
+            place = 1.0 if layout.at_end[p] or (degree == 0 and fresh) else c
+            layout.set_value[at] = signal(
+                history, layout.input_source[i], fresh, order, known, place
+            )
             at += 1
-    start = plan.set_first[p]
+    start = layout.set_first[p]
     return exchange(
-        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
+        layout, p, layout.set_real, layout.set_reference, start, at - start, layout.set_value, start
     )
 
 
 @inlined
-def get_outputs(plan: Plan, history: np.ndarray, p: int, records: np.ndarray, row: int) -> int:
+def get_outputs(layout: Layout, history: np.ndarray, p: int, records: np.ndarray, row: int) -> int:
     """Get all connected outputs of a part into row 0 of the history; FMI status.
 
     With row >= 0 all recorded outputs are read into that row of the records, and the connected
     ones, which are among them, are copied: one call to the part in both cases.
     """
-    first, end = plan.output_first[p], plan.output_first[p + 1]
+    first, end = layout.output_first[p], layout.output_first[p + 1]
     if row < 0:
         if first == end:
             return 0
         return exchange(
-            plan, p, plan.get_real, plan.output_reference, first, end - first, history, first
+            layout, p, layout.get_real, layout.output_reference, first, end - first, history, first
         )
-    at, count = plan.record_first[p], plan.record_first[p + 1] - plan.record_first[p]
+    at, count = layout.record_first[p], layout.record_first[p + 1] - layout.record_first[p]
     status = 0
     if count > 0:
         place = row * records.shape[1] + at
-        status = exchange(plan, p, plan.get_real, plan.record_reference, at, count, records, place)
+        status = exchange(
+            layout, p, layout.get_real, layout.record_reference, at, count, records, place
+        )
     for i in range(first, end):
-        if plan.slow.waiting[p]:  # its connected outputs are predicted meanwhile
-            records[row, plan.output_record[i]] = history[0, i]
+        if layout.slow.waiting[p]:  # its connected outputs are predicted meanwhile
+            records[row, layout.output_record[i]] = history[0, i]
         else:
-            history[0, i] = records[row, plan.output_record[i]]
+            history[0, i] = records[row, layout.output_record[i]]
     return status
 
 
 @inlined
-def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> int:
+def get_all(layout: Layout, history: np.ndarray, records: np.ndarray, row: int) -> int:
     """Get the outputs of all parts, recorded in a row; FMI status."""
-    for p in range(plan.component.size):
-        status = get_outputs(plan, history, p, records, row)
+    for p in range(layout.component.size):
+        status = get_outputs(layout, history, p, records, row)
         if status > LAST_GOOD:
             return status
     return 0
@@ -156,7 +164,7 @@ def get_all(plan: Plan, history: np.ndarray, records: np.ndarray, row: int) -> i
 
 @inlined
 def step_stage(
-    plan: Plan,
+    layout: Layout,
     history: np.ndarray,
     stage: int,
     order: int,
@@ -167,25 +175,25 @@ def step_stage(
     row: int,
 ) -> int:
     """Step the parts of one stage over the macro step; -1, or the part that failed."""
-    first, end = plan.stage_first[stage], plan.stage_first[stage + 1]
+    first, end = layout.stage_first[stage], layout.stage_first[stage + 1]
     for k in range(first, end):
-        if set_inputs(plan, history, plan.stage_part[k], order, known, h) > LAST_GOOD:
-            return plan.stage_part[k]
+        if set_inputs(layout, history, layout.stage_part[k], order, known, h) > LAST_GOOD:
+            return layout.stage_part[k]
     for k in range(first, end):
-        p = plan.stage_part[k]
-        if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:
+        p = layout.stage_part[k]
+        if do_step(layout.do_step[p], layout.component[p], t, h) > LAST_GOOD:
             return p
     for k in range(first, end):
-        if get_outputs(plan, history, plan.stage_part[k], records, row) > LAST_GOOD:
-            return plan.stage_part[k]
+        if get_outputs(layout, history, layout.stage_part[k], records, row) > LAST_GOOD:
+            return layout.stage_part[k]
     return -1
 
 
 @inlined
-def not_finite(plan: Plan, history: np.ndarray) -> int:
+def not_finite(layout: Layout, history: np.ndarray) -> int:
     """Part whose newest outputs are NaN, infinite or beyond BOUND, or -1."""
-    for p in range(plan.component.size):
-        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+    for p in range(layout.component.size):
+        for i in range(layout.output_first[p], layout.output_first[p + 1]):
             if not abs(history[0, i]) < BOUND:
                 return p
     return -1

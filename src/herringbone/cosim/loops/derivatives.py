@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from herringbone.cosim.layouts.layout import Plan
+from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.loops.calls import exchange_derivatives
 from herringbone.kernels.jit import inlined
 
@@ -10,46 +10,46 @@ _REAL, _REFERENCE, _ORDER = 8, 4, 4
 
 
 @inlined
-def write_input(plan: Plan, p: int, i: int, h: float) -> None:
+def write_input(layout: Layout, p: int, i: int, h: float) -> None:
     """Value and derivatives at the start of the step, of a part's i-th input from its samples."""
-    signal = plan.derivatives
-    count = plan.input_first[p + 1] - plan.input_first[p]
+    signal = layout.derivatives
+    count = layout.input_first[p + 1] - layout.input_first[p]
     scale = 1.0
     for k in range(signal.order[p] + 1):
         total = 0.0
         for node in range(signal.samples.size):
             total += signal.fit[p, k, node] * signal.samples[node]
         if k == 0:
-            plan.set_value[plan.set_first[p] + i] = total
+            layout.set_value[layout.set_first[p] + i] = total
         else:
             scale /= h
             signal.value[signal.first[p] + (k - 1) * count + i] = total * scale
 
 
 @inlined
-def set_derivatives(plan: Plan, p: int, order: int) -> int:
+def set_derivatives(layout: Layout, p: int, order: int) -> int:
     """Set the derivatives of a part's inputs up to an order; FMI status."""
-    signal, at = plan.derivatives, plan.derivatives.first[p]
+    signal, at = layout.derivatives, layout.derivatives.first[p]
     return exchange_derivatives(
         signal.set_derivatives[p],
-        plan.component[p],
+        layout.component[p],
         signal.reference.ctypes.data + _REFERENCE * at,
-        order * (plan.input_first[p + 1] - plan.input_first[p]),
+        order * (layout.input_first[p + 1] - layout.input_first[p]),
         signal.input_order.ctypes.data + _ORDER * at,
         signal.value.ctypes.data + _REAL * at,
     )
 
 
 @inlined
-def get_rates(plan: Plan, p: int, rates: np.ndarray) -> int:
+def get_rates(layout: Layout, p: int, rates: np.ndarray) -> int:
     """Get the rates of a part's connected outputs into `rates` (outputs,); FMI status."""
-    first = plan.output_first[p]
+    first = layout.output_first[p]
     return exchange_derivatives(
-        plan.derivatives.get_derivatives[p],
-        plan.component[p],
-        plan.output_reference.ctypes.data + _REFERENCE * first,
-        plan.output_first[p + 1] - first,
-        plan.derivatives.output_order.ctypes.data,
+        layout.derivatives.get_derivatives[p],
+        layout.component[p],
+        layout.output_reference.ctypes.data + _REFERENCE * first,
+        layout.output_first[p + 1] - first,
+        layout.derivatives.output_order.ctypes.data,
         rates.ctypes.data + _REAL * first,
     )
 

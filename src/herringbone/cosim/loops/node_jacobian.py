@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from herringbone.cosim.layouts.layout import Plan
-from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.layouts.layout import Layout
+from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
 from herringbone.kernels.jit import allocating
 
 
 @allocating
 def sensitivity(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     jacobian: np.ndarray,
     off: np.ndarray,
@@ -32,32 +32,32 @@ def sensitivity(
         -1, or the part that failed.
     """
     saved = buffers.history.copy()
-    failed = begin(plan, nodes, buffers, order, known, t, h, True)
+    failed = begin(layout, nodes, buffers, order, known, t, h, True)
     if failed < 0:
-        failed = one_pass(plan, nodes, buffers, t, h)
+        failed = one_pass(layout, nodes, buffers, t, h)
     count = nodes.unknown.size
     base, first = buffers.rest.copy(), buffers.nodes.copy()
     for column in range(jacobian.shape[1]):
         if failed >= 0:
             break
         k, i = column // count, column % count
-        failed = restore(plan, nodes, buffers, False)
+        failed = restore(layout, nodes, buffers, False)
         buffers.trial[k, i] += change[i]
         if failed < 0:
-            failed = one_pass(plan, nodes, buffers, t, h)
+            failed = one_pass(layout, nodes, buffers, t, h)
         buffers.trial[k, i] -= change[i]
         for row in range(jacobian.shape[0]):
             difference = buffers.rest[row // count, row % count] - base[row // count, row % count]
             same = 1.0 if row == column else 0.0
             jacobian[row, column] = difference / change[i] + same
     if failed < 0:
-        failed = restore(plan, nodes, buffers, False)
+        failed = restore(layout, nodes, buffers, False)
     if failed < 0:
-        failed = one_pass(plan, nodes, buffers, t, h)
+        failed = one_pass(layout, nodes, buffers, t, h)
     for i in range(off.size):
         off[i] = 0.0
         for k in range(nodes.degree + 1):
             off[i] = max(off[i], abs(buffers.nodes[k, i] - first[k, i]))
-    refused = restore(plan, nodes, buffers, True)
+    refused = restore(layout, nodes, buffers, True)
     buffers.history[:] = saved
     return failed if failed >= 0 else refused

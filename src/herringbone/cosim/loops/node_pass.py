@@ -7,8 +7,8 @@ gives G(U). Before it, the states are saved and U is predicted.
 
 import numpy as np
 
-from herringbone.cosim.layouts.layout import Plan
-from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.layouts.layout import Layout
+from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.calls import do_step, state_call
 from herringbone.cosim.loops.common import LAST_GOOD, exchange, start_step
 from herringbone.cosim.loops.derivatives import cubic, get_rates, set_derivatives, write_input
@@ -17,7 +17,7 @@ from herringbone.kernels.jit import inlined
 
 
 @inlined
-def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
+def save(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> int:
     """Save the state of all parts that can; -1, or the part that refused."""
     at = buffers.states.ctypes.data
     for group in (nodes.bodies, nodes.elements, nodes.sources):
@@ -25,64 +25,64 @@ def save(plan: Plan, nodes: NodePlan, buffers: Buffers) -> int:
             if nodes.get_state[p] == 0:
                 continue
             if buffers.states[p] != 0:
-                state_call(nodes.free_state[p], plan.component[p], at + 8 * p)
-            if state_call(nodes.get_state[p], plan.component[p], at + 8 * p) > LAST_GOOD:
+                state_call(nodes.free_state[p], layout.component[p], at + 8 * p)
+            if state_call(nodes.get_state[p], layout.component[p], at + 8 * p) > LAST_GOOD:
                 return p
     return -1
 
 
 @inlined
-def restore(plan: Plan, nodes: NodePlan, buffers: Buffers, sources: bool) -> int:
+def restore(layout: Layout, nodes: NodeLayout, buffers: Buffers, sources: bool) -> int:
     """Restore the state of bodies and elements, and of sources; -1, or the part that refused."""
     buffers.counts[0] += 1
     for group in (nodes.bodies, nodes.elements, nodes.sources):
         for p in group:
-            is_source = plan.input_first[p] == plan.input_first[p + 1]
+            is_source = layout.input_first[p] == layout.input_first[p + 1]
             if nodes.get_state[p] == 0 or (is_source and not sources):
                 continue
-            status = state_call(nodes.set_state[p], plan.component[p], buffers.states[p])
+            status = state_call(nodes.set_state[p], layout.component[p], buffers.states[p])
             if status > LAST_GOOD:
                 return p
     return -1
 
 
 @inlined
-def _set_from_nodes(plan: Plan, buffers: Buffers, p: int, h: float) -> int:
+def _set_from_nodes(layout: Layout, buffers: Buffers, p: int, h: float) -> int:
     """Set a part's inputs from the nodes: all of them, or the polynomial that the part takes."""
-    first, end = plan.input_first[p], plan.input_first[p + 1]
+    first, end = layout.input_first[p], layout.input_first[p + 1]
     if first == end:
         return 0
-    start, degree = plan.set_first[p], plan.degree[p]
+    start, degree = layout.set_first[p], layout.degree[p]
     for i in range(end - first):
-        source = plan.input_source[first + i]
+        source = layout.input_source[first + i]
         if degree == 0:
-            for node in range(plan.derivatives.samples.size):
-                plan.derivatives.samples[node] = buffers.nodes[node, source]
-            write_input(plan, p, i, h)
+            for node in range(layout.derivatives.samples.size):
+                layout.derivatives.samples[node] = buffers.nodes[node, source]
+            write_input(layout, p, i, h)
         for node in range(degree + 1 if degree > 0 else 0):
-            plan.set_value[start + node * (end - first) + i] = buffers.nodes[node, source]
+            layout.set_value[start + node * (end - first) + i] = buffers.nodes[node, source]
     count = (degree + 1) * (end - first)
     status = exchange(
-        plan, p, plan.set_real, plan.set_reference, start, count, plan.set_value, start
+        layout, p, layout.set_real, layout.set_reference, start, count, layout.set_value, start
     )
-    order = plan.derivatives.order[p]
-    return max(status, set_derivatives(plan, p, order)) if order > 0 else status
+    order = layout.derivatives.order[p]
+    return max(status, set_derivatives(layout, p, order)) if order > 0 else status
 
 
 @inlined
-def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: float) -> int:
+def _get_to_nodes(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int, h: float) -> int:
     """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value.
 
     With the rates at both ends, if the part gives them; else with the value before.
     """
-    first, end = plan.output_first[p], plan.output_first[p + 1]
+    first, end = layout.output_first[p], layout.output_first[p + 1]
     if first == end:
         return 0
     degree, at = nodes.degree, nodes.node_first[p]
     count = nodes.node_first[p + 1] - at
     if count > 0:
         status = exchange(
-            plan, p, plan.get_real, nodes.node_reference, at, count, buffers.values, 0
+            layout, p, layout.get_real, nodes.node_reference, at, count, buffers.values, 0
         )
         k = 0
         for node in range(1, degree + 1):
@@ -91,11 +91,11 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: floa
                 k += 1
         return status
     status = exchange(
-        plan, p, plan.get_real, plan.output_reference, first, end - first, buffers.values, 0
+        layout, p, layout.get_real, layout.output_reference, first, end - first, buffers.values, 0
     )
-    rated = plan.derivatives.rated[p] > 0
+    rated = layout.derivatives.rated[p] > 0
     if rated:
-        status = max(status, get_rates(plan, p, buffers.rates[1]))
+        status = max(status, get_rates(layout, p, buffers.rates[1]))
     for i in range(first, end):
         now, past, value = buffers.nodes[0, i], buffers.spacing[0], buffers.values[i - first]
         rise = value - now
@@ -112,35 +112,35 @@ def _get_to_nodes(plan: Plan, nodes: NodePlan, buffers: Buffers, p: int, h: floa
 
 @inlined
 def _step_group(
-    plan: Plan, nodes: NodePlan, buffers: Buffers, group: np.ndarray, t: float, h: float
+    layout: Layout, nodes: NodeLayout, buffers: Buffers, group: np.ndarray, t: float, h: float
 ) -> int:
     """Set, step and get a group of parts that do not see each other; -1, or who failed."""
     for p in group:
-        if _set_from_nodes(plan, buffers, p, h) > LAST_GOOD:
+        if _set_from_nodes(layout, buffers, p, h) > LAST_GOOD:
             return p
     for p in group:
         buffers.passes[p] += 1
-        status = do_step(plan.do_step[p], plan.component[p], t, h)
+        status = do_step(layout.do_step[p], layout.component[p], t, h)
         if status > LAST_GOOD:
             buffers.counts[2] = status
             return p
     for p in group:
-        if _get_to_nodes(plan, nodes, buffers, p, h) > LAST_GOOD:
+        if _get_to_nodes(layout, nodes, buffers, p, h) > LAST_GOOD:
             return p
     return -1
 
 
 @inlined
-def one_pass(plan: Plan, nodes: NodePlan, buffers: Buffers, t: float, h: float) -> int:
+def one_pass(layout: Layout, nodes: NodeLayout, buffers: Buffers, t: float, h: float) -> int:
     """Step bodies and elements on the trial values; writes the residual. -1, or who failed."""
     for k in range(nodes.degree):
         for i in range(nodes.unknown.size):
             buffers.nodes[k + 1, nodes.unknown[i]] = buffers.trial[k, i]
-    failed = _step_group(plan, nodes, buffers, nodes.bodies, t, h)
+    failed = _step_group(layout, nodes, buffers, nodes.bodies, t, h)
     if failed >= 0:
         return failed
     for e in range(nodes.elements.size):
-        failed = _step_group(plan, nodes, buffers, nodes.elements[e : e + 1], t, h)
+        failed = _step_group(layout, nodes, buffers, nodes.elements[e : e + 1], t, h)
         if failed >= 0:
             return failed
     for k in range(nodes.degree):
@@ -166,8 +166,8 @@ def _predicted(buffers: Buffers, i: int, order: int, c: float) -> float:
 
 @inlined
 def begin(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     order: int,
     known: int,
@@ -182,21 +182,21 @@ def begin(
     start_step(buffers.history)
     for i in range(buffers.history.shape[1]):
         buffers.nodes[0, i] = buffers.history[1, i]
-    failed = save(plan, nodes, buffers)
+    failed = save(layout, nodes, buffers)
     if failed >= 0:
         return failed
     for k in range(nodes.degree):
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
             buffers.trial[k, i] = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
-    predict_slow_nodes(plan, buffers.nodes, buffers.history[1], known - 1, h)
+    predict_slow_nodes(layout, buffers.nodes, buffers.history[1], known - 1, h)
     for s in range(nodes.sources.size):
         p = nodes.sources[s]
         if trial and nodes.get_state[p] == 0:
-            for i in range(plan.output_first[p], plan.output_first[p + 1]):
+            for i in range(layout.output_first[p], layout.output_first[p + 1]):
                 buffers.nodes[1:, i] = buffers.nodes[0, i]
             continue
-        failed = _step_group(plan, nodes, buffers, nodes.sources[s : s + 1], t, h)
+        failed = _step_group(layout, nodes, buffers, nodes.sources[s : s + 1], t, h)
         if failed >= 0:
             return failed
     return -1

@@ -11,8 +11,8 @@ import numpy as np
 
 from herringbone.cosim.energy.loop import is_watched
 from herringbone.cosim.energy.nodes import watch_nodes
-from herringbone.cosim.layouts.layout import Chunk, Plan
-from herringbone.cosim.layouts.nodes import Buffers, Control, NodePlan
+from herringbone.cosim.layouts.layout import Chunk, Layout
+from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import (
     DONE,
     LAST_GOOD,
@@ -56,17 +56,17 @@ def correct(buffers: Buffers, correction: np.ndarray) -> None:
 
 
 @inlined
-def finish(plan: Plan, nodes: NodePlan, buffers: Buffers) -> None:
+def finish(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> None:
     """The values at the end of the step become the newest of the history, rates those before."""
     for i in range(buffers.rates.shape[1]):
         buffers.rates[0, i] = buffers.rates[1, i]
-    for p in range(plan.component.size):
-        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+    for p in range(layout.component.size):
+        for i in range(layout.output_first[p], layout.output_first[p + 1]):
             buffers.history[0, i] = buffers.nodes[nodes.degree, i]
 
 
 @inlined
-def grow_scale(nodes: NodePlan, buffers: Buffers) -> None:
+def grow_scale(nodes: NodeLayout, buffers: Buffers) -> None:
     """The scale becomes the largest value of the same unit at communication points so far."""
     for i in range(nodes.unknown.size):
         size = abs(buffers.history[0, nodes.unknown[i]])
@@ -78,8 +78,8 @@ def grow_scale(nodes: NodePlan, buffers: Buffers) -> None:
 
 @inlined
 def converge(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     correction: np.ndarray,
     control: Control,
@@ -87,15 +87,15 @@ def converge(
     h: float,
 ) -> tuple[int, float]:
     """Correct one macro step until the residual is small; who failed (or -1), and contraction."""
-    failed = one_pass(plan, nodes, buffers, t, h)
+    failed = one_pass(layout, nodes, buffers, t, h)
     before, contraction = residual(buffers), 0.0
     for done in range(control.most):
         if failed >= 0 or (done >= control.corrections and before <= control.tolerance):
             break
         correct(buffers, correction)
-        failed = restore(plan, nodes, buffers, False)
+        failed = restore(layout, nodes, buffers, False)
         if failed < 0:
-            failed = one_pass(plan, nodes, buffers, t, h)
+            failed = one_pass(layout, nodes, buffers, t, h)
         after = residual(buffers)
         if before > control.tolerance:
             contraction = max(contraction, after / before)
@@ -108,8 +108,8 @@ def converge(
 
 @kernel
 def run_iterated(
-    plan: Plan,
-    nodes: NodePlan,
+    layout: Layout,
+    nodes: NodeLayout,
     buffers: Buffers,
     correction: np.ndarray,
     control: Control,
@@ -125,27 +125,27 @@ def run_iterated(
     h = chunk.h
     for n in range(chunk.start, chunk.start + chunk.count):
         t, row, contraction = chunk.t0 + n * h, record_row(chunk, n), 0.0
-        failed = begin(plan, nodes, buffers, control.order, n + 1, t, h, False)
+        failed = begin(layout, nodes, buffers, control.order, n + 1, t, h, False)
         if failed < 0:
-            failed, contraction = converge(plan, nodes, buffers, correction, control, t, h)
+            failed, contraction = converge(layout, nodes, buffers, correction, control, t, h)
         if failed >= 0:
             return PART_FAILED, n, failed
-        finish(plan, nodes, buffers)
+        finish(layout, nodes, buffers)
         buffers.spacing[0] = 1.0
         for node in range(1, nodes.degree + 1):
-            trace_slow(plan, buffers.nodes[node], n, node, nodes.degree)
-        failed = finish_slow(plan, buffers.history, chunk, n)
+            trace_slow(layout, buffers.nodes[node], n, node, nodes.degree)
+        failed = finish_slow(layout, buffers.history, chunk, n)
         if failed >= 0:
             return PART_FAILED, n, failed
-        culprit = not_finite(plan, buffers.history)
+        culprit = not_finite(layout, buffers.history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
         grow_scale(nodes, buffers)
         if is_watched(chunk.energy, h):
             watch_nodes(chunk.energy, buffers.nodes, buffers.trial, h)
-        for p in range(plan.component.size if row >= 0 else 0):
-            fast = plan.slow.taken[p] < 0
-            if fast and get_outputs(plan, buffers.history, p, chunk.records, row) > LAST_GOOD:
+        for p in range(layout.component.size if row >= 0 else 0):
+            fast = layout.slow.taken[p] < 0
+            if fast and get_outputs(layout, buffers.history, p, chunk.records, row) > LAST_GOOD:
                 return PART_FAILED, n + 1, p
         if contraction > control.slow:
             return REFRESH, n + 1, -1

@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.cosim.energy.loop import book_step, is_watched
 from herringbone.cosim.energy.monitor import EnergyMonitor
-from herringbone.cosim.layouts.layout import Chunk, Plan
+from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.loops.calls import do_step
 from herringbone.cosim.loops.common import (
     DONE,
@@ -35,7 +35,7 @@ class Prediction(NamedTuple):
         rate, second: for each output, the outputs that are its first and second time derivative;
             -1 if there is none.
         elements, bodies: parts.
-        sources: 1 if the plan's first stage holds the sources.
+        sources: 1 if the layout's first stage holds the sources.
         node_first, node_reference: outputs of each element at its three nodes, node by node.
         forces: (4, outputs), values at c = 0, 1/3, 2/3, 1; row 0 is not used.
         values: room for one part's outputs at its nodes.
@@ -68,32 +68,45 @@ def predicted(
 
 @inlined
 def _step_element(
-    plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, t: float, h: float
+    layout: Layout,
+    prediction: Prediction,
+    history: np.ndarray,
+    p: int,
+    known: int,
+    t: float,
+    h: float,
 ) -> int:
     """Step an element on predicted motions, and read its forces at the nodes; FMI status."""
-    first, end = plan.input_first[p], plan.input_first[p + 1]
-    start = plan.set_first[p]
+    first, end = layout.input_first[p], layout.input_first[p + 1]
+    start = layout.set_first[p]
     at = start
     for node in range(NODES + 1):
         for i in range(first, end):
-            source = plan.input_source[i]
-            plan.set_value[at] = predicted(prediction, history, source, known, node / NODES, h)
+            source = layout.input_source[i]
+            layout.set_value[at] = predicted(prediction, history, source, known, node / NODES, h)
             at += 1
     status = exchange(
-        plan, p, plan.set_real, plan.set_reference, start, at - start, plan.set_value, start
+        layout, p, layout.set_real, layout.set_reference, start, at - start, layout.set_value, start
     )
     if status > LAST_GOOD:
         return status
-    status = do_step(plan.do_step[p], plan.component[p], t, h)
+    status = do_step(layout.do_step[p], layout.component[p], t, h)
     if status > LAST_GOOD:
         return status
     begin, stop = prediction.node_first[p], prediction.node_first[p + 1]
     status = exchange(
-        plan, p, plan.get_real, prediction.node_reference, begin, stop - begin, prediction.values, 0
+        layout,
+        p,
+        layout.get_real,
+        prediction.node_reference,
+        begin,
+        stop - begin,
+        prediction.values,
+        0,
     )
     k = 0
     for node in range(1, NODES + 1):
-        for i in range(plan.output_first[p], plan.output_first[p + 1]):
+        for i in range(layout.output_first[p], layout.output_first[p + 1]):
             prediction.forces[node, i] = prediction.values[k]
             k += 1
     return status
@@ -101,12 +114,12 @@ def _step_element(
 
 @inlined
 def _body_input(
-    plan: Plan, prediction: Prediction, history: np.ndarray, i: int, known: int, c: float
+    layout: Layout, prediction: Prediction, history: np.ndarray, i: int, known: int, c: float
 ) -> float:
     """Input i at c of the macro step: the quadratic through an element's three nodes."""
-    source = plan.input_source[i]
+    source = layout.input_source[i]
     if prediction.rate[source] != -2:
-        return signal(history, source, plan.input_fresh[i], 2, known, c)
+        return signal(history, source, layout.input_fresh[i], 2, known, c)
     # Lagrange weights of the nodes 1/3, 2/3, 1
     w1 = 4.5 * (c - 2.0 / 3.0) * (c - 1.0)
     w2 = -9.0 * (c - 1.0 / 3.0) * (c - 1.0)
@@ -117,55 +130,55 @@ def _body_input(
 
 @inlined
 def _set_body(
-    plan: Plan, prediction: Prediction, history: np.ndarray, p: int, known: int, h: float
+    layout: Layout, prediction: Prediction, history: np.ndarray, p: int, known: int, h: float
 ) -> int:
     """Set a body's inputs, at nodes or by derivatives if it has them; FMI status."""
-    first, count = plan.input_first[p], plan.input_first[p + 1] - plan.input_first[p]
-    start, degree, order = plan.set_first[p], plan.degree[p], plan.derivatives.order[p]
-    samples = plan.derivatives.samples
+    first, count = layout.input_first[p], layout.input_first[p + 1] - layout.input_first[p]
+    start, degree, order = layout.set_first[p], layout.degree[p], layout.derivatives.order[p]
+    samples = layout.derivatives.samples
     for i in range(count):
         for node in range(degree + 1):
             c = node / degree if degree > 0 else 0.5
-            plan.set_value[start + node * count + i] = _body_input(
-                plan, prediction, history, first + i, known, c
+            layout.set_value[start + node * count + i] = _body_input(
+                layout, prediction, history, first + i, known, c
             )
         for node in range(samples.size if order > 0 else 0):
             c = node / (samples.size - 1)
-            samples[node] = _body_input(plan, prediction, history, first + i, known, c)
+            samples[node] = _body_input(layout, prediction, history, first + i, known, c)
         if order > 0:
-            write_input(plan, p, i, h)
+            write_input(layout, p, i, h)
     status = exchange(
-        plan, p, plan.set_real, plan.set_reference, start, (degree + 1) * count, plan.set_value,
-        start,
+        layout, p, layout.set_real, layout.set_reference, start, (degree + 1) * count,
+        layout.set_value, start,
     )  # fmt: skip
-    return max(status, set_derivatives(plan, p, order)) if order > 0 else status
+    return max(status, set_derivatives(layout, p, order)) if order > 0 else status
 
 
 @inlined
 def _step_parts(
-    plan: Plan, prediction: Prediction, history: np.ndarray, known: int, t: float, h: float
+    layout: Layout, prediction: Prediction, history: np.ndarray, known: int, t: float, h: float
 ) -> int:
     """Step elements on predicted motions, then bodies on their forces; -1, or who failed."""
     for p in prediction.elements:
-        if _step_element(plan, prediction, history, p, known, t, h) > LAST_GOOD:
+        if _step_element(layout, prediction, history, p, known, t, h) > LAST_GOOD:
             return p
     for p in prediction.bodies:
-        if _set_body(plan, prediction, history, p, known, h) > LAST_GOOD:
+        if _set_body(layout, prediction, history, p, known, h) > LAST_GOOD:
             return p
     for p in prediction.bodies:
-        if do_step(plan.do_step[p], plan.component[p], t, h) > LAST_GOOD:
+        if do_step(layout.do_step[p], layout.component[p], t, h) > LAST_GOOD:
             return p
     return -1
 
 
 @inlined
 def _read_parts(
-    plan: Plan, prediction: Prediction, history: np.ndarray, records: np.ndarray, row: int
+    layout: Layout, prediction: Prediction, history: np.ndarray, records: np.ndarray, row: int
 ) -> int:
     """Read the outputs of bodies and elements; -1, or who failed."""
     for group in (prediction.bodies, prediction.elements):
         for p in group:
-            if get_outputs(plan, history, p, records, row) > LAST_GOOD:
+            if get_outputs(layout, history, p, records, row) > LAST_GOOD:
                 return p
     return -1
 
@@ -197,7 +210,7 @@ def _watch(
 
 @kernel
 def run_predicted(
-    plan: Plan, prediction: Prediction, history: np.ndarray, chunk: Chunk
+    layout: Layout, prediction: Prediction, history: np.ndarray, chunk: Chunk
 ) -> tuple[int, int, int]:
     """Run macro steps; arguments and result as of `loops.stages.run_stages`."""
     h = chunk.h
@@ -206,14 +219,14 @@ def run_predicted(
         t, known, row = chunk.t0 + n * h, n + 1, record_row(chunk, n)
         failed = -1
         if prediction.sources:
-            failed = step_stage(plan, history, 0, 2, known, t, h, chunk.records, row)
+            failed = step_stage(layout, history, 0, 2, known, t, h, chunk.records, row)
         if failed < 0:
-            failed = _step_parts(plan, prediction, history, known, t, h)
+            failed = _step_parts(layout, prediction, history, known, t, h)
         if failed < 0:
-            failed = _read_parts(plan, prediction, history, chunk.records, row)
+            failed = _read_parts(layout, prediction, history, chunk.records, row)
         if failed >= 0:
             return PART_FAILED, n, failed
-        culprit = not_finite(plan, history)
+        culprit = not_finite(layout, history)
         if culprit >= 0:
             return NOT_FINITE, n + 1, culprit
         if is_watched(chunk.energy, h):

@@ -22,7 +22,7 @@ largest one.
 import numpy as np
 
 from herringbone.cosim.layouts.layout import HISTORY
-from herringbone.cosim.layouts.nodes import Buffers, NodePlan
+from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.kernels.jit import allocating
 
 ORDER = np.array([0, 2, 4, 4, 6])
@@ -64,7 +64,7 @@ def _missing(buffers: Buffers, i: int, nodes: int, degree: int, known: int) -> f
 
 @allocating
 def step_error(
-    nodes: NodePlan,
+    nodes: NodeLayout,
     buffers: Buffers,
     group: np.ndarray,
     held: np.ndarray,
@@ -102,7 +102,7 @@ def step_error(
 
 @allocating
 def update_scale(
-    nodes: NodePlan,
+    nodes: NodeLayout,
     buffers: Buffers,
     group: np.ndarray,
     moments: np.ndarray,
