@@ -311,10 +311,12 @@ class Ramp(CallbackPart):
 
     def __init__(self, name, rate, **more):
         super().__init__(name, [], ["flange.f"], **more)
-        self.rate, self.time = rate, 0.0
+        self.rate = rate
+        self._add("time", "local")
 
     def step(self, t, h):
-        before, self.time = self.time, self.time + h
+        before = self["time"]
+        self["time"] += h
         count = max(self.degree, 1)
         self.write("flange.f", [self.rate * (before + h * i / count) for i in range(1, count + 1)])
         return OK

@@ -9,20 +9,24 @@ from herringbone.analysis.stability.recommendation import (
     CONTACT_ERROR,
     MARGIN,
     SEPARATION_ERROR,
-    STEP_RULE,
     contact_floor,
-    recommend,
+    rank,
     separation_floor,
 )
 from herringbone.core import ParameterError
-from herringbone.cosim.algorithms import LI, Jacobi, with_tolerance
+from herringbone.cosim.algorithms import ALGORITHMS, LI, Jacobi, with_tolerance
 from herringbone.cosim.tolerance import SMALLEST_TOLERANCE, check_tolerance
 
 JACOBI, CUBIC = Jacobi(2), LI(3)
 FREQUENCY = 1e4
 """Of the bonds [rad/s]."""
-JACOBI_STEP, LI_STEP = (STEP_RULE[str(a)] / FREQUENCY for a in (JACOBI, CUBIC))
+JACOBI_STEP, LI_STEP = (a.accurate_step / FREQUENCY for a in (JACOBI, CUBIC))
 """At 0.1 %, by the rule [s]."""
+
+
+def recommend(*arguments, **more):
+    """The best of the ranked."""
+    return rank(*arguments, **more).best
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-5])
@@ -96,6 +100,21 @@ def test_a_macro_step_cuts_micro_steps_shorter():
 def test_nothing_without_a_rule_or_a_bond():
     assert recommend([(Jacobi(0), 1e-3)], FREQUENCY, 1e-3) is None
     assert recommend([(JACOBI, 1e-3)], 0.0, 1e-3) is None
+
+
+def test_every_algorithm_is_ranked_or_named():
+    """Cheapest first; what is left out is named with the reason."""
+    limits = [(a, math.inf) for kind in ALGORITHMS.values() for a in kind.charted()]
+    found = rank(limits, FREQUENCY, 1e-3)
+    assert {*found.unranked, *(r.algorithm for r in found.ranked)} == {str(a) for a, _ in limits}
+    assert len(found.ranked) + len(found.unranked) == len(limits)
+    calls = [a.passes * 1e-3 * FREQUENCY / a.accurate_step for a, _ in limits if a.accurate_step]
+    assert [r.passes_per_ms for r in found.ranked] == pytest.approx(sorted(calls), rel=1e-12)
+    assert found.unranked == {str(Jacobi(0)): "no step at which it errs 0.1 % is known"}
+    without_bond = rank(limits, 0.0, 1e-3)
+    assert without_bond.ranked == () and without_bond.best is None
+    assert set(without_bond.unranked) == {str(a) for a, _ in limits}
+    assert "no bond" in without_bond.unranked[str(CUBIC)]
 
 
 @pytest.mark.parametrize("tolerance", [1e-12, 0.0, 1.0, -1e-3, math.nan])

@@ -7,7 +7,7 @@ from support.parts import TWO_MASS_SYSTEM, FakePart, Mass, SpringDamper, TwoMass
 
 from herringbone.core import ParameterError
 from herringbone.core.part import Addresses
-from herringbone.cosim.algorithms import ALGORITHMS, GaussSeidel, Jacobi, parse_algorithm
+from herringbone.cosim.algorithms import GaussSeidel, Jacobi, parse_algorithm
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -57,15 +57,6 @@ def test_parse_refuses(text, message):
 def test_an_option_given_twice_is_refused():
     with pytest.raises(ParameterError, match="order"):
         parse_algorithm("jacobi:order=1,order=2")
-
-
-@pytest.mark.parametrize("algorithm", [Jacobi(1, "parallel"), Jacobi(), GaussSeidel(1)], ids=str)
-def test_text_of_an_algorithm_parses_to_it(algorithm):
-    assert parse_algorithm(str(algorithm)) == algorithm
-
-
-def test_every_algorithm_is_listed_under_its_name():
-    assert all(kind.name == name for name, kind in ALGORITHMS.items())
 
 
 def two_mass(nodes=True):

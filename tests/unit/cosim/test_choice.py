@@ -21,12 +21,19 @@ from support.parts import (
 )
 
 from herringbone.core import OutcomeKind, ParameterError
-from herringbone.cosim.algorithms import LI, FixedPoint, Jacobi, Predict, choose_algorithm
+from herringbone.cosim.algorithms import (
+    ALGORITHMS,
+    LI,
+    FixedPoint,
+    Jacobi,
+    Predict,
+    choose_algorithm,
+)
 from herringbone.cosim.algorithms.iterated import PATIENCE
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 
-ITERATED = [LI(), FixedPoint()]
+ITERATED = [kind() for kind in ALGORITHMS.values() if "rollback" in kind.needs]
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.algorithms import variants
 from support.parts import (
     TWO_MASS_SYSTEM,
     TwoMass,
@@ -21,13 +22,14 @@ from support.parts import (
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.core.part import closing_all
-from herringbone.cosim.algorithms import GaussSeidel, Jacobi
+from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
 
 PROBLEM = TwoMass(zeta=0.05)
-ALGORITHMS = [Jacobi(order=2), Jacobi(order=1, schedule="parallel"), GaussSeidel(order=2)]
+STAGED = [a for a in variants() if not a.needs]
+"""Algorithms that step each part once, whatever it can do."""
 
 
 # -- grid ---------------------------------------------------------------------------------------
@@ -68,29 +70,11 @@ def test_records_are_whole_numbers_of_steps(record_step, every):
 # -- a run --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
-@pytest.mark.parametrize(("h", "t_end"), [(0.1, 3.0), (0.07, 1.0), (1.0, 1.0)])
-def test_end_is_hit_exactly(algorithm, h, t_end):
-    recording = PROBLEM.run(algorithm, h, t_end)
-    assert recording.outcome.kind is OutcomeKind.COMPLETED
-    assert recording.outcome.message == recording.outcome.culprit == ""
-    assert recording.outcome.time == pytest.approx(t_end, rel=1e-15)
-    assert recording.time[-1] == recording.outcome.time
-    assert recording.time.size == recording.macro_steps + 1 == len(recording.values)
-
-
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+@pytest.mark.parametrize("algorithm", STAGED, ids=str)
 def test_each_part_steps_once_a_macro_step(algorithm):
     parts = PROBLEM.parts()
     recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(2.0, 0.1, 0.1))
     assert [part.steps for part in parts] == [20, 20, 20] == list(recording.passes.values())
-
-
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
-def test_two_runs_are_bit_identical(algorithm):
-    first, second = (PROBLEM.run(algorithm, 0.1, 20.0) for _ in range(2))
-    assert first.values.tobytes() == second.values.tobytes()
-    assert first.time.tobytes() == second.time.tobytes()
 
 
 def test_chunks_do_not_change_the_result():
@@ -139,7 +123,7 @@ def test_progress_ends_at_the_end():
 # -- runs that end early ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+@pytest.mark.parametrize("algorithm", STAGED, ids=str)
 def test_a_part_that_fails(algorithm):
     whole = PROBLEM.run(algorithm, 0.1, 2.0)
     recording = PROBLEM.run(algorithm, 0.1, 2.0, misbehave=fail_at(1.0))
@@ -164,7 +148,7 @@ def test_a_warning_is_no_failure():
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+@pytest.mark.parametrize("algorithm", STAGED, ids=str)
 def test_values_that_are_not_finite(algorithm, value):
     whole = PROBLEM.run(algorithm, 0.1, 2.0)
     recording = PROBLEM.run(algorithm, 0.1, 2.0, misbehave=spoil_at(1.0, value))
@@ -269,7 +253,7 @@ def test_parts_without_connected_inputs_only():
     assert columns(recording, ("left.flange.s", "right.flange.s"))[-1].tolist() == [1.0, 2.0]
 
 
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=str)
+@pytest.mark.parametrize("algorithm", [a for a in STAGED if a == type(a)()], ids=str)
 def test_unconnected_inputs_keep_their_start_value(algorithm):
     """A force that nothing feeds, and whose signal nodes nobody sets, acts on both masses alike."""
     parts = TwoMass(start=(0.0, 0.0)).parts()

@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.linear_parts import linear_network
@@ -21,7 +22,7 @@ from herringbone.analysis.stability.simulated_limit import (
 )
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.analysis.twin.monolithic import make_instances
-from herringbone.cosim.algorithms import LI, Jacobi, parse_algorithm
+from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started
 from herringbone.scenes import find_scene, read_scene
@@ -30,18 +31,7 @@ FOLDS = 12.0
 """Powers of e by which a motion grows or decays in a run: to 6e-6, above rounding."""
 RATE = 0.02
 """Relative deviation of a rate: what other motions leave within a run."""
-QUICK = "jacobi:order=2"
-AROUND = {  # step [s] near which the first limit of the rig is looked for
-    "jacobi:order=0": 21e-6,
-    "jacobi:order=1": 42e-6,
-    "jacobi:order=2": 46e-6,
-    "gauss_seidel": 37e-6,
-    "predict": 68e-6,
-    "fixed_point": 213e-6,
-    "li:degree=2": 375e-6,
-    "li:degree=3": 695e-6,
-    "li:degree=4": 970e-6,
-}
+QUICK = Jacobi(2)
 SEEN = 2.0
 """Powers of e by which a motion must grow in a run to be seen beside a shift that grows as time."""
 DEVIATION = 0.03
@@ -71,13 +61,16 @@ def rig():
 
 
 @pytest.mark.parametrize(
-    "name",
-    [name if name == QUICK else pytest.param(name, marks=pytest.mark.slow) for name in AROUND],
+    "algorithm",
+    [
+        a if a == QUICK else pytest.param(a, marks=pytest.mark.slow, id=str(a))
+        for a in charted_algorithms()
+    ],
+    ids=str,
 )
-def test_non_linear_limit_is_near_the_predicted_one(name):
-    algorithm, near = parse_algorithm(name), AROUND[name]
+def test_non_linear_limit_is_near_the_predicted_one(algorithm):
     growth = cache(Amplification(*linear_network(rig()), algorithm).growth)
-    bands = unstable_bands(growth, 0.9 * near, 1.02 * near)
+    bands = unstable_bands(growth)
     limit = bands[0][0]
     found = nonlinear_limit(rig(), algorithm, limit, bands)
     assert found is not None

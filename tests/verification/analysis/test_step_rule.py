@@ -6,14 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability.recommendation import (
     CONTACT_ERROR,
     RULE_ERROR,
     SEPARATION_ERROR,
-    STEP_RULE,
-    recommend,
+    rank,
 )
-from herringbone.cosim.algorithms import parse_algorithm
 
 PICTURES = Path(__file__).parents[3] / "examples" / "pictures"
 FREQUENCY = 2.0 * np.pi * 2278.0
@@ -43,22 +42,31 @@ def largest_step(scene: str, algorithm: str) -> float:
     return float(np.exp(step[inside] + share * (step[outside] - step[inside])))
 
 
-@pytest.mark.parametrize("algorithm", STEP_RULE)
+RANKED = [a for a in charted_algorithms() if a.accurate_step is not None]
+
+
+@pytest.mark.parametrize("algorithm", RANKED, ids=str)
 def test_rule_is_that_of_the_charts(algorithm):
-    found = [FREQUENCY * largest_step(scene, algorithm) for scene in ("loaded", "separation")]
-    assert STEP_RULE[algorithm] == pytest.approx(min(found), abs=6e-4)  # three decimals are kept
+    found = [FREQUENCY * largest_step(scene, str(algorithm)) for scene in ("loaded", "separation")]
+    assert algorithm.accurate_step == pytest.approx(min(found), abs=6e-4)  # three decimals are kept
 
 
-@pytest.mark.parametrize("algorithm", STEP_RULE)
+@pytest.mark.parametrize("algorithm", set(charted_algorithms()) - set(RANKED), ids=str)
+def test_what_has_no_rule_is_not_that_accurate_in_the_charts(algorithm):
+    for scene in ("loaded", "separation"):
+        assert (charted(scene, str(algorithm))[1] > np.log(RULE_ERROR)).all()
+
+
+@pytest.mark.parametrize("algorithm", RANKED, ids=str)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
 def test_charts_keep_what_is_expected(algorithm, tolerance):
-    expected = recommend([(parse_algorithm(algorithm), np.inf)], FREQUENCY, tolerance)
+    expected = rank([(algorithm, np.inf)], FREQUENCY, tolerance).best
     at = np.log(expected.step)
     for scene, promised in (
         ("loaded", expected.expected_error),
         ("separation", expected.separation_error),
     ):
-        step, error = charted(scene, algorithm)
+        step, error = charted(scene, str(algorithm))
         if at >= step[0]:  # no smaller step was charted
             assert np.exp(np.interp(at, step, error)) < PROMISE * promised
 

@@ -1,6 +1,7 @@
 """`herringbone stability`: what it prints, as text and as JSON, what it writes, and its picture."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,12 +11,12 @@ from herringbone.analysis.stability.atlas import Panel
 from herringbone.analysis.stability.bonds import Bond
 from herringbone.analysis.stability.limits import Stability, StepLimits, default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness
-from herringbone.analysis.stability.recommendation import Recommendation
+from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.report import stability_summary, stability_text
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
-from herringbone.cosim.algorithms import Jacobi
+from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.plotting.stability_atlas import atlas_picture, write_atlas
 
 
@@ -92,8 +93,9 @@ def made_up():
     name, bodies = "bearing_supports.shaft.pinion_right.f_y", ("gear_mesh", "modal_housing")
     bond = Bond(name, bodies, (6.5, 6.284), 6.34e8, 2.5e3, 14087.0, 0.029)
     recommended = Recommendation(str(Jacobi(2)), 1e-5, 4.4e-8, 5e-5, "micro steps")
+    ranking = Ranking((recommended, replace(recommended, algorithm=str(LI(3)), step=2e-5)))
     return Stability(
-        "test_rig", "loaded", tuple(limits), (bond,), 14e3, 1e-3, recommended, ("word " * 40,)
+        "test_rig", "loaded", tuple(limits), (bond,), 14e3, 1e-3, ranking, ("word " * 40,)
     )
 
 
@@ -112,7 +114,10 @@ def test_text_fits_in_100_columns_and_says_everything():
 def test_what_bounds_the_error_is_said():
     said = "expected error 4.4e-06 %, bounded by micro steps; 0.005 % where teeth separate"
     assert said in stability_text(made_up()).splitlines()
-    recommended = stability_summary(made_up())["recommended"]
+    summary = stability_summary(made_up())
+    recommended = summary["recommended"]
+    assert summary["ranking"][0] == recommended
+    assert [r["passes_per_ms"] for r in summary["ranking"]] == pytest.approx([100.0, 50.0])
     assert recommended["expected_error"] == 4.4e-8
     assert recommended["separation_error"] == 5e-5
     assert recommended["bounded_by"] == "micro steps"

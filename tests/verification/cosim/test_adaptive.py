@@ -31,7 +31,7 @@ from support.parts import (
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError
-from herringbone.cosim.algorithms import LI, Jacobi, with_tolerance
+from herringbone.cosim.algorithms import LI, with_tolerance
 from herringbone.cosim.loops.ladder import RUNGS, TICKS
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
@@ -294,9 +294,7 @@ def test_tolerance_out_of_range(tolerance):
         LI(tolerance=tolerance)
 
 
-def test_only_li_adapts_its_step():
-    with pytest.raises(ParameterError, match=r"jacobi.* keeps its step; only li adapts it"):
-        with_tolerance(Jacobi(), 1e-3)
+def test_two_tolerances_are_refused():
     with pytest.raises(ParameterError, match=r"but the algorithm is li:.*tolerance=0.01"):
         with_tolerance(LI(tolerance=1e-2), 1e-3)
 

@@ -32,25 +32,6 @@ def errors(problem, algorithm, steps=STEPS):
     return found
 
 
-@pytest.mark.parametrize(
-    ("algorithm", "order"),
-    [
-        (Jacobi(order=0), 1),
-        (Jacobi(order=1), 2),
-        (Jacobi(order=2), 3),
-        (Jacobi(order=0, schedule=PARALLEL), 1),
-        (Jacobi(order=1, schedule=PARALLEL), 1),
-        (Jacobi(order=2, schedule=PARALLEL), 1),
-        (GaussSeidel(order=1), 2),
-        (GaussSeidel(order=2), 3),
-    ],
-    ids=str,
-)
-def test_order_from_rest(algorithm, order):
-    assert algorithm.convergence_order == order
-    assert slope(STEPS, errors(TwoMass(), algorithm)) == pytest.approx(order, abs=0.15)
-
-
 @pytest.mark.parametrize("algorithm", [Jacobi(order=1), GaussSeidel(order=1)], ids=str)
 def test_order_1_needs_no_special_start(algorithm):
     # One held step costs h^2 f' / 2 once: no more than the scheme itself.

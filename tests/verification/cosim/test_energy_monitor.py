@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.algorithms import variants
 from support.parts import TwoMass, open_in_process
 
 from herringbone.analysis.stability.amplification import GROWTH, Amplification
@@ -21,6 +22,7 @@ from herringbone.components.bearing_supports import BEARING_SUPPORTS
 from herringbone.components.in_process import InProcessPart
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algorithms import (
+    ALGORITHMS,
     LI,
     FixedPoint,
     GaussSeidel,
@@ -170,29 +172,6 @@ def test_flags_around_the_limits(runs):
     assert not [s for s in stable if s.verdict is Verdict.UNSTABLE]
 
 
-@pytest.mark.parametrize(
-    ("zeta", "algorithm"),
-    [
-        (zeta, algorithm)
-        for zeta in (0.02, 0.1)
-        for algorithm in (GaussSeidel(2), Predict(), FixedPoint(2), FixedPoint(3), LI(2), LI(3))
-    ],
-    ids=str,
-)
-def test_two_rotors_are_flagged_beyond_the_limit_and_silent_below(zeta, algorithm):
-    """2 % to each side; below, until the motion has long died out to rounding."""
-    system = two_rotors(zeta, 3.0)
-    network, instances = linear_network(system)
-    frequency = highest_frequency(network, instances)
-    limit = unstable_bands(Amplification(network, instances, algorithm).growth, 1e-4, 4e-3)[0][0]
-    kicked = system.with_values({"left.speed": 1e-3})
-    below, beyond = (
-        run(kicked, algorithm, f * limit, 3000.0 * f * limit, frequency) for f in (0.98, 1.02)
-    )
-    assert below.energy.verdict is not Verdict.UNSTABLE
-    assert beyond.energy.verdict is Verdict.UNSTABLE
-
-
 def test_a_motion_that_died_out_is_left_alone():
     """What rounding does in its place is neither growth nor false damping."""
     kicked = two_rotors(0.02, 3.0).with_values({"left.speed": 1e-3})
@@ -229,17 +208,6 @@ def test_false_energy_of_elements_a_step_late_in_closed_form():
     assert found.energy.ratio == pytest.approx(3.0 * h * problem.w / (4.0 * problem.zeta), rel=0.05)
 
 
-@pytest.mark.parametrize(
-    "algorithm",
-    [GaussSeidel(1), GaussSeidel(2), Predict(), FixedPoint(3), LI(2), LI(3), LI(3, 1, 1e-3)],
-    ids=str,
-)
-def test_every_algorithm_is_watched_and_fine_where_it_is_accurate(algorithm):
-    found = TwoMass(w=1.0, zeta=0.05).run(algorithm, 0.1, 20.0, acceleration=True)
-    assert found.energy.verdict is Verdict.FINE
-    assert abs(found.energy.ratio) < 0.01
-
-
 def test_slow_bodies_leave_the_energy_of_the_others():
     """Motors that step once in five steps change next to nothing of what the bearings do."""
     network, instances = linear_network(rig())
@@ -262,7 +230,7 @@ def test_slow_bodies_leave_the_energy_of_the_others():
 @pytest.mark.parametrize("scene", ["runup", "separation"])
 @pytest.mark.parametrize(
     "algorithm",
-    [Jacobi(2), GaussSeidel(2), Predict(), FixedPoint(3), LI(3), LI(3, 1, 1e-3)],
+    [*(kind() for kind in ALGORITHMS.values()), *(a for a in variants() if a.adaptive)],
     ids=str,
 )
 def test_shipped_scenes_are_left_alone(scene, algorithm):

@@ -15,8 +15,9 @@ from herringbone.analysis.stability.bonds import Bond, bond_table, highest_frequ
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.stability.recommendation import (
     CHARTED_MICRO_STEP,
+    Ranking,
     Recommendation,
-    recommend,
+    rank,
 )
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.step_scan import GrowthOf, first_unstable_near, unstable_bands
@@ -68,8 +69,8 @@ class Stability:
         bonds: where bodies act on each other through an element.
         highest_frequency: of all bonds together [rad/s].
         tolerance: relative error for which the step is recommended.
-        recommended: algorithm and step, None if no rule is known for the algorithms.
-        notes: algorithms that this system cannot have.
+        ranking: algorithms and steps for that, the best first.
+        notes: algorithms that this system cannot have, and those that are not ranked.
     """
 
     system: str
@@ -78,8 +79,13 @@ class Stability:
     bonds: tuple[Bond, ...]
     highest_frequency: float
     tolerance: float
-    recommended: Recommendation | None
+    ranking: Ranking
     notes: tuple[str, ...] = field(default=())
+
+    @property
+    def recommended(self) -> Recommendation | None:
+        """The best algorithm and step; None if none is ranked."""
+        return self.ranking.best
 
 
 def default_algorithms() -> tuple[Algorithm, ...]:
@@ -129,9 +135,10 @@ def stability(
     by_limit = [(a, found.limit) for a, found in zip(chosen, limits, strict=True)]
     micro_steps = [i["micro_step"] for i in instances if i.component is GEAR_MESH]
     micro_step = max(micro_steps, default=CHARTED_MICRO_STEP)
-    recommended = recommend(by_limit, highest, tolerance, micro_step)
+    ranking = rank(by_limit, highest, tolerance, micro_step)
+    notes += [f"{name} is not ranked: {why}" for name, why in ranking.unranked.items()]
     return Stability(
-        system.name, scene, tuple(limits), bonds, highest, tolerance, recommended, tuple(notes)
+        system.name, scene, tuple(limits), bonds, highest, tolerance, ranking, tuple(notes)
     )
 
 

@@ -2,7 +2,8 @@
 
 The rule is the largest step H with a relative error of 0.1 % in bearing forces and seat velocities,
 as H w with the highest frequency w of all bonds together: the smaller one of `loaded` and
-`separation` on the test rig, from the points of the charts in the README. It is carried to other
+`separation` on the test rig, from the points of the charts in the README. Each algorithm declares
+its own (`accurate_step`); one that declares none is named as not ranked. It is carried to other
 tolerances by the algorithm's order of convergence; from 1e-2 down to the floor the charts' errors
 are at most 3.5 times what this promises. It is a rule for gearboxes of this kind; a run with
 --reference measures the error.
@@ -15,26 +16,14 @@ of the nodes changes nothing as long as the micro steps stay the same (`li` of d
 20 us); powers by the same with micro steps of 1.25 to 10 us. See also `components.gear_mesh`.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.tolerance import SMALLEST_TOLERANCE
 
 RULE_ERROR = 1e-3
-STEP_RULE = {
-    "jacobi:order=1,schedule=bodies_first": 0.033,
-    "jacobi:order=2,schedule=bodies_first": 0.127,
-    "gauss_seidel:order=1": 0.032,
-    "gauss_seidel:order=2": 0.124,
-    "predict": 0.159,
-    "fixed_point:degree=3,sweeps=2": 0.465,
-    "fixed_point:degree=3,sweeps=3": 0.929,
-    "li:degree=2,iterations=1": 0.824,
-    "li:degree=3,iterations=1": 1.516,
-    "li:degree=4,iterations=1": 2.161,
-}
-"""H w at a relative error of 0.1 %."""
+"""Relative error at `Algorithm.accurate_step`."""
 CHARTED_MICRO_STEP = 2.5e-6
 """Micro step of the gear in the charts [s]: its default."""
 CONTACT_ERROR = 4.4e-8
@@ -51,7 +40,7 @@ SOURCE = (
 
 @dataclass(frozen=True)
 class Recommendation:
-    """Algorithm and step.
+    """Algorithm and step for a tolerance.
 
     Attributes:
         algorithm: what it is called on the command line.
@@ -61,6 +50,7 @@ class Recommendation:
         bounded_by: "accuracy" if a larger step errs more than the tolerance, "stability" if it
             comes too near to the limit, "micro steps" if the tolerance is below the floor, for
             which the step is chosen then.
+        passes: calls of doStep of each part in a macro step.
         source: where the rule comes from.
     """
 
@@ -69,7 +59,31 @@ class Recommendation:
     expected_error: float
     separation_error: float
     bounded_by: str
+    passes: int = 1
     source: str = SOURCE
+
+    @property
+    def passes_per_ms(self) -> float:
+        """Calls of doStep of each part per simulated millisecond [1/ms]."""
+        return 1e-3 * self.passes / self.step
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Algorithms for a tolerance.
+
+    Attributes:
+        ranked: by calls of doStep per simulated time, the fewest first.
+        unranked: why the others are not ranked, by algorithm.
+    """
+
+    ranked: tuple[Recommendation, ...] = ()
+    unranked: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def best(self) -> Recommendation | None:
+        """The recommended one; None if none is ranked."""
+        return self.ranked[0] if self.ranked else None
 
 
 def contact_floor(micro_step: float) -> float:
@@ -84,34 +98,33 @@ def separation_floor(micro_step: float) -> float:
     return max(error, contact_floor(micro_step))
 
 
-def recommend(
+def rank(
     limits: Sequence[tuple[Algorithm, float]],
     frequency: float,
     tolerance: float,
     micro_step: float = CHARTED_MICRO_STEP,
-) -> Recommendation | None:
-    """The algorithm with the fewest doStep calls per simulated time at a tolerance.
+) -> Ranking:
+    """Algorithms by doStep calls per simulated time at a tolerance; every one is ranked or named.
 
     Args:
         limits: algorithms and their stability limits [s].
         frequency: highest of all bonds together [rad/s].
         tolerance: relative error.
         micro_step: of the gear [s].
-
-    Returns:
-        None if there is no rule for any of the algorithms, or no bond.
     """
-    best: tuple[float, Recommendation] | None = None
+    ranked: list[Recommendation] = []
+    unranked: dict[str, str] = {}
     for algorithm, limit in limits:
-        rule = STEP_RULE.get(str(algorithm))
-        if rule is None or frequency <= 0.0:
-            continue
-        found = _for_algorithm(algorithm, rule / frequency, MARGIN * limit, tolerance, micro_step)
-        passes = max(1, getattr(algorithm, "sweeps", 1), 1 + getattr(algorithm, "iterations", 0))
-        value = found.step / passes
-        if best is None or value > best[0]:
-            best = value, found
-    return best[1] if best else None
+        rule = algorithm.accurate_step
+        if rule is None:
+            unranked[str(algorithm)] = "no step at which it errs 0.1 % is known"
+        elif frequency <= 0.0:
+            unranked[str(algorithm)] = "the system has no bond whose frequency gives the step"
+        else:
+            at_rule, stable = rule / frequency, MARGIN * limit
+            ranked.append(_for_algorithm(algorithm, at_rule, stable, tolerance, micro_step))
+    ranked.sort(key=lambda found: found.passes_per_ms)
+    return Ranking(tuple(ranked), unranked)
 
 
 def _for_algorithm(
@@ -142,4 +155,5 @@ def _for_algorithm(
         error,
         max(error, separation_floor(micro)),
         "stability" if step == stable else reached,
+        algorithm.passes,
     )

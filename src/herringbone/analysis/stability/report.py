@@ -10,6 +10,7 @@ from typing import Any
 from herringbone.analysis.stability.bonds import Bond
 from herringbone.analysis.stability.limits import Stability, StepLimits
 from herringbone.analysis.stability.linear_parts import MeshStiffness
+from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.simulated_limit import HIGHEST, LOWEST
 from herringbone.analysis.stability.step_scan import LARGEST_STEP
 from herringbone.core import HerringboneError
@@ -113,17 +114,40 @@ def stability_text(found: Stability) -> str:
     if found.bonds:
         lines += ["", *_bond_lines(found.bonds)]
         lines.append(f"all bonds together: {found.highest_frequency / (2.0 * math.pi):.0f} Hz")
-    chosen = found.recommended
-    if chosen:
-        lines += [
-            "",
-            f"recommended for {100.0 * found.tolerance:g} %: "
-            f"--algorithm {chosen.algorithm.removesuffix(_SCHEDULE)} --step {chosen.step:.3g}",
-            f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
-            f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
-            *wrap(f"rule: {chosen.source}", _WIDTH),
-        ]
+    if found.ranking.best:
+        lines += ["", *_recommended(found.ranking, found.tolerance)]
     return "\n".join([*lines, *(line for n in found.notes for line in wrap(f"note: {n}", _WIDTH))])
+
+
+def _recommended(ranking: Ranking, tolerance: float) -> list[str]:
+    """The best algorithm and step, and a line for each that is ranked."""
+    chosen = ranking.ranked[0]
+    rows: list[tuple[str, ...]] = [("ranked", "step", "doStep calls"), ("", "[us]", "[1/ms]")]
+    for found in ranking.ranked:
+        name = found.algorithm.removesuffix(_SCHEDULE)
+        rows.append((name, _us(found.step), f"{found.passes_per_ms:.3g}"))
+    return [
+        f"recommended for {100.0 * tolerance:g} %: "
+        f"--algorithm {chosen.algorithm.removesuffix(_SCHEDULE)} --step {chosen.step:.3g}",
+        f"expected error {100.0 * chosen.expected_error:.2g} %, bounded by "
+        f"{chosen.bounded_by}; {100.0 * chosen.separation_error:.2g} % where teeth separate",
+        *wrap(f"rule: {chosen.source}", _WIDTH),
+        "",
+        *_table(rows),
+    ]
+
+
+def _entry(found: Recommendation) -> dict[str, Any]:
+    """Plain values of an algorithm that is ranked."""
+    return {
+        "algorithm": found.algorithm,
+        "step": found.step,
+        "expected_error": found.expected_error,
+        "separation_error": found.separation_error,
+        "bounded_by": found.bounded_by,
+        "passes_per_ms": found.passes_per_ms,
+        "source": found.source,
+    }
 
 
 def _number(value: float) -> float | None:
@@ -132,7 +156,7 @@ def _number(value: float) -> float | None:
 
 def stability_summary(found: Stability) -> dict[str, Any]:
     """Plain values, for JSON: steps in s, frequencies in Hz; None where no limit was found."""
-    chosen = found.recommended
+    ranked = [_entry(recommendation) for recommendation in found.ranking.ranked]
     return {
         "system": found.system,
         "scene": found.scene,
@@ -162,15 +186,9 @@ def stability_summary(found: Stability) -> dict[str, Any]:
             for bond in found.bonds
         ],
         "all_bonds_frequency": found.highest_frequency / (2.0 * math.pi),
-        "recommended": chosen
-        and {
-            "algorithm": chosen.algorithm,
-            "step": chosen.step,
-            "expected_error": chosen.expected_error,
-            "separation_error": chosen.separation_error,
-            "bounded_by": chosen.bounded_by,
-            "source": chosen.source,
-        },
+        "recommended": ranked[0] if ranked else None,
+        "ranking": ranked,
+        "unranked": dict(found.ranking.unranked),
         "notes": list(found.notes),
     }
 

@@ -22,12 +22,14 @@ __all__ = [
     "GaussSeidel",
     "Jacobi",
     "Predict",
+    "adapts",
     "choose_algorithm",
     "parse_algorithm",
     "refuse_adaptive",
     "with_tolerance",
 ]
 
+_TOLERANCE = "tolerance"
 ALGORITHMS: dict[str, type[Algorithm]] = {
     a.name: a for a in (Jacobi, GaussSeidel, Predict, FixedPoint, LI)
 }
@@ -70,15 +72,22 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
     Raises:
         ParameterError: it cannot, or has another tolerance already, or this one is out of range.
     """
-    if not isinstance(algorithm, LI):
+    if not adapts(type(algorithm)):
+        able = " and ".join(name for name, kind in ALGORITHMS.items() if adapts(kind))
         raise ParameterError(
-            f"tolerance = {tolerance:g}: {algorithm} keeps its step; only li adapts it, which "
+            f"tolerance = {tolerance:g}: {algorithm} keeps its step; only {able} adapts it, which "
             "takes parts that save and restore their state"
         )
-    if algorithm.adaptive and algorithm.tolerance != tolerance:
+    if algorithm.adaptive and getattr(algorithm, _TOLERANCE) != tolerance:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
-    check_tolerance(tolerance, "li: tolerance={:g};", "; leave it out for a fixed step")
-    return replace(algorithm, tolerance=tolerance)
+    said = f"{algorithm.name}: tolerance={{:g}};"
+    check_tolerance(tolerance, said, "; leave it out for a fixed step")
+    return replace(algorithm, **{_TOLERANCE: tolerance})  # type: ignore[type-var]
+
+
+def adapts(kind: type[Algorithm]) -> bool:
+    """True if an algorithm can adapt its step: `tolerance` is one of its options."""
+    return any(f.name == _TOLERANCE for f in fields(kind))  # type: ignore[arg-type]
 
 
 def refuse_adaptive(algorithms: Iterable[Algorithm], what: str) -> None:

@@ -67,15 +67,25 @@ class PreparedAdaptive(PreparedNodes):
     Args:
         network: parts and connections.
         degree: p.
+        full_order: convergence order with nodes at all parts.
         corrections: how many at least.
         most: how many at most.
         tolerance: relative error that is asked for.
     """
 
     def __init__(
-        self, network: Network, degree: int, corrections: int, most: int, tolerance: float
+        self,
+        network: Network,
+        degree: int,
+        full_order: int,
+        *,
+        corrections: int,
+        most: int,
+        tolerance: float,
     ) -> None:
-        super().__init__(network, degree, newton=True, corrections=corrections, most=most)
+        super().__init__(
+            network, degree, full_order, newton=True, corrections=corrections, most=most
+        )
         self.tolerance = tolerance
         self._sensitivities: dict[int, np.ndarray] = {}
         self._adaptive: Adaptive | None = None

@@ -2,11 +2,15 @@
 
 A new algorithm is one file in this folder: a frozen dataclass of its options that derives from
 `Algorithm`, and, if stages do not suffice, a compiled loop of its own beside that of
-`loops.stages`. Add it to `ALGORITHMS` in `__init__.py`; command line and documentation follow.
+`loops.stages`. Add it to `ALGORITHMS` in `__init__.py`; command line, documentation and
+`tests/conformance` follow.
+The tests hold it to what it declares: order, passes, rollback, slow bodies, an adaptive step.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import field, fields
+from itertools import product
 from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
@@ -20,9 +24,17 @@ from herringbone.cosim.recording import StepStatistics
 from herringbone.cosim.structure.network import Network
 
 
-def option(default: float | str, allowed: str) -> Any:  # noqa: ANN401 (as dataclasses.field)
-    """A field of an algorithm: its default, and in words which values it may have."""
-    return field(default=default, metadata={"allowed": allowed})
+def option(default: float | str, allowed: str = "", choices: Sequence[int | str] = ()) -> Any:  # noqa: ANN401 (as dataclasses.field)
+    """A field of an algorithm.
+
+    Args:
+        default: value.
+        allowed: in words, which values it may have; the choices, if not given.
+        choices: all values that it may have, if they are few; others are refused.
+    """
+    *most, last = map(str, choices or ("",))
+    listed = f"{', '.join(most)} or {last}" if most else last
+    return field(default=default, metadata={"allowed": allowed or listed, "choices": choices})
 
 
 class Algorithm(ABC):
@@ -37,6 +49,12 @@ class Algorithm(ABC):
     name: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
     default_step: ClassVar[float] = 1e-5
+
+    def __post_init__(self) -> None:
+        for f in fields(self):  # type: ignore[arg-type]
+            choices = f.metadata["choices"]
+            if choices and getattr(self, f.name) not in choices:
+                self.refuse(f.name)
 
     @property
     @abstractmethod
@@ -58,9 +76,30 @@ class Algorithm(ABC):
         return False
 
     @property
+    def passes(self) -> int:
+        """Calls of doStep of each part in a macro step, unless more corrections are wanted."""
+        return 1
+
+    @property
+    def accurate_step(self) -> float | None:
+        """Step at which it errs 0.1 %, times the highest frequency of all bonds together.
+
+        As measured on the test rig, see `analysis.stability.recommendation`; None if that is not
+        known: the algorithm is not recommended then.
+        """
+        return None
+
+    @property
     def start_step(self) -> float:
         """Communication step size [s] if none is given; the largest one if it is adaptive."""
         return self.default_step
+
+    @classmethod
+    def variants(cls) -> tuple[Self, ...]:
+        """What there is to examine: all choices of the options, other options at their defaults."""
+        choices = {f.name: f.metadata["choices"] for f in fields(cls)}  # type: ignore[arg-type]
+        chosen = {name: values for name, values in choices.items() if values}
+        return tuple(cls(**dict(zip(chosen, v, strict=True))) for v in product(*chosen.values()))
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
@@ -95,6 +134,7 @@ class PreparedRun(ABC):
         notes: downgrades, and what they cost.
         problem: why the coupling cannot go on, if it cannot.
         culprit: `instance.variable` that is to blame for it, if one is.
+        full_order: convergence order with signal nodes at all parts.
         nodes: of an iterated algorithm.
         predicts: elements are evaluated before the bodies step.
     """
@@ -103,6 +143,7 @@ class PreparedRun(ABC):
     degree: tuple[int, ...]
     notes: tuple[str, ...]
     problem: str
+    full_order: int
     culprit: str = ""
     nodes: NodeLayout | None = None
     predicts: bool = False
@@ -115,11 +156,6 @@ class PreparedRun(ABC):
     def input_degree(self, part: int) -> int:
         """Degree of the polynomials that a part takes: its nodes, or its FMI derivatives."""
         return max(self.degree[part], int(self.layout.derivatives.order[part]))
-
-    @property
-    @abstractmethod
-    def full_order(self) -> int:
-        """Convergence order with signal nodes at all parts."""
 
     @abstractmethod
     def kept_order(self, part: int) -> int:

@@ -36,13 +36,11 @@ class GaussSeidel(Algorithm):
         ParameterError: the order is out of its range.
     """
 
-    order: int = option(2, "1 or 2 (held positions against newer ones are never stable)")
+    order: int = option(
+        2, "1 or 2 (held positions against newer ones are never stable)", choices=(1, 2)
+    )
 
     name: ClassVar[str] = "gauss_seidel"
-
-    def __post_init__(self) -> None:
-        if self.order not in (1, 2):
-            self.refuse("order")
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
@@ -53,6 +51,11 @@ class GaussSeidel(Algorithm):
     def convergence_order(self) -> int:
         """Order + 1: both halves of the exchange are polynomials of degree `order`."""
         return self.order + 1
+
+    @property
+    def accurate_step(self) -> float:
+        """Measured, as in the base."""
+        return {1: 0.032, 2: 0.124}[self.order]
 
     def prepare(self, network: Network) -> Prepared:
         """Stages: sources; then each body, after the elements that its predecessors load.
@@ -75,6 +78,6 @@ class GaussSeidel(Algorithm):
             stages.append([body])
             done.add(body)
         stages += [[element] for element in waiting]
-        prepared = prepare_stages(network, stages, self.order)
+        prepared = prepare_stages(network, stages, self.order, self.convergence_order)
         starter = Jacobi(self.order).prepare(network).layout
         return replace(prepared, starter=starter._replace(derivatives=prepared.layout.derivatives))

@@ -56,15 +56,23 @@ class PreparedNodes(PreparedRun):
     Args:
         network: parts and connections.
         degree: p.
+        full_order: convergence order with nodes at all parts.
         newton: correct with a frozen Jacobian; else plain fixed point.
         corrections: how many at least.
         most: how many at most.
     """
 
     def __init__(
-        self, network: Network, degree: int, *, newton: bool, corrections: int, most: int
+        self,
+        network: Network,
+        degree: int,
+        full_order: int,
+        *,
+        newton: bool,
+        corrections: int,
+        most: int,
     ) -> None:
-        self.network, self.newton = network, newton
+        self.network, self.full_order, self.newton = network, full_order, newton
         self.corrections, self.most = corrections, most
         degrees, notes = node_degrees(network, degree)
         self.degree, self._downgrades = tuple(degrees), tuple(notes)
@@ -124,12 +132,6 @@ class PreparedNodes(PreparedRun):
     def inner_outputs(self) -> bool:
         """At the nodes."""
         return self.nodes.degree > 1
-
-    @property
-    def full_order(self) -> int:
-        """That of the Newton-Cotes rules on the same nodes."""
-        degree = self.nodes.degree
-        return degree + 2 - degree % 2
 
     def kept_order(self, part: int) -> int:
         """What input derivatives up to an order q, and cubic or quadratic outputs leave.

@@ -35,18 +35,12 @@ class Jacobi(Algorithm):
         ParameterError: an option is out of its range.
     """
 
-    order: int = option(2, "0, 1 or 2")
+    order: int = option(2, choices=(0, 1, 2))
     schedule: Literal["bodies_first", "parallel"] = option(
-        "bodies_first", "bodies_first or parallel"
+        "bodies_first", choices=("bodies_first", "parallel")
     )
 
     name: ClassVar[str] = "jacobi"
-
-    def __post_init__(self) -> None:
-        if self.order not in (0, 1, 2):
-            self.refuse("order")
-        if self.schedule not in ("bodies_first", "parallel"):
-            self.refuse("schedule")
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
@@ -59,6 +53,11 @@ class Jacobi(Algorithm):
         return self.order + 1 if self.schedule == "bodies_first" else 1
 
     @property
+    def accurate_step(self) -> float | None:
+        """Orders 1 and 2; order 0 errs more than 0.1 % at every step of the charts."""
+        return {1: 0.033, 2: 0.127}.get(self.order) if self.schedule == "bodies_first" else None
+
+    @property
     def multirate(self) -> bool:
         """If elements are stepped after the bodies."""
         return self.schedule == "bodies_first"
@@ -67,6 +66,9 @@ class Jacobi(Algorithm):
         """Stages: sources; bodies; elements one after another."""
         if self.schedule == "parallel":
             everything = tuple(range(len(network.parts)))
-            return prepare_stages(network, [everything], self.order, parallel=True)
+            return prepare_stages(
+                network, [everything], self.order, self.convergence_order, parallel=True
+            )
         stages = [network.sources, network.bodies, *([e] for e in network.elements)]
-        return prepare_stages(network, [s for s in stages if s], self.order)
+        used = [s for s in stages if s]
+        return prepare_stages(network, used, self.order, self.convergence_order)

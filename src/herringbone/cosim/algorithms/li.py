@@ -45,7 +45,7 @@ class LI(Algorithm):
         ParameterError: an option is out of its range.
     """
 
-    degree: int = option(3, "1, 2, 3 or 4")
+    degree: int = option(3, choices=tuple(_ORDERS))
     iterations: int = option(1, f"1 to {_MOST}")
     tolerance: float = option(0.0, f"between {SMALLEST_TOLERANCE:g} and 1, or 0 for a fixed step")
 
@@ -55,8 +55,7 @@ class LI(Algorithm):
     default_largest_step: ClassVar[float] = 2e-4
 
     def __post_init__(self) -> None:
-        if self.degree not in _ORDERS:
-            self.refuse("degree")
+        super().__post_init__()
         if not 1 <= self.iterations <= _MOST:
             self.refuse("iterations")
         if self.tolerance != 0.0:
@@ -72,6 +71,17 @@ class LI(Algorithm):
         return self.tolerance > 0.0
 
     @property
+    def passes(self) -> int:
+        """The prediction's, and one for each correction."""
+        return 1 + self.iterations
+
+    @property
+    def accurate_step(self) -> float | None:
+        """Measured for one correction with a fixed step."""
+        known = {2: 0.824, 3: 1.516, 4: 2.161}
+        return known.get(self.degree) if self.iterations == 1 and not self.adaptive else None
+
+    @property
     def multirate(self) -> bool:
         """With a fixed step."""
         return not self.adaptive
@@ -80,6 +90,11 @@ class LI(Algorithm):
     def start_step(self) -> float:
         """Macro step [s] if none is given; the largest one if it is adaptive."""
         return self.default_largest_step if self.adaptive else self.default_step
+
+    @classmethod
+    def variants(cls) -> tuple[Self, ...]:
+        """All degrees, two corrections, and an adaptive step."""
+        return (*super().variants(), cls(iterations=2), cls(tolerance=1e-3))
 
     @classmethod
     def charted(cls) -> tuple[Self, ...]:
@@ -96,7 +111,19 @@ class LI(Algorithm):
         check_rollback(self.name, network)
         if self.adaptive:
             check_sources(str(self), network)
-            return PreparedAdaptive(network, self.degree, self.iterations, _MOST, self.tolerance)
+            return PreparedAdaptive(
+                network,
+                self.degree,
+                self.convergence_order,
+                corrections=self.iterations,
+                most=_MOST,
+                tolerance=self.tolerance,
+            )
         return PreparedNodes(
-            network, self.degree, newton=True, corrections=self.iterations, most=_MOST
+            network,
+            self.degree,
+            self.convergence_order,
+            newton=True,
+            corrections=self.iterations,
+            most=_MOST,
         )

@@ -49,6 +49,11 @@ class Predict(Algorithm):
         """2, because the predicted velocity is of first order in the acceleration."""
         return 2
 
+    @property
+    def accurate_step(self) -> float:
+        """Measured, as in the base."""
+        return 0.159
+
     def prepare(self, network: Network) -> "PreparedPrediction":
         """Lay out a network for this algorithm.
 
@@ -62,7 +67,7 @@ class Predict(Algorithm):
                 raise ParameterError(
                     f"predict: {part.name} takes no signal nodes; use jacobi or gauss_seidel"
                 )
-        return PreparedPrediction(network)
+        return PreparedPrediction(network, self.convergence_order)
 
 
 class PreparedPrediction(PreparedRun):
@@ -70,10 +75,11 @@ class PreparedPrediction(PreparedRun):
 
     predicts = True
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, full_order: int) -> None:
+        self.full_order = full_order
         sources, bodies, elements = network.sources, network.bodies, network.elements
         stages = [s for s in (sources, bodies) if s] + [(e,) for e in elements]
-        staged = prepare_stages(network, stages, 2)
+        staged = prepare_stages(network, stages, 2, full_order)
         degree = [NODES if p in elements else d for p, d in enumerate(staged.degree)]
         moved = connected_outputs(network)
         extra = [
@@ -116,11 +122,6 @@ class PreparedPrediction(PreparedRun):
             np.zeros((NODES + 1, len(place))),
             np.zeros(max(1, int(np.diff(node_first).max()))),
         )
-
-    @property
-    def full_order(self) -> int:
-        """As of the algorithm."""
-        return Predict().convergence_order
 
     def kept_order(self, part: int) -> int:
         """All of it, even by a held mean: the predicted velocity errs as much."""

@@ -24,6 +24,7 @@ class Prepared(PreparedRun):
         layout: parts, signals and stages.
         degree: interface degree that each part is to be set to.
         order: degree of extrapolation.
+        full_order: convergence order with signal nodes at all parts.
         notes: downgrades, and what they cost.
         starter: layout for the first `order` macro steps, if the scheme needs history.
     """
@@ -31,14 +32,10 @@ class Prepared(PreparedRun):
     layout: Layout
     degree: tuple[int, ...]
     order: int
+    full_order: int
     notes: tuple[str, ...]
     starter: Layout | None = None
     problem: str = ""
-
-    @property
-    def full_order(self) -> int:
-        """That of the polynomial, plus 1."""
-        return self.order + 1
 
     def kept_order(self, part: int) -> int:
         """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
@@ -77,11 +74,23 @@ def refuse_mixed(network: Network, algorithm: str) -> None:
 
 
 def prepare_stages(
-    network: Network, stages: Sequence[Sequence[int]], order: int, *, parallel: bool = False
+    network: Network,
+    stages: Sequence[Sequence[int]],
+    order: int,
+    full_order: int,
+    *,
+    parallel: bool = False,
 ) -> Prepared:
     """Lay out a network for stages, with as many nodes as the order asks and the parts have.
 
     Parts without nodes take FMI derivatives if they declare them; else they hold their inputs.
+
+    Args:
+        network: parts and connections.
+        stages: parts that step together.
+        order: degree of extrapolation.
+        full_order: convergence order with nodes at all parts.
+        parallel: elements step together with the bodies.
     """
     degree: list[int] = []
     derivatives = [0] * len(network.parts)
@@ -104,4 +113,4 @@ def prepare_stages(
         degree.append(wanted)
     laid_out = lay_out_derivatives(network, order, derivatives)
     layout = build_layout(network, stages, degree, parallel, derivatives=laid_out)
-    return Prepared(layout, tuple(degree), order, tuple(notes))
+    return Prepared(layout, tuple(degree), order, full_order, tuple(notes))
