@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.c_fmu import compiled_fmu
 from support.housing import seat_points
-from support_c_fmu import compiled_fmu
 
 import herringbone as hb
 from herringbone.commands import main as cli

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from support_c_fmu import compiled_fmu
+from support.c_fmu import compiled_fmu
 
 SOURCE = Path(__file__).parents[1] / "fmus" / "hostile.c"
 STEP, LATE_STEP, TERMINATE, FREE = 1, 2, 3, 4
