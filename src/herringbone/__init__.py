@@ -22,6 +22,7 @@ _WHERE = {
     "HerringboneError": "herringbone.core",
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result.result",
+    "Role": "herringbone.core.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "radiated_power": "herringbone.analysis.figures.radiated_power",

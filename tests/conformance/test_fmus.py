@@ -17,7 +17,7 @@ WITH_TEXTS = [name for name in NAMES if COMPONENTS[name].declaration.texts]
 @pytest.mark.parametrize("name", NAMES)
 def test_golden_result(name, fmus):
     rows = golden.golden_run(COMPONENTS[name], fmus[name])
-    file = golden.golden_file(name)
+    file = golden.golden_file(COMPONENTS[name])
     assert file.read_text().partition("\n")[0].split(",") == golden.columns(COMPONENTS[name])
     wanted = np.loadtxt(file, delimiter=",", skiprows=1)
     assert np.abs(wanted).max() > 0.0
@@ -243,7 +243,7 @@ def other_resources(name, folder):
     if name == "modal_housing":
         return {"modes": "thesis_modes.csv", "shapes": "thesis_shapes.csv"}
     source = COMPONENTS[name].declaration.texts[0].start
-    text = (golden.golden_file(name).parent / "resources" / source).read_text()
+    text = (golden.golden_file(COMPONENTS[name]).parent / "resources" / source).read_text()
     lines = text.splitlines()
     changed = lines[-1].rsplit(",", 1)
     lines[-1] = f"{changed[0]},{float(changed[1]) * 1.0000001!r}"
@@ -267,7 +267,7 @@ def test_all_components_twice_in_one_process_are_not_confused(started):
     results = [run(host, name) for host, name in zip(hosts, NAMES * 2, strict=True)]
     row, count = STEPS // golden.STEPS_PER_ROW, len(NAMES)
     for name, first, second in zip(NAMES, results[:count], results[count:], strict=True):
-        wanted = np.loadtxt(golden.golden_file(name), delimiter=",", skiprows=1)
+        wanted = np.loadtxt(golden.golden_file(COMPONENTS[name]), delimiter=",", skiprows=1)
         assert first == second
         scale = np.abs(wanted[:, 1:]).max(axis=0)
         assert (np.abs(np.array(first) - wanted[row, 1:]) <= 1e-9 * scale).all()

@@ -13,12 +13,12 @@ from support.exchange import ExchangeHost
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.modal_data import read_mode_table
 from herringbone.core import HerringboneError, Instance
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.fmi.host import open_host
 from herringbone.fmi.native import build_native_fmus
 
 HOUSING = "modal_housing"
-RESOURCES = resources_folder(HOUSING)
+RESOURCES = component_folder(HOUSING) / "resources"
 COUNT = read_mode_table(RESOURCES / "modes.csv")[1].size
 OTHER_DATA = {"modes": "thesis_modes.csv", "shapes": "thesis_shapes.csv"}
 OTHER_COUNT = read_mode_table(RESOURCES / "thesis_modes.csv")[1].size

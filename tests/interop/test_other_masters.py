@@ -20,7 +20,7 @@ from fmpy.ssp.ssd import read_ssd
 
 from herringbone.benchmarks.other_masters import environment
 from herringbone.core import ParameterError
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.ssp.write import PARAMETER_SET
@@ -172,6 +172,6 @@ def test_fmpy_reads_the_structure(exported):
 
 def test_resource_outside_the_fmus_is_refused(tmp_path):
     cycle = tmp_path / "mine.csv"
-    shutil.copyfile(resources_folder("bench_controller") / "loaded.csv", cycle)
+    shutil.copyfile(component_folder("bench_controller") / "resources" / "loaded.csv", cycle)
     with pytest.raises(ParameterError, match="must not depend on files outside it"):
         export_ssp("test_rig", tmp_path / "x.ssp", values={"bench_controller.cycle": str(cycle)})

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.finite_elements import require_gmsh
 
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.housing import default_housing
 
 require_gmsh()
@@ -55,7 +55,7 @@ def test_dimensions_are_those_of_the_file():
 def test_thesis_modes_are_made_from_the_data(tmp_path):
     default_data.write_thesis_modes(HOUSING, tmp_path)
     for name in ("thesis_modes.csv", "thesis_shapes.csv"):
-        committed = resources_folder("modal_housing") / name
+        committed = component_folder("modal_housing") / "resources" / name
         assert (tmp_path / name).read_bytes() == committed.read_bytes()
 
 

@@ -9,7 +9,7 @@ import pytest
 from compile_c import COMPILER, HERE, VALGRIND, compile_c, execute
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler")
 
@@ -30,7 +30,7 @@ def arguments(fmu: Path, name: str, folder: Path) -> list[str | Path]:
         archive.extract(library, folder)
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))
     states = str(len(root.findall("ModelStructure/Derivatives/Unknown")))
-    shutil.copytree(resources_folder(name), folder / "resources")
+    shutil.copytree(component_folder(name) / "resources", folder / "resources")
     return [folder / library, root.attrib["guid"], states, folder / "resources"]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import HerringboneError, Instance, ResourceError
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.fmi.host import Host
 
 FILES = [(c.name, t.name, t.start) for c in COMPONENTS.values() for t in c.declaration.texts]
@@ -44,7 +44,7 @@ def mutate(lines: list[str], chance: random.Random) -> str:
 def files_of(component: str, text: str, file: Path) -> dict[str, str]:
     """Absolute names of all resource files, one of them replaced."""
     texts = COMPONENTS[component].declaration.texts
-    files = {t.name: str(resources_folder(component) / t.start) for t in texts}
+    files = {t.name: str(component_folder(component) / "resources" / t.start) for t in texts}
     return files | {text: str(file)}
 
 
@@ -87,7 +87,7 @@ def test_same_refusals(
     native_refusal: Callable[[str, str, Path], str],
     tmp_path: Path,
 ) -> None:
-    lines = (resources_folder(component) / start).read_text().splitlines()
+    lines = (component_folder(component) / "resources" / start).read_text().splitlines()
     chance = random.Random(4)
     refused = 0
     for n in range(CASES):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from herringbone.analysis.anatomy import anatomy
 from herringbone.components.ports import HALVES
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Outcome, OutcomeKind
@@ -101,6 +102,7 @@ def make_result(
         "passes": {part.name: time.size - 1 for part in structure.parts},
         "rollbacks": 0,
         "wall_s": 0.5,
+        "anatomy": anatomy(structure),
         "parameters": {"gear_mesh.pinion.number_of_teeth": 27.0},
         "resources": {"modal_housing.modes": "modes.csv", "modal_housing.shapes": "shapes.csv"},
     } | info

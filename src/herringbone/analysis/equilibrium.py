@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import EquilibriumError
 from herringbone.cosim.structure.system import System
 
@@ -143,7 +142,7 @@ def _line_search(residual, x: np.ndarray, r: np.ndarray, step: np.ndarray, rows:
 
 
 def _start_values(twin: Twin, x: np.ndarray) -> dict[str, float]:
-    """States, and the forces under which a modal housing starts at rest."""
+    """States, and the inputs under which parts with hidden states start at rest."""
     twin.observe(np.zeros(1), x[:, None], [])
     values = {}
     for p, instance in enumerate(twin.instances):
@@ -151,9 +150,9 @@ def _start_values(twin: Twin, x: np.ndarray) -> dict[str, float]:
         first = twin.layout.state_first[p]
         for i, v in enumerate(declaration.states):
             values[f"{instance.name}.{v.name}"] = float(x[first + i])
-        if instance.component is MODAL_HOUSING:
-            offset = twin.layout.block_first[p]
-            for v in declaration.inputs:
-                force = float(twin.block[offset + declaration.index[v.name]])
-                values[f"{instance.name}.start.{v.name}"] = force
+        offset = twin.layout.block_first[p]
+        for v in declaration.parameters:
+            if v.at_rest:
+                held = float(twin.block[offset + declaration.index[v.at_rest]])
+                values[f"{instance.name}.{v.name}"] = held
     return values

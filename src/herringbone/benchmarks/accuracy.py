@@ -14,8 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
+from herringbone.core.anatomy import Anatomy
+from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.result.result import TIME, Result
@@ -76,26 +79,33 @@ def measure(repeats: int = 7) -> Accuracy:
     scene = replace(load_scene(folder, "loaded"), t_end=T_END, record_step=RECORD_STEP)
     with tempfile.TemporaryDirectory() as scratch:
         box = export_fmu(_SYSTEM, Path(scratch) / f"{_BOX}.fmu", scene=scene)
-        coupled, coupled_error = _cheapest_coupled(scene)
+        coupled, coupled_error = _cheapest_coupled(scene, _micro_step(anatomy(system)))
         twin, twin_error, micro_step = _cheapest_twin(started(system, scene)[0], box)
         pairs = [(coupled(), twin()) for _ in range(repeats)]
     seconds = [statistics.median(r.info.wall_s for r in runs) for runs in zip(*pairs, strict=True)]
     a = pairs[0][0]
+    (gear,) = a.parts_with(Role.GEAR_PAIR)
     return Accuracy(
         Run(f"{a.info.algorithm} at {1e6 * a.info.communication_step:.4g} us, "
-            f"gear at {1e6 * a.info.micro_steps['gear_mesh']:.4g} us", coupled_error, seconds[0]),
+            f"gear at {1e6 * a.info.micro_steps[gear]:.4g} us", coupled_error, seconds[0]),
         Run(f"twin, Runge-Kutta at {1e6 * micro_step:.4g} us", twin_error, seconds[1]),
     )  # fmt: skip
 
 
-def _cheapest_coupled(scene: Scene) -> tuple[Callable[[], Result], float]:
+def _micro_step(parts: Anatomy) -> str:
+    """`instance.variable` of the gear pair's micro step."""
+    (gear,) = parts.with_role(Role.GEAR_PAIR)
+    return str(parts.column(gear, Quantity.MICRO_STEP))
+
+
+def _cheapest_coupled(scene: Scene, parameter: str) -> tuple[Callable[[], Result], float]:
     found = []
     for algorithm, step, micro_step in _COUPLED:
         options = {
             "scene": scene,
             "algorithm": algorithm,
             "step": step,
-            "values": {"gear_mesh.micro_step": micro_step},
+            "values": {parameter: micro_step},
             "fmu": "native",
         }
         result = run(_SYSTEM, **options, reference=True)

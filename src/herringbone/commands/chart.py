@@ -19,6 +19,7 @@ from herringbone.analysis.accuracy.step_ladder import (
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
@@ -96,10 +97,10 @@ def _internals(twin: Twin) -> tuple[int, float]:
     modes, micro_steps = 0, []
     for instance in twin.instances:
         declaration = instance.component.declaration
-        if instance.component.name == "modal_housing":
-            modes += int(instance.block[declaration.first_table])  # the tables begin with it
-        if "micro_step" in declaration.index:
-            micro_steps.append(float(instance.block[declaration.index["micro_step"]]))
+        if Role.HOUSING in declaration.roles:
+            counts = {declaration.first_table + v.length for v in declaration.vectors if v.text}
+            modes += sum(int(instance.block[count]) for count in counts)
+        micro_steps += [instance[v.name] for v in declaration.offered(Quantity.MICRO_STEP)]
     return modes, min(micro_steps, default=0.0)
 
 

@@ -35,7 +35,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     """
     from herringbone.analysis.stability import limits as analysis  # noqa: PLC0415
     from herringbone.analysis.stability import report  # noqa: PLC0415
-    from herringbone.analysis.stability.atlas import atlas  # noqa: PLC0415
+    from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.running import api, start  # noqa: PLC0415 (numba: only when something runs)
@@ -75,6 +75,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             progress=show,
         )
         panels = atlas(structure, progress=show) if options.atlas else ()
+        if options.atlas:
+            found = replace(found, notes=(*found.notes, *unscaled(structure)))
     files = report.write_stability(found, output) if output else []
     if output and panels:
         from herringbone.plotting.stability_atlas import write_atlas  # noqa: PLC0415

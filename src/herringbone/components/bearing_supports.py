@@ -27,13 +27,13 @@ import math
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
+from herringbone.components.ports import HALVES, journals, seats
 from herringbone.core import Component, Declaration, Kernels, Variable, input_, output, parameter
+from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.elementary import cosine, sine
 from herringbone.kernels.jit import kernel
 
-_GEARS = ("pinion", "wheel")
 _RADIAL_STIFFNESS = 6.34e8
 _AXIAL_STIFFNESS = {"pinion": 0.0, "wheel": 2.03e8}
 _HALF_MASS = {"pinion": 6.500, "wheel": 47.739}
@@ -75,17 +75,41 @@ def _ports(half: str) -> list[Variable]:
 def _parameters(gear: str) -> list[Variable]:
     mass, axial = _HALF_MASS[gear], _AXIAL_STIFFNESS[gear]
     return [
-        parameter(f"{gear}.radial_stiffness", "N/m", "per half", _RADIAL_STIFFNESS, minimum=0),
+        parameter(
+            f"{gear}.radial_stiffness",
+            "N/m",
+            "per half",
+            _RADIAL_STIFFNESS,
+            minimum=0,
+            quantity=Quantity.STIFFNESS,
+            place=gear,
+        ),
         parameter(
             f"{gear}.radial_damping",
             "N.s/m",
             "per half",
             _damping(_RADIAL_STIFFNESS, mass),
             minimum=0,
+            quantity=Quantity.DAMPING,
+            place=gear,
         ),
-        parameter(f"{gear}.axial_stiffness", "N/m", "see axial_per_shaft", axial, minimum=0),
         parameter(
-            f"{gear}.axial_damping", "N.s/m", "as axial_stiffness", _damping(axial, mass), minimum=0
+            f"{gear}.axial_stiffness",
+            "N/m",
+            "see axial_per_shaft",
+            axial,
+            minimum=0,
+            quantity=Quantity.STIFFNESS,
+            place=gear,
+        ),
+        parameter(
+            f"{gear}.axial_damping",
+            "N.s/m",
+            "as axial_stiffness",
+            _damping(axial, mass),
+            minimum=0,
+            quantity=Quantity.DAMPING,
+            place=gear,
         ),
         parameter(f"{gear}.radial_clearance", "m", "diametral clearance", 0.0, minimum=0),
     ]
@@ -98,7 +122,7 @@ _d = Declaration(
     "Massless bearings of the four gear halves, between line of action and housing frame",
     [
         *(v for half in HALVES for v in _ports(half)),
-        *(v for gear in _GEARS for v in _parameters(gear)),
+        *(v for gear in GEARS for v in _parameters(gear)),
         parameter(
             "axial_per_shaft",
             "1",
@@ -117,6 +141,8 @@ _d = Declaration(
         ),
     ],
     work=steppers.element_work(_INPUTS),
+    roles=[Role.BEARING],
+    ports=[*journals("shaft."), *seats("seat.")],
 )
 
 _SHAFT = tuple(
@@ -133,7 +159,7 @@ _SEAT_F_X, _SEAT_F_Y, _SEAT_F_Z = (
     _d.indices(*(f"seat.{h}.{q}" for h in HALVES)) for q in ("f_x", "f_y", "f_z")
 )
 _K_R, _C_R, _K_A, _C_A, _CLEARANCE = (
-    _d.indices(*(f"{g}.{q}" for g in _GEARS))
+    _d.indices(*(f"{g}.{q}" for g in GEARS))
     for q in (
         "radial_stiffness",
         "radial_damping",

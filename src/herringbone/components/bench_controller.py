@@ -17,6 +17,7 @@ import numpy as np
 
 from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -35,10 +36,18 @@ _d = Declaration(
         parameter("gear_ratio", "1", "load torque per pinion torque", 3.0, minimum=1e-6),
         parameter("speed_factor", "1", "multiplies the cycle's speed", 1.0),
         parameter("torque_factor", "1", "multiplies the cycle's torque", 1.0),
-        parameter("load_ramp_time", "s", "torque rises from zero over this time", 0.0, minimum=0),
+        parameter(
+            "load_ramp_time",
+            "s",
+            "torque rises from zero over this time",
+            0.0,
+            minimum=0,
+            quantity=Quantity.LOAD_RAMP_TIME,
+        ),
     ],
     texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv", _COLUMNS)],
     tables=1 + 3 * ROWS,
+    roles=[Role.CONTROLLER],
 )
 
 _SPEED, _TORQUE = _d.indices("speed_setpoint", "torque_setpoint")

@@ -13,8 +13,9 @@ Source: K. J. Astrom and T. Hagglund, Advanced PID Control (2006), section 3.5 (
 
 import numpy as np
 
-from herringbone.components.ports import flange_body
+from herringbone.components.ports import flange, flange_body
 from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -28,19 +29,24 @@ _d = Declaration(
         state("speed_reference", "rad/s", "set point behind the ramp", nominal=100.0),
         *flange_body("flange"),
         input_("speed_setpoint", "rad/s", "speed set point"),
-        output("torque", "N.m", "air-gap torque"),
-        output("electrical_power", "W", "power from the supply, negative when braking"),
-        parameter("inertia", "kg.m2", "rotor inertia", 0.08, minimum=1e-9),
+        output("torque", "N.m", "air-gap torque", quantity=Quantity.TORQUE),
+        output("electrical_power", "W", "power from the supply, negative when braking",
+               quantity=Quantity.ELECTRICAL_POWER),
+        parameter("inertia", "kg.m2", "rotor inertia", 0.08, minimum=1e-9,
+                  quantity=Quantity.INERTIA),
         parameter("proportional_gain", "N.m.s/rad", "K_p", 30.0, minimum=1e-9),
         parameter("integral_gain", "N.m/rad", "K_i", 600.0, minimum=0),
         parameter("torque_limit", "N.m", "largest torque", 1000.0, minimum=0),
         parameter("maximum_acceleration", "rad/s2", "of the set point", 1e4, minimum=1e-6),
         parameter("ramp_time_constant", "s", "of the set point", 1e-3, minimum=1e-4),
         parameter("efficiency", "1", "electrical to mechanical", 0.93, minimum=0.01, maximum=1),
-        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
+                  quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(4, 2),
-)
+    roles=[Role.DRIVE],
+    ports=[flange("flange")],
+)  # fmt: skip
 
 _ANGLE, _SPEED, _INTEGRAL, _REFERENCE = _d.indices("angle", "speed", "integral", "speed_reference")
 _TAU, _SETPOINT, _PHI, _W, _A = _d.indices(

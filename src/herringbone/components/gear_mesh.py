@@ -62,11 +62,13 @@ import math
 
 import numpy as np
 
-from herringbone.components.gear_mesh_variables import GEARS, VARIABLES
-from herringbone.components.ports import HALVES
+from herringbone.components.frozen_mesh import freeze_mesh
+from herringbone.components.gear_mesh_variables import VARIABLES
+from herringbone.components.ports import HALVES, flange, journals
 from herringbone.components.resources import stiffness_table
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Kernels, Text
+from herringbone.core.roles import GEARS, Role
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
 from herringbone.kernels.jit import kernel
@@ -89,6 +91,8 @@ _d = Declaration(
     ],
     tables=2 * force_law.TABLE_SIZE + _STATES + _DERIVED,
     work=steppers.body_work(_STATES, _INPUTS),
+    roles=[Role.GEAR_PAIR],
+    ports=[*journals(), *(flange(gear, gear) for gear in GEARS)],
 )
 
 _i = _d.index
@@ -378,4 +382,5 @@ GEAR_MESH = Component(
     indicators=_indicators,
     indicator_count=4,
     longest_step=steppers.longest_step(_d, "micro_step"),
+    freeze=freeze_mesh,
 )

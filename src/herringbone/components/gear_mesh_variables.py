@@ -4,9 +4,9 @@ import math
 
 from herringbone.components.ports import HALVES, flange_body
 from herringbone.core import Variable, input_, local, output, parameter, state
+from herringbone.core.roles import GEARS, SIDES, Quantity
 from herringbone.core.units import RATES
 
-GEARS = ("pinion", "wheel")
 _MODULE, _PRESSURE_ANGLE, _HELIX_ANGLE = 3.5e-3, math.radians(20.0), math.radians(30.0)
 _PINION_TEETH, _WHEEL_TEETH = 27, 81
 _TRANSVERSE_ANGLE = math.atan(math.tan(_PRESSURE_ANGLE) / math.cos(_HELIX_ANGLE))
@@ -66,17 +66,13 @@ def _ports() -> list[Variable]:
     ports = []
     for half in HALVES:
         for axis in "yz":
-            force = f"{half}.f_{axis}"
+            force, s, v, a = (f"{half}.{q}_{axis}" for q in "fsva")
+            at = f"of {half} along {axis}"
             ports += [
                 input_(force, "N", f"force on {half} along {axis}"),
-                output(f"{half}.s_{axis}", "m", f"position of {half} along {axis}", nodes=True),
-                output(f"{half}.v_{axis}", "m/s", f"velocity of {half} along {axis}", nodes=True),
-                output(
-                    f"{half}.a_{axis}",
-                    "m/s2",
-                    f"acceleration of {half} along {axis}",
-                    feedthrough=(force,),
-                ),
+                output(s, "m", f"position {at}", nodes=True, rate=v),
+                output(v, "m/s", f"velocity {at}", nodes=True, rate=a),
+                output(a, "m/s2", f"acceleration {at}", feedthrough=(force,)),
             ]
     for gear in GEARS:
         ports += flange_body(gear)
@@ -86,12 +82,14 @@ def _ports() -> list[Variable]:
 def _results() -> list[Variable]:
     meshes = [
         v
-        for side in ("left", "right")
+        for side in SIDES
         for v in (
-            output(f"mesh_{side}.force", "N", f"normal force of the {side} mesh"),
-            output(f"mesh_{side}.deflection", "m", f"normal deflection of the {side} mesh"),
+            output(f"mesh_{side}.force", "N", f"normal force of the {side} mesh",
+                   quantity=Quantity.MESH_FORCE, place=side),
+            output(f"mesh_{side}.deflection", "m", f"normal deflection of the {side} mesh",
+                   quantity=Quantity.MESH_DEFLECTION, place=side),
         )
-    ]
+    ]  # fmt: skip
     return [
         *meshes,
         output("transmission_error", "m", "mean of the halves' rb1 theta_pinion - rb2 theta_wheel"),
@@ -105,7 +103,8 @@ def _gear_parameters(gear: str, teeth: int, base_radius: float) -> list[Variable
     c_y, c_z, c_t = _shaft_damping(gear)
     p = parameter
     return [
-        p(f"{gear}.number_of_teeth", "1", "number of teeth", teeth, minimum=1),
+        p(f"{gear}.number_of_teeth", "1", "number of teeth", teeth, minimum=1,
+          quantity=Quantity.NUMBER_OF_TEETH, place=gear),
         p(f"{gear}.base_radius", "m", "base radius", base_radius, minimum=1e-6),
         p(f"{gear}.mass", "kg", "mass of one half", _MASS[gear], minimum=1e-9),
         p(f"{gear}.inertia", "kg.m2", "inertia of one half", _INERTIA[gear], minimum=1e-12),
@@ -144,7 +143,8 @@ def _mesh_parameters() -> list[Variable]:
         p("pinion_axial_drag", "N.s/m", "axial drag of each pinion half against ground", 50.0,
           minimum=0),
         p("drag_torque", "N.m", "drag torque on the pinion", 0.0, minimum=0),
-        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4),
+        p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4,
+          quantity=Quantity.MICRO_STEP),
     ]  # fmt: skip
 
 

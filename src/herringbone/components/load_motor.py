@@ -13,8 +13,9 @@ Source: the closed-power-flow rig of the thesis, chapter 5; data are choices of 
 
 import numpy as np
 
-from herringbone.components.ports import flange_body
+from herringbone.components.ports import flange, flange_body
 from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -27,17 +28,22 @@ _d = Declaration(
         state("braking_torque", "N.m", "air-gap torque against rotation", nominal=100.0),
         *flange_body("flange"),
         input_("torque_setpoint", "N.m", "braking torque set point"),
-        output("torque", "N.m", "air-gap torque against rotation"),
-        output("recovered_power", "W", "power fed back to the supply"),
-        output("loss_power", "W", "generator and friction losses"),
-        parameter("inertia", "kg.m2", "rotor inertia", 2.0, minimum=1e-9),
+        output("torque", "N.m", "air-gap torque against rotation", quantity=Quantity.TORQUE),
+        output("recovered_power", "W", "power fed back to the supply",
+               quantity=Quantity.RECOVERED_POWER),
+        output("loss_power", "W", "generator and friction losses", quantity=Quantity.LOSS_POWER),
+        parameter("inertia", "kg.m2", "rotor inertia", 2.0, minimum=1e-9,
+                  quantity=Quantity.INERTIA),
         parameter("viscous_friction", "N.m.s/rad", "rotor friction", 0.0, minimum=0),
         parameter("torque_time_constant", "s", "of the torque control", 5e-3, minimum=1e-4),
         parameter("efficiency", "1", "mechanical to electrical", 0.93, minimum=0.01, maximum=1),
-        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
+                  quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(3, 2),
-)
+    roles=[Role.LOAD],
+    ports=[flange("flange")],
+)  # fmt: skip
 
 _ANGLE, _SPEED, _BRAKING = _d.indices("angle", "speed", "braking_torque")
 _TAU, _SETPOINT, _PHI, _W, _A = _d.indices(

@@ -30,7 +30,7 @@ import math
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
+from herringbone.components.ports import HALVES, seats
 from herringbone.components.resources import modal_data
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import (
@@ -44,6 +44,7 @@ from herringbone.core import (
     output,
     parameter,
 )
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import modal
 from herringbone.kernels.jit import kernel
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
@@ -64,12 +65,15 @@ _FORCES = tuple(f"{seat}.f_{axis}" for seat, axis in _DOFS)
 
 def _port(seat: str, axis: str) -> list[Variable]:
     at = f"of {seat} along {axis}"
+    force, s, v, a = (f"{seat}.{q}_{axis}" for q in "fsva")
     return [
-        input_(f"{seat}.f_{axis}", "N", f"force on the housing at {seat} along {axis}"),
-        output(f"{seat}.s_{axis}", "m", f"position {at}", nodes=True),
-        output(f"{seat}.v_{axis}", "m/s", f"velocity {at}", nodes=True),
-        output(f"{seat}.a_{axis}", "m/s2", f"acceleration {at}", feedthrough=_FORCES),
-        parameter(f"start.{seat}.f_{axis}", "N", "force under which the start is at rest", 0.0),
+        input_(force, "N", f"force on the housing at {seat} along {axis}"),
+        output(s, "m", f"position {at}", nodes=True, rate=v),
+        output(v, "m/s", f"velocity {at}", nodes=True, rate=a),
+        output(a, "m/s2", f"acceleration {at}", feedthrough=_FORCES),
+        parameter(
+            f"start.{force}", "N", "force under which the start is at rest", 0.0, at_rest=force
+        ),
     ]
 
 
@@ -94,12 +98,19 @@ _d = Declaration(
     "Gearbox housing as oscillators with shapes at the four bearing seats",
     [v for seat, axis in _DOFS for v in _port(seat, axis)],
     texts=[
-        Text("modes", "frequencies and damping, CSV", "modes.csv", modal_data.MODE_COLUMNS),
+        Text(
+            "modes",
+            "frequencies and damping, CSV",
+            "modes.csv",
+            modal_data.MODE_COLUMNS,
+            Quantity.MODES,
+        ),
         Text(
             "shapes",
             "mass-normalised shapes at the seats, CSV",
             "shapes.csv",
             modal_data.shape_columns(_DOFS),
+            Quantity.SHAPES,
         ),
     ],
     vectors=[
@@ -111,6 +122,8 @@ _d = Declaration(
     ],
     tables=_TABLE_SIZE,
     work=_WORK,
+    roles=[Role.HOUSING],
+    ports=seats(),
 )
 
 _START = _d.index[f"start.{_FORCES[0]}"]

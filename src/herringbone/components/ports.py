@@ -1,18 +1,40 @@
-"""Names that several components share: the four halves and the ports."""
+"""Ports that several components share."""
 
 from herringbone.core import Variable, input_, output
+from herringbone.core.roles import HALVES, Port, PortKind, Quantity
 
-HALVES = ("pinion_left", "pinion_right", "wheel_left", "wheel_right")
-"""The four gear half-bodies and their bearing seats, in the thesis' order 1 ... 4. Left is +z."""
+__all__ = ["HALVES", "flange", "flange_body", "journals", "seats"]
 
 
 def flange_body(port: str) -> tuple[Variable, ...]:
     """The rotational port of a body: it gives motion and takes torque."""
+    phi, w, a = (f"{port}.{q}" for q in ("phi", "w", "a"))
     return (
         input_(f"{port}.tau", "N.m", f"torque on the body at {port}"),
-        output(f"{port}.phi", "rad", f"angle of {port}, positive in driving direction", nodes=True),
-        output(f"{port}.w", "rad/s", f"angular velocity of {port}", nodes=True),
+        output(phi, "rad", f"angle of {port}, positive in driving direction", nodes=True, rate=w),
         output(
-            f"{port}.a", "rad/s2", f"angular acceleration of {port}", feedthrough=(f"{port}.tau",)
+            w,
+            "rad/s",
+            f"angular velocity of {port}",
+            nodes=True,
+            rate=a,
+            quantity=Quantity.SPEED,
+            place=port,
         ),
+        output(a, "rad/s2", f"angular acceleration of {port}", feedthrough=(f"{port}.tau",)),
     )
+
+
+def flange(name: str, place: str = "") -> Port:
+    """The end of a shaft."""
+    return Port(name, PortKind.FLANGE, place)
+
+
+def journals(prefix: str = "") -> tuple[Port, ...]:
+    """The gear halves in their bearings."""
+    return tuple(Port(f"{prefix}{half}", PortKind.JOURNAL, half) for half in HALVES)
+
+
+def seats(prefix: str = "") -> tuple[Port, ...]:
+    """The bearings in the housing."""
+    return tuple(Port(f"{prefix}{half}", PortKind.SEAT, half) for half in HALVES)

@@ -1,28 +1,32 @@
-"""The components that exist, by name."""
+"""The components that exist, by name.
 
-from herringbone.components.bearing_supports import BEARING_SUPPORTS
-from herringbone.components.bench_controller import BENCH_CONTROLLER
-from herringbone.components.drive_motor import DRIVE_MOTOR
-from herringbone.components.gear_mesh import GEAR_MESH
-from herringbone.components.load_motor import LOAD_MOTOR
-from herringbone.components.modal_housing import MODAL_HOUSING
-from herringbone.components.shaft_coupling import SHAFT_COUPLING
-from herringbone.components.velocity_sensor import VELOCITY_SENSOR
+A new component is a module here and a line in this registry; what else belongs to it is generated:
+`python -m herringbone.fmi.generate NAME`.
+"""
+
+from importlib import import_module
+
 from herringbone.core import Component, StructureError
+from herringbone.core.roles import Role
 
-COMPONENTS: dict[str, Component] = {
-    component.name: component
-    for component in (
-        GEAR_MESH,
-        BEARING_SUPPORTS,
-        MODAL_HOUSING,
-        DRIVE_MOTOR,
-        LOAD_MOTOR,
-        SHAFT_COUPLING,
-        BENCH_CONTROLLER,
-        VELOCITY_SENSOR,
-    )
-}
+_MODULES = (
+    "gear_mesh",
+    "bearing_supports",
+    "modal_housing",
+    "drive_motor",
+    "load_motor",
+    "shaft_coupling",
+    "bench_controller",
+    "velocity_sensor",
+)
+"""Each defines the component of its name, in capitals. The first one of a role is the usual one."""
+
+
+def _defined(module: str) -> Component:
+    return getattr(import_module(f"{__package__}.{module}"), module.upper())
+
+
+COMPONENTS: dict[str, Component] = {c.name: c for c in map(_defined, _MODULES)}
 
 
 def component(name: str) -> Component:
@@ -36,3 +40,19 @@ def component(name: str) -> Component:
     except KeyError:
         known = ", ".join(COMPONENTS)
         raise StructureError(f"there is no component '{name}'; there are: {known}") from None
+
+
+def components_for(role: Role) -> tuple[Component, ...]:
+    """The components that have a role; the first one is what is taken if nothing else is said."""
+    return tuple(c for c in COMPONENTS.values() if role in c.declaration.roles)
+
+
+def component_for(role: Role) -> Component:
+    """The component that is taken for a role if nothing else is said.
+
+    Raises:
+        StructureError: no component has it.
+    """
+    for found in components_for(role):
+        return found
+    raise StructureError(f"no component is a {role}")

@@ -15,7 +15,9 @@ Source: Modelica.Mechanics.Rotational.Components.SpringDamper (names and signs).
 
 import numpy as np
 
+from herringbone.components.ports import flange
 from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -31,7 +33,13 @@ _d = Declaration(
         input_("flange_b.w", "rad/s", "angular velocity of flange b"),
         output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
         output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
-        output("torque", "N.m", "torque handed from a to b", feedthrough=_MOTION),
+        output(
+            "torque",
+            "N.m",
+            "torque handed from a to b",
+            feedthrough=_MOTION,
+            quantity=Quantity.TORQUE,
+        ),
         output("speed", "rad/s", "mean speed", feedthrough=("flange_a.w", "flange_b.w")),
         output("phi_rel", "rad", "twist", feedthrough=("flange_a.phi", "flange_b.phi")),
         output(
@@ -41,10 +49,26 @@ _d = Declaration(
             feedthrough=("flange_a.w", "flange_b.w"),
             steady="zero",
         ),
-        parameter("stiffness", "N.m/rad", "torsional stiffness", 6e4, minimum=0),
-        parameter("damping", "N.m.s/rad", "torsional damping", 5.0, minimum=0),
+        parameter(
+            "stiffness",
+            "N.m/rad",
+            "torsional stiffness",
+            6e4,
+            minimum=0,
+            quantity=Quantity.STIFFNESS,
+        ),
+        parameter(
+            "damping",
+            "N.m.s/rad",
+            "torsional damping",
+            5.0,
+            minimum=0,
+            quantity=Quantity.DAMPING,
+        ),
     ],
     work=steppers.element_work(len(_MOTION)),
+    roles=[Role.COUPLING],
+    ports=[flange("flange_a"), flange("flange_b")],
 )
 
 _PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)

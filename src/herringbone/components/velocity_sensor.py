@@ -42,13 +42,16 @@ from herringbone.core import (
     output,
     parameter,
 )
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
-from herringbone.kernels.sampling import sampler_stepper, sampler_work
-
-ANTI_ALIAS_ORDER = 8
-ANTI_ALIAS_CORNER = 0.4
-"""Corner frequency over sampling rate."""
+from herringbone.kernels.sampling import (
+    ANTI_ALIAS_CORNER,
+    ANTI_ALIAS_ORDER,
+    converted,
+    sampler_stepper,
+    sampler_work,
+)
 
 _DAMPING = (  # d of high pass, low pass and the sections of the anti-alias filter
     math.sqrt(2.0),
@@ -81,13 +84,15 @@ _d = Declaration(
         parameter("range", "m/s", "largest velocity, either sign", 0.05, minimum=1e-9),
         parameter("bits", "1", "of the converter over both signs, 0: no quantisation", 16.0,
                   minimum=0, maximum=32, whole=True),
-        parameter("micro_step", "s", "longest Runge-Kutta step", 2e-5, minimum=1e-9, maximum=1e-4),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 2e-5, minimum=1e-9, maximum=1e-4,
+                  quantity=Quantity.MICRO_STEP),
     ],
     vectors=[
         StateVector(name, "m/s", f"state {name} of the filters' sections", _SECTIONS)
         for name in ("x", "z")
     ],
     work=sampler_work(2 * _SECTIONS, 1),
+    roles=[Role.SENSOR],
 )  # fmt: skip
 
 _VELOCITY, _SAMPLED, _SATURATED, _FILTERED, _NEXT = _d.indices(
@@ -97,19 +102,6 @@ _HIGH_PASS, _LOW_PASS, _ANTI_ALIAS, _RATE, _FIRST, _RANGE, _BITS, _MICRO_STEP, _
     "high_pass_hz", "low_pass_hz", "anti_alias", "sampling_hz", "first_sample", "range", "bits",
     "micro_step", "interface_degree",
 )  # fmt: skip
-
-
-@kernel
-def converted(velocity: float, limit: float, bits: int) -> float:
-    """Velocity [m/s] behind a converter of `bits` over +-`limit` [m/s]; 0 bits: clipped only."""
-    clipped = max(-limit, min(velocity, limit))
-    if bits == 0:
-        return clipped
-    half = 0.5
-    for _ in range(bits):
-        half *= 2.0
-    digit = limit / half
-    return digit * min(math.floor(clipped / digit + 0.5), half - 1.0)
 
 
 @kernel

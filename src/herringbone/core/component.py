@@ -2,13 +2,17 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from herringbone.core.declaration import Declaration
+from herringbone.core.paths import component_folder
+
+if TYPE_CHECKING:
+    from herringbone.core.instance import Instance
 
 
 class Kernels(NamedTuple):
@@ -23,6 +27,9 @@ class Kernels(NamedTuple):
     step: Callable[[np.ndarray, np.ndarray, float, float], int]
     rhs: Callable[[np.ndarray, float, np.ndarray], None]
     out: Callable[[np.ndarray, float], None]
+
+
+Freeze = Callable[["Instance", Callable[[np.ndarray], float]], None]
 
 
 def _no_resources(block: np.ndarray, files: Mapping[str, Path]) -> None:
@@ -68,6 +75,12 @@ class Component:
         samples: its step also takes samples, which `rhs` and `out` do not show.
         longest_step: the longest macro step [s] that a block takes in one call, so that every call
             ends soon; a kernel, or `unbounded`.
+        freeze: replaces the laws of an instance that change with the phase of a mesh by straight
+            lines through the operating point. It is given what makes one stiffness [N/m] of those
+            of a mesh period (n,), and raises ParameterError if a mesh is open. None: no law needs
+            it, or none can.
+        folder: where script, README and golden result lie, and `resources`; that of its name if
+            not given.
     """
 
     declaration: Declaration
@@ -82,6 +95,18 @@ class Component:
     nominals: Callable[[np.ndarray], np.ndarray] | None = None
     samples: bool = False
     longest_step: Callable[[np.ndarray], float] = unbounded
+    freeze: Freeze | None = None
+    folder: Path = field(default=Path())
+
+    def __post_init__(self) -> None:
+        """Take the folder of the own name if none is given."""
+        if self.folder == Path():
+            object.__setattr__(self, "folder", component_folder(self.name))
+
+    @property
+    def resources(self) -> Path:
+        """Folder in which relative resource names are looked up."""
+        return self.folder / "resources"
 
     @property
     def name(self) -> str:

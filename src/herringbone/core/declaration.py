@@ -9,6 +9,7 @@ from functools import cached_property
 
 from herringbone.core.errors import ParameterError, StructureError
 from herringbone.core.names import check_name
+from herringbone.core.roles import Port, Quantity, Role
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality, StateVector, Text, Variable, parameter
 
@@ -31,12 +32,14 @@ class Declaration:
         vectors: states whose number follows from resource files, such as modal coordinates.
         tables: length of the table part of the block.
         work: length of the work space that the kernels need.
+        roles: what the component is for.
+        ports: where it is joined to others.
 
     A component with inputs also gets the tunable parameter `interface_degree` (0 to 4).
 
     Raises:
         StructureError: the component's name is no identifier, a variable's name stands twice, a
-            unit is unknown, or a feedthrough names no input.
+            unit is unknown, or a feedthrough, rate or port names nothing.
     """
 
     def __init__(
@@ -49,6 +52,8 @@ class Declaration:
         vectors: Iterable[StateVector] = (),
         tables: int = 0,
         work: int = 0,
+        roles: Iterable[Role] = (),
+        ports: Iterable[Port] = (),
     ) -> None:
         self.name = check_name(name, "component")
         self.description = description
@@ -56,6 +61,8 @@ class Declaration:
         self.vectors = tuple(vectors)
         self.tables = tables
         self.work = work
+        self.roles = tuple(roles)
+        self.ports = tuple(ports)
         self.variables = (
             *variables,
             parameter(
@@ -84,6 +91,18 @@ class Declaration:
             unknown = set(v.feedthrough) - inputs
             if unknown:
                 raise StructureError(f"{self.name}.{v.name}: feedthrough from unknown {unknown}")
+        self._check_relations(inputs)
+
+    def _check_relations(self, inputs: set[str]) -> None:
+        outputs = {v.name for v in self.outputs}
+        for v in self.variables:
+            if v.rate and not {v.name, v.rate} <= outputs:
+                raise StructureError(f"{self.name}.{v.name}: rate '{v.rate}' of no output")
+            if v.at_rest and v.at_rest not in inputs:
+                raise StructureError(f"{self.name}.{v.name}: at rest under unknown '{v.at_rest}'")
+        for port in self.ports:
+            if not any(name.startswith(f"{port.name}.") for name in inputs | outputs):
+                raise StructureError(f"{self.name}: port '{port.name}' has no variables")
 
     def _select(self, causality: Causality) -> tuple[Variable, ...]:
         return tuple(v for v in self.variables if v.causality is causality)
@@ -176,6 +195,14 @@ class Declaration:
     def indices(self, *names: str) -> tuple[int, ...]:
         """Indices of several variables, as constants for a kernel."""
         return tuple(self.index[name] for name in names)
+
+    def offered(self, quantity: Quantity, place: str | None = None) -> tuple[Variable, ...]:
+        """The variables that are a quantity, at a place or anywhere."""
+        return tuple(
+            v
+            for v in self.variables
+            if v.quantity is quantity and (place is None or v.place == place)
+        )
 
     def variable(self, name: str) -> Variable:
         """The variable of that name.

@@ -8,7 +8,6 @@ import numpy as np
 from herringbone.core.component import Component
 from herringbone.core.errors import ParameterError, ResourceError
 from herringbone.core.files import is_file
-from herringbone.core.paths import resources_folder
 from herringbone.core.units import quantity
 from herringbone.core.variable import NODES, Causality, Variable
 
@@ -28,7 +27,7 @@ class Instance:
         declaration = component.declaration
         self.component = component
         self.name = name
-        self.resources = resources or resources_folder(component.name)
+        self.resources = resources or component.resources
         self.memory = np.zeros(declaration.size + max(declaration.work, 1))
         self.block = self.memory[: declaration.size]
         self.work = self.memory[declaration.size :]

@@ -21,6 +21,8 @@ class PartVariable:
         dimension: factor, offset and base-unit exponents, for comparing units; None if unknown.
         dependencies: inputs on which an output depends directly; None if not declared.
         type: FMI type; arrays with their shape, such as "Float64[3]".
+        rate: output that is the time derivative of this output, "" if there is none; None if the
+            part does not declare it, see `cosim.structure.rates`.
     """
 
     name: str
@@ -30,6 +32,7 @@ class PartVariable:
     dimension: tuple | None = None
     dependencies: frozenset[str] | None = None
     type: str = "Real"
+    rate: str | None = None
 
     @property
     def is_real(self) -> bool:

@@ -28,11 +28,6 @@ def component_folder(component: str) -> Path:
     return _data("fmus") / component
 
 
-def resources_folder(component: str) -> Path:
-    """Folder in which a component's relative resource names are looked up."""
-    return component_folder(component) / "resources"
-
-
 def systems_folder() -> Path:
     """Folder of the system models that come with the package."""
     return _data("system_models")

@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from herringbone.core.roles import Quantity
+
 NODES = 4
 """Most nodes of a polynomial coupling signal inside a macro step, besides its value at c = 0."""
 
@@ -44,6 +46,9 @@ class Variable:
         minimum, maximum: range of a parameter, in `unit`.
         nominal: usual size of a state, in `unit`, by which integrators scale their tolerance.
         whole: a parameter that takes whole numbers only.
+        rate: the output that is the time derivative of this output, if there is one.
+        quantity, place: what it means to those who ask for the component's role, and where.
+        at_rest: of a parameter, the input whose value in steady rotation it takes at the start.
     """
 
     name: str
@@ -60,6 +65,10 @@ class Variable:
     maximum: float = math.inf
     nominal: float = 1.0
     whole: bool = False
+    rate: str = ""
+    quantity: Quantity | None = None
+    place: str = ""
+    at_rest: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,13 +127,16 @@ class Column:
 class Text:
     """A String parameter that names a resource file, a flat CSV of these columns.
 
-    A relative name is looked up in the component's resources folder.
+    A relative name is looked up in the component's resources folder. `quantity` is what the file
+    means to those who ask for the component's role.
     """
 
     name: str
     description: str
     start: str
     columns: tuple[Column, ...] = ()
+    quantity: Quantity | None = None
+    place: str = ""
 
 
 def input_(name: str, unit: str, description: str, start: float = 0.0) -> Variable:
@@ -142,6 +154,9 @@ def output(
     feedthrough: tuple[str, ...] = (),
     nodes: bool = False,
     steady: str = "",
+    rate: str = "",
+    quantity: Quantity | None = None,
+    place: str = "",
 ) -> Variable:
     """A continuous output."""
     return Variable(
@@ -153,6 +168,9 @@ def output(
         feedthrough=feedthrough,
         nodes=nodes,
         steady=steady,
+        rate=rate,
+        quantity=quantity,
+        place=place,
     )
 
 
@@ -196,6 +214,9 @@ def parameter(
     maximum: float = math.inf,
     tunable: bool = False,
     whole: bool = False,
+    quantity: Quantity | None = None,
+    place: str = "",
+    at_rest: str = "",
 ) -> Variable:
     """A parameter with the range in which the equations hold."""
     return Variable(
@@ -208,4 +229,7 @@ def parameter(
         minimum=minimum,
         maximum=maximum,
         whole=whole,
+        quantity=quantity,
+        place=place,
+        at_rest=at_rest,
     )

@@ -1,18 +1,19 @@
 """Golden results: a short run of each component's FMU.
 
-`python -m herringbone.fmi.golden` renews them. Every input is a sine of its own frequency and
+`python -m herringbone.fmi.generate` renews them. Every input is a sine of its own frequency and
 phase; the amplitude goes by the unit.
 """
 
 import math
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from herringbone.components.registry import COMPONENTS
+from herringbone.components.registry import component
 from herringbone.core import Component
-from herringbone.core.paths import component_folder
 from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.host import Host
 
@@ -24,9 +25,9 @@ _AMPLITUDES: Final = {
 }  # fmt: skip
 
 
-def golden_file(name: str) -> Path:
+def golden_file(component: Component) -> Path:
     """Where the golden result of a component lies."""
-    return component_folder(name) / "golden.csv"
+    return component.folder / "golden.csv"
 
 
 def columns(component: Component) -> list[str]:
@@ -60,14 +61,14 @@ def golden_run(component: Component, fmu: Path) -> np.ndarray:
     return np.array(rows)
 
 
-def write_golden() -> None:
-    """Write the golden results of all components into their folders."""
-    for name, fmu in build_python_fmus().items():
-        component = COMPONENTS[name]
-        header = ",".join(columns(component))
-        rows = golden_run(component, fmu)
-        np.savetxt(golden_file(name), rows, "%.13g", ",", header=header, comments="")
+def write_golden(names: Sequence[str]) -> None:
+    """Write the golden results of components into their folders."""
+    for name, fmu in build_python_fmus(names).items():
+        found = component(name)
+        header = ",".join(columns(found))
+        rows = golden_run(found, fmu)
+        np.savetxt(golden_file(found), rows, "%.13g", ",", header=header, comments="")
 
 
 if __name__ == "__main__":
-    write_golden()
+    write_golden(sys.argv[1:])

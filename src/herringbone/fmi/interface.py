@@ -22,7 +22,7 @@ def reals(declaration: Declaration) -> dict[int, Variable]:
             for node in range(1, NODES + 1):
                 name = node_name(variable.name, node)
                 text = f"{variable.description}; node {node} of the macro step"
-                variables[index[name]] = replace(variable, name=name, description=text)
+                variables[index[name]] = replace(variable, name=name, description=text, rate="")
     return dict(sorted(variables.items()))
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from herringbone.core.paths import component_folder, content_hash, resources_folder
+from herringbone.components.registry import component
+from herringbone.core.paths import content_hash
 from herringbone.fmi.archive import write_archive
 
 
@@ -25,8 +26,8 @@ def pack(name: str, folder: Path) -> Path:
     module = f"herringbone_{name}_{content_hash()}"
     with tempfile.TemporaryDirectory() as scratch:
         script = Path(scratch) / f"{module}.py"
-        shutil.copyfile(component_folder(name) / f"{name}.py", script)
-        resources = sorted(resources_folder(name).glob("*.csv"))
+        shutil.copyfile(component(name).folder / f"{name}.py", script)
+        resources = sorted(component(name).resources.glob("*.csv"))
         built = FmuBuilder.build_FMU(script, dest=scratch, project_files=resources)
         fmu = folder / f"{name}.fmu"
         _rewrite(built, fmu)

@@ -1,17 +1,15 @@
-"""README of each component's folder; `python -m herringbone.fmi.readme` writes them."""
+"""README of a component's folder; `python -m herringbone.fmi.generate` writes it."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
 
-from herringbone.components.registry import COMPONENTS
 from herringbone.core import Component, Declaration, Variable
-from herringbone.core.paths import component_folder, resources_folder
 from herringbone.core.variable import Variability
 
 Columns = Mapping[str, Callable[[Variable], str]]
 
 _INTRODUCTION = """\
-This file is made by `python -m herringbone.fmi.readme`; edit the component's module instead.
+This file is made by `python -m herringbone.fmi.generate`; edit the component's module instead.
 SI units throughout. Every input, and every output marked as polynomial, is a polynomial over the
 communication step when `interface_degree` is set: `X.node1` ... `X.node4` are its values inside
 the step. At degree 0, the start value, inputs are held.
@@ -48,7 +46,7 @@ def _depends(declaration: Declaration) -> Callable[[Variable], str]:
     return names
 
 
-def _sections(declaration: Declaration) -> Iterable[tuple[str, str]]:
+def _sections(declaration: Declaration, resources: str) -> Iterable[tuple[str, str]]:
     started: Columns = {**_NAMED, "start": _start, **_DESCRIBED}
     if declaration.states:
         yield "States", _table(declaration.states, started)
@@ -72,11 +70,11 @@ def _sections(declaration: Declaration) -> Iterable[tuple[str, str]]:
     texts = [f"| `{t.name}` | `{t.start}` | {t.description} |" for t in declaration.texts]
     if texts:
         head = ["| name | start | description |", "| --- | --- | --- |"]
-        yield "Resource files", "\n".join([*head, *texts]) + "\n\n" + _resources(declaration.name)
+        yield "Resource files", "\n".join([*head, *texts]) + "\n\n" + resources
 
 
-def _resources(name: str) -> str:
-    files = sorted(file.name for file in resources_folder(name).glob("*.csv"))
+def _resources(component: Component) -> str:
+    files = sorted(file.name for file in component.resources.glob("*.csv"))
     return (
         "A relative name is looked up in the FMU's resources folder, which holds "
         + ", ".join(f"`{file}`" for file in files)
@@ -89,18 +87,6 @@ def readme(component: Component) -> str:
     declaration = component.declaration
     parts = [f"# {component.name}", f"{declaration.description}.", _INTRODUCTION.strip()]
     parts += ["## Equations", component.equations.strip()]
-    for title, text in _sections(declaration):
+    for title, text in _sections(declaration, _resources(component)):
         parts += [f"## {title}", text]
     return "\n\n".join(parts) + "\n"
-
-
-def write_readmes() -> None:
-    """Write the READMEs of all components into their folders."""
-    for component in COMPONENTS.values():
-        (component_folder(component.name) / "README.md").write_text(
-            readme(component), encoding="utf-8"
-        )
-
-
-if __name__ == "__main__":
-    write_readmes()

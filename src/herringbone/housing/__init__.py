@@ -1,6 +1,7 @@
 """Housings, off line: modal models, their file format, how they are made, reduced and imported."""
 
-from herringbone.core.paths import resources_folder
+from herringbone.components.registry import component_for
+from herringbone.core.roles import Role
 from herringbone.housing.files.reader import read_housing
 from herringbone.housing.files.writer import write_housing
 from herringbone.housing.modal_model import SEAT_DOFS, Frame, ModalHousing, Point
@@ -17,8 +18,8 @@ __all__ = [
 
 
 def default_housing() -> ModalHousing:
-    """The housing that the component `modal_housing` has by default.
+    """The housing that the component with this role has by default.
 
     A welded housing calibrated to the published frequencies; its geometry is not published.
     """
-    return read_housing(resources_folder("modal_housing"))
+    return read_housing(component_for(Role.HOUSING).resources)

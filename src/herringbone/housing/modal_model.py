@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
+from herringbone.core.roles import HALVES
 
 AXES = ("x", "y", "z")
 SEAT_DOFS = tuple((seat, axis) for seat in HALVES for axis in AXES)

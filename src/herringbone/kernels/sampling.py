@@ -6,12 +6,28 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaration import Declaration
-from herringbone.kernels.jit import inner
+from herringbone.kernels.jit import inner, kernel
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
 from herringbone.kernels.steppers import MOST_MICRO_STEPS, TOO_LONG, body_work
 
+ANTI_ALIAS_ORDER = 8
+ANTI_ALIAS_CORNER = 0.4
+"""Corner frequency over sampling rate."""
 _EARLY = 1e-6
 """A sample this share of a period behind the end of a macro step still belongs to it."""
+
+
+@kernel
+def converted(velocity: float, limit: float, bits: int) -> float:
+    """Velocity [m/s] behind a converter of `bits` over +-`limit` [m/s]; 0 bits: clipped only."""
+    clipped = max(-limit, min(velocity, limit))
+    if bits == 0:
+        return clipped
+    half = 0.5
+    for _ in range(bits):
+        half *= 2.0
+    digit = limit / half
+    return digit * min(math.floor(clipped / digit + 0.5), half - 1.0)
 
 
 def sampler_work(state_count: int, input_count: int) -> int:

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from herringbone.analysis.figures.operating_point import by_half, instance, shaft_torques
+from herringbone.analysis.asked import by_half, column_of, shaft_torques
+from herringbone.core.roles import Quantity, Role
 from herringbone.plotting.columns import generic_overview
 from herringbone.plotting.panels import (
     close_up,
@@ -84,8 +85,8 @@ def _torque_and_speed(axes: Axes, result: Result) -> None:
     names = {f"{gear} torque": column for gear, column in shaft_torques(result).items()}
     time_panel(axes, result, names, "torque", unit="N m")
     legend(axes, 2)
-    speed = f"{instance(result, 'gear_mesh')}.pinion.w"
-    if speed not in result.data or result.outcome.unstable:
+    speed = column_of(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
+    if speed is None or result.outcome.unstable:
         return
     right = axes.twinx()
     time = result.data[TIME].to_numpy()

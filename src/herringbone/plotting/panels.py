@@ -8,11 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import SymmetricalLogLocator
 from matplotlib.transforms import blended_transform_factory
 
-from herringbone.analysis.figures.operating_point import (
-    mesh_forces,
-    run_mesh_frequency,
-    steady_part,
-)
+from herringbone.analysis.asked import mesh_forces
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.plotting.style import COLOURS, HALF_STYLE, MARKER_COLOUR, depths, draw_line
 from herringbone.result.result import TIME, Result

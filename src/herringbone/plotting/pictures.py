@@ -8,15 +8,12 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from herringbone.analysis.figures.operating_point import (
-    by_half,
-    instance,
-    run_mesh_frequency,
-    steady_part,
-)
+from herringbone.analysis.asked import by_half, column_of, shaft_side
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import (
     DECADES,
@@ -126,6 +123,22 @@ def spectra(result: Result) -> Figure:
     return figure
 
 
+def _shaft(result: Result, gear: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Columns of torques and of speeds at one shaft of the first gear pair, by legend entry."""
+    side, anatomy = shaft_side(result, gear), result.info.anatomy
+    speeds = {gear: column_of(result, Role.GEAR_PAIR, Quantity.SPEED, gear)}
+    torques = {}
+    if side.coupling:
+        torques[side.coupling] = anatomy.column(side.coupling, Quantity.TORQUE)
+    if side.rotor:
+        torques[side.rotor] = anatomy.column(side.rotor, Quantity.TORQUE)
+        speeds[side.rotor] = anatomy.column(side.rotor, Quantity.SPEED)
+    return tuple(
+        {name.replace("_", " "): c for name, c in found.items() if c in result.data}
+        for found in (torques, speeds)
+    )
+
+
 @styled
 def torques(result: Result) -> Figure:
     """Torques [N m] and speeds [r/min] on the pinion's and on the wheel's side.
@@ -133,18 +146,7 @@ def torques(result: Result) -> Figure:
     Raises:
         ParameterError: the system records no torque.
     """
-    mesh = instance(result, "gear_mesh")
-    sides = {}
-    for gear, coupling, motor in (
-        ("pinion", "drive_coupling", "drive_motor"),
-        ("wheel", "load_coupling", "load_motor"),
-    ):
-        torque = {coupling: f"{coupling}.torque", motor: f"{motor}.torque"}
-        speed = {gear: f"{mesh}.{gear}.w", motor: f"{motor}.flange.w"}
-        sides[gear] = [
-            {n.replace("_", " "): c for n, c in names.items() if c in result.data}
-            for names in (torque, speed)
-        ]
+    sides = {gear: _shaft(result, gear) for gear in GEARS}
     if not any(torque for torque, _ in sides.values()):
         raise ParameterError(f"system '{result.info.system}' records no torque")
     figure = new_figure(headline(result, "Torques and speeds"), 2, 2)

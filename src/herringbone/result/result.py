@@ -12,8 +12,10 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from herringbone.core import HerringboneError, Outcome, ParameterError
+from herringbone.core.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
 from herringbone.core.names import matches
+from herringbone.core.roles import Role
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +45,7 @@ class RunInfo:
         slow: bodies that step once in several macro steps, and in how many.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
+        anatomy: what the parts are for, and what is joined to what; not in the summary.
     """
 
     system: str
@@ -65,6 +68,7 @@ class RunInfo:
     slow: Mapping[str, int] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     resources: Mapping[str, str] = field(default_factory=dict)
+    anatomy: Anatomy = field(default_factory=Anatomy)
 
 
 @dataclass(frozen=True)
@@ -112,6 +116,10 @@ class Result:
             raise ParameterError(f"there is no channel group '{group}'; there are: {known}")
         return self.columns(*self.channels[group])
 
+    def parts_with(self, role: Role) -> tuple[str, ...]:
+        """Names of the parts that have a role, such as `Role.BEARING`."""
+        return self.info.anatomy.with_role(role)
+
     def uniform(self) -> "Result":
         """The result with equidistant records, as means and spectra take them.
 
@@ -157,8 +165,8 @@ class Result:
 
     def summary(self) -> dict[str, Any]:
         """The JSON summary of the run."""
-        info = asdict(self.info)
-        del info["parameters"], info["resources"]
+        info = asdict(replace(self.info, anatomy=Anatomy()))
+        del info["parameters"], info["resources"], info["anatomy"]
         for name in ("steps", "slow"):
             if not info[name]:
                 del info[name]

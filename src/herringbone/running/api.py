@@ -70,7 +70,7 @@ def run(
         tolerance: relative error (see `analysis.accuracy.error`) for which `li` adapts its step, as
             in "li:tolerance=1e-3".
         slow: heavy bodies that step once in several macro steps, and in how many, such as
-            {"drive_motor": 5, "load_motor": 5}; the others see their predicted motion.
+            {"motor": 5}; the others see their predicted motion.
         t_end: duration [s]; the scene's if not given.
         record_step: time between records [s]; the scene's if not given.
         start: "equilibrium", "ramp" or "rest"; the scene's if not given.

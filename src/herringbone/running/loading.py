@@ -5,12 +5,13 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from herringbone.components.in_process import InProcessPart
-from herringbone.components.modal_housing import MODAL_HOUSING
+from herringbone.analysis.anatomy import anatomy
+from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
 from herringbone.core.files import is_file
 from herringbone.core.part import Part
+from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import open_fmu
 from herringbone.cosim.ssp.format import is_ssp
@@ -88,7 +89,8 @@ def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[
     for instance, file in files.items():
         with _named(instance):
             require_file(Path(file))
-        if system.part(instance).component == MODAL_HOUSING.name:
+        system.part(instance)
+        if Role.HOUSING in anatomy(system).parts[instance].roles:
             notes += replacement_notes(Path(file))
         system = system.with_fmu(instance, Path(file))
     return system, notes
@@ -136,5 +138,11 @@ def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
         with _named(spec.name):
             return open_fmu(spec.name, spec.fmu)
     if str(spec.component) in files:
-        return open_fmu(spec.name, files[str(spec.component)])
+        part = open_fmu(spec.name, files[str(spec.component)])
+        declared = part_variables(str(spec.component))
+        part.variables = {
+            name: replace(v, rate=declared[name].rate) if name in declared else v
+            for name, v in part.variables.items()
+        }
+        return part
     return InProcessPart(Instance(component(str(spec.component)), spec.name))

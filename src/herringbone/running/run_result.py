@@ -7,8 +7,10 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
+from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid
@@ -38,7 +40,7 @@ def make_result(
     data = pd.DataFrame(
         np.column_stack([recording.time, recording.values]), columns=[TIME, *recording.names]
     )
-    parameters = _parameters(system)
+    parameters, known = _parameters(system), anatomy(system)
     info = RunInfo(
         system=system.name,
         scene=scene.name,
@@ -47,9 +49,9 @@ def make_result(
         communication_step=recording.step,
         record_step=recording.record_step,
         micro_steps={
-            name.removesuffix(".micro_step"): value
-            for name, value in parameters.items()
-            if name.endswith(".micro_step")
+            part: parameters[name]
+            for part in known.parts
+            if (name := known.column(part, Quantity.MICRO_STEP)) in parameters
         },
         algorithm=str(algorithm),
         fmu=fmu,
@@ -63,6 +65,7 @@ def make_result(
         slow=recording.slow,
         parameters=parameters,
         resources=_resources(system),
+        anatomy=known,
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
     return Result(data, units, recording.outcome, info, system.channels)

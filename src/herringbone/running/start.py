@@ -5,12 +5,12 @@ from dataclasses import replace
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
+from herringbone.core.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
 from herringbone.scenes import Scene, Start
 
 LOAD_RAMP_TIME = 0.02
 """Time over which the load rises in a gradual start [s]; the thesis discards its first 0.02 s."""
-_RAMP = "load_ramp_time"
 
 
 def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
@@ -49,11 +49,12 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
 
 def _ramps(system: System) -> Values:
     """Ramp times of all parts that have one and whose user gave none."""
-    found = {}
-    for part in system.parts:
-        if part.component and _RAMP in COMPONENTS[part.component].declaration.index:
-            found[f"{part.name}.{_RAMP}"] = part.values.get(_RAMP) or LOAD_RAMP_TIME
-    return found
+    return {
+        f"{part.name}.{ramp.name}": part.values.get(ramp.name) or LOAD_RAMP_TIME
+        for part in system.parts
+        if part.component
+        for ramp in COMPONENTS[part.component].declaration.offered(Quantity.LOAD_RAMP_TIME)
+    }
 
 
 def _equilibrium_values(system: System) -> Values:
@@ -65,7 +66,7 @@ def _equilibrium_values(system: System) -> Values:
         connections=tuple(
             pair
             for pair in system.connections
-            if not foreign & {path.partition(".")[0] for path in pair}
+            if not foreign & {system.split(path)[0] for path in pair}
         ),
     )
     return equilibrium(known).values
@@ -75,7 +76,7 @@ def _offsets(system: System, offsets: Values) -> Values:
     """Start values plus the scene's offsets."""
     found = {}
     for path, offset in offsets.items():
-        instance, _, variable = path.partition(".")
+        instance, variable = system.split(path)
         part = system.part(instance)
         start = part.values.get(variable)
         if start is None and part.component:

@@ -1,7 +1,7 @@
 """The summary of a run, for people to read.
 
-All figures are taken over the steady part of the run (see `analysis.figures.operating_point`);
-lines for which the system records nothing are left out.
+All figures are taken over the steady part of the run (see `analysis.figures.operating_point`). What
+the parts of the system cannot answer stands in lines of its own, with the reason.
 """
 
 import math
@@ -9,21 +9,18 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
+from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
 from herringbone.analysis.figures.channels import largest_lines, moments
 from herringbone.analysis.figures.operating_point import (
-    by_half,
-    group,
-    mesh_forces,
     power_balance,
     run_mesh_frequency,
-    shaft_torques,
-    signal,
     steady_part,
 )
 from herringbone.analysis.figures.radiated_power import LABEL, radiated_power
-from herringbone.components.ports import HALVES
+from herringbone.analysis.unanswered import unanswered
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import EnergyReport
+from herringbone.core.roles import Quantity, Role
 from herringbone.result.result import TIME, Result, RunInfo
 
 _R_MIN = 30.0 / math.pi
@@ -40,7 +37,7 @@ def summary_text(result: Result) -> str:
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
     sections = (
-        _operating_point, _power, _seats, _spectral_lines, _radiation, _signals, _errors,
+        _operating_point, _power, _seats, _spectral_lines, _radiation, _unknown, _signals, _errors,
     )  # fmt: skip
     if len(result.data) < 2 or result.outcome.unstable:
         lines += ["", "No figures: the run left nothing that can be evaluated."]
@@ -127,19 +124,31 @@ def _operating_point(result: Result) -> Iterator[str]:
     part = steady_part(result)
     steady = "" if part.steady else "; the speed is not steady there: no spectral lines"
     yield _line("Means taken over", f"{part.begin:.4g} to {part.end:.4g} s{steady}")
-    speed = signal(result, "gear_mesh", "pinion.w")
+    gears = result.parts_with(Role.GEAR_PAIR)
+    for gear in gears:
+        of = f"{gear}: " if len(gears) > 1 else ""
+        for label, text in _of_gear_pair(result, gear):
+            yield _line(label, of + text)
+
+
+def _of_gear_pair(result: Result, gear: str) -> Iterator[tuple[str, str]]:
+    """Speed, torques and mesh forces of a gear pair, with their labels."""
+    speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion", part=gear)
     if speed is not None:
-        frequency = run_mesh_frequency(result)
+        frequency = run_mesh_frequency(result, gear=gear)
         mesh = f", mesh frequency f_m {frequency:.1f} Hz" if frequency else ""
-        yield _line("Pinion speed", f"{speed[part.rows].mean() * _R_MIN:.1f} r/min{mesh}")
-    torques = {gear: moments(result, column).mean for gear, column in shaft_torques(result).items()}
+        mean = speed[steady_part(result).rows].mean()
+        yield "Pinion speed", f"{mean * _R_MIN:.1f} r/min{mesh}"
+    columns = shaft_torques(result, gear)
+    torques = {place: moments(result, column).mean for place, column in columns.items()}
     if torques:
-        yield _line("Torque", ", ".join(f"{gear} {t:.1f} N m" for gear, t in torques.items()))
-    forces = {side: moments(result, column).mean for side, column in mesh_forces(result).items()}
+        yield "Torque", ", ".join(f"{place} {t:.1f} N m" for place, t in torques.items())
+    columns = mesh_forces(result, gear)
+    forces = {side: moments(result, column).mean for side, column in columns.items()}
     total = sum(forces.values())
     if total:
         shares = [f"{side} {f:.0f} N ({100.0 * f / total:.1f} %)" for side, f in forces.items()]
-        yield _line("Mesh force, normal", ", ".join(shares))
+        yield "Mesh force, normal", ", ".join(shares)
 
 
 def _power(result: Result) -> Iterator[str]:
@@ -159,7 +168,7 @@ def _seats(result: Result) -> Iterator[str]:
     """Bearing forces (mean, rms of the AC part) and seat velocities (rms), one row per half."""
     forces = [by_half(result, "bearing_force", axis) for axis in "yz"]
     velocities = [by_half(result, "seat_velocity", axis) for axis in "xyz"]
-    halves = [half for half in HALVES if any(half in columns for columns in forces + velocities)]
+    halves = list(dict.fromkeys(half for columns in forces + velocities for half in columns))
     if not halves:
         return
     pad = " " * _LABEL
@@ -200,15 +209,27 @@ def _spectral_lines(result: Result) -> Iterator[str]:
 
 
 def _radiation(result: Result) -> Iterator[str]:
-    """Level of the radiated power, where the housing's data have a surface."""
-    try:
-        found = radiated_power(result)
-    except ParameterError:
-        return
-    highest = found.frequency_hz[found.power.argmax()]
-    yield _line("Radiated power", f"{found.level_db:.1f} dB re 1 pW up to "
-                f"{found.frequency_hz[-1]:.0f} Hz, most at {highest:.0f} Hz")  # fmt: skip
-    yield _line("", f"({LABEL})")
+    """Level of the radiated power, where a housing's data have a surface."""
+    housings = result.parts_with(Role.HOUSING)
+    levels = 0
+    for part in housings:
+        try:
+            found = radiated_power(result, part=part)
+        except ParameterError:
+            continue
+        levels += 1
+        of = f"{part}: " if len(housings) > 1 else ""
+        highest = found.frequency_hz[found.power.argmax()]
+        yield _line("Radiated power", f"{of}{found.level_db:.1f} dB re 1 pW up to "
+                    f"{found.frequency_hz[-1]:.0f} Hz, most at {highest:.0f} Hz")  # fmt: skip
+    if levels:
+        yield _line("", f"({LABEL})")
+
+
+def _unknown(result: Result) -> Iterator[str]:
+    """What the parts do not answer, with what lacks for the same reasons in one line."""
+    for why, what in unanswered(result).items():
+        yield _line("Not known", f"{', '.join(what)}: {why}")
 
 
 def _signals(result: Result) -> Iterator[str]:

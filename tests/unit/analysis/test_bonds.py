@@ -8,7 +8,7 @@ import pytest
 
 from herringbone.analysis.stability.bonds import bond_table, highest_frequency
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started
@@ -44,7 +44,7 @@ def rig():
 @pytest.fixture(scope="module")
 def seat_shapes():
     """Mass-normalised shapes [kg^-1/2] of the shipped housing along each bearing, (n, modes)."""
-    file = resources_folder("modal_housing") / "shapes.csv"
+    file = component_folder("modal_housing") / "resources" / "shapes.csv"
     lines = [line for line in file.read_text(encoding="utf-8").splitlines() if line[0] != "#"]
     shapes = {(row[0], row[1]): np.array(row[2:], dtype=float) for row in csv.reader(lines[1:])}
     return np.array(

@@ -10,7 +10,7 @@ from support.result import make_result
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, radiated_power
 from herringbone.core import Outcome, OutcomeKind, ParameterError
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.housing import SEAT_DOFS, ModalHousing, Point, default_housing, write_housing
 
 STEP = 1e-5
@@ -106,7 +106,7 @@ def test_data_of_a_run(tmp_path):
     assert housing_of(replace(result, info=info)).frequency_hz == [500.0]
     thesis = {f"modal_housing.{name}": f"thesis_{name}.csv" for name in ("modes", "shapes")}
     assert housing_of(replace(result, info=replace(result.info, resources=thesis))) is None
-    assert (resources_folder("modal_housing") / "thesis_modes.csv").is_file()
+    assert (component_folder("modal_housing") / "resources" / "thesis_modes.csv").is_file()
     assert housing_of(replace(result, info=replace(result.info, resources={}))) is None
 
 

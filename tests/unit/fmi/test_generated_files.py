@@ -5,7 +5,7 @@ import pytest
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.stiffness_table import read_stiffness_table
-from herringbone.core.paths import component_folder
+from herringbone.fmi.generate import script
 from herringbone.fmi.readme import readme
 from herringbone.gears.files.shipped_table import TABLE_FILE, shipped_stiffness
 from herringbone.gears.files.table_file import table_text
@@ -13,8 +13,14 @@ from herringbone.gears.files.table_file import table_text
 
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_readme(name):
-    committed = (component_folder(name) / "README.md").read_text(encoding="utf-8")
-    assert committed == readme(COMPONENTS[name]), "run python -m herringbone.fmi.readme"
+    committed = (COMPONENTS[name].folder / "README.md").read_text(encoding="utf-8")
+    assert committed == readme(COMPONENTS[name]), "run python -m herringbone.fmi.generate"
+
+
+@pytest.mark.parametrize("name", COMPONENTS)
+def test_script(name):
+    committed = (COMPONENTS[name].folder / f"{name}.py").read_text(encoding="utf-8")
+    assert committed == script(COMPONENTS[name]), "run python -m herringbone.fmi.generate"
 
 
 def test_stiffness_table():

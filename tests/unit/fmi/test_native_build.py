@@ -14,7 +14,7 @@ from fmpy.validation import validate_fmu
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.fmi import kind
 from herringbone.fmi.native import (
     PLATFORMS,
@@ -168,7 +168,7 @@ def test_both_fmi_versions_fit_into_one_folder(tmp_path):
 def test_resources_lie_in_the_file(native_fmus):
     for name, fmu in native_fmus.items():
         with zipfile.ZipFile(fmu) as archive:
-            for file in resources_folder(name).glob("*.csv"):
+            for file in (component_folder(name) / "resources").glob("*.csv"):
                 assert archive.read(f"resources/{file.name}") == file.read_bytes()
 
 

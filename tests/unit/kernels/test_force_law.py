@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.kernels import force_law
 
-SHIPPED = resources_folder("gear_mesh") / "mesh_stiffness.csv"
+SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
 
 
 def law(loads: np.ndarray, stiffness: np.ndarray, at: int = 7):

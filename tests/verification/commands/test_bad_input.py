@@ -14,7 +14,7 @@ import pytest
 from support.gear_mesh import write_table
 
 from herringbone.commands.main import main
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 
 KINDS = ("native", "python", "in-process")
 STRANGER = Path(__file__).parents[2] / "fmus" / "strange_housing.py"
@@ -100,7 +100,9 @@ def test_stiffness_table(refused, tmp_path, fmu, defect):
 
 @pytest.mark.parametrize("fmu", KINDS)
 def test_housing_without_a_seat(refused, tmp_path, fmu):
-    lines = (resources_folder("modal_housing") / "shapes.csv").read_text().splitlines()
+    lines = (
+        (component_folder("modal_housing") / "resources" / "shapes.csv").read_text().splitlines()
+    )
     file = tmp_path / "shapes.csv"
     file.write_text("\n".join(line for line in lines if "wheel_right" not in line) + "\n")
     line = refused("--set", f"modal_housing.shapes={file}", fmu=fmu)

@@ -29,9 +29,9 @@ from support.gear_mesh import (
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 
-SHIPPED = resources_folder("gear_mesh") / "mesh_stiffness.csv"
+SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
 INDEX = GEAR_MESH.declaration.index
 SPEED = 1000 * math.pi / 30
 FORCES = [f"{half}.f_{axis}" for half in HALVES for axis in "yz"]

@@ -9,11 +9,11 @@ from support.housing import read_modes
 from herringbone.components.modal_housing import MODAL_HOUSING, MODES, STEPS
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 
 DOFS = tuple((half, axis) for half in HALVES for axis in "xyz")
 FORCES = [f"{half}.f_{axis}" for half, axis in DOFS]
-RESOURCES = resources_folder("modal_housing")
+RESOURCES = component_folder("modal_housing") / "resources"
 FREQUENCY_HZ, DAMPING_RATIO, SHAPES = read_modes(
     RESOURCES / "modes.csv", RESOURCES / "shapes.csv", DOFS, MODES
 )

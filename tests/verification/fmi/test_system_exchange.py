@@ -11,7 +11,7 @@ from support.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.system_fmu import export_fmu
 
@@ -168,7 +168,7 @@ def test_directional_derivatives_are_the_differences(name, fmi, opened):
 
 def test_a_housing_of_other_data_is_built_for_these(tmp_path):
     """A system whose other parts stay outside makes an FMU of one part, with its data."""
-    folder = resources_folder("modal_housing")
+    folder = component_folder("modal_housing") / "resources"
     values = {
         f"modal_housing.{name}": str(folder / f"thesis_{name}.csv") for name in ("modes", "shapes")
     }

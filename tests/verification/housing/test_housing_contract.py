@@ -12,12 +12,12 @@ from herringbone.analysis.housing.contract import STEP, check_housing
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import Instance, ParameterError
-from herringbone.core.paths import resources_folder
+from herringbone.core.paths import component_folder
 from herringbone.cosim.loops.drive import drive
 from herringbone.housing import default_housing, write_housing
 from herringbone.housing.reduction.reduced_housing import reduce_housing
 
-RESOURCES = resources_folder("modal_housing")
+RESOURCES = component_folder("modal_housing") / "resources"
 
 
 def component(modes: Path, shapes: Path) -> InProcessPart:

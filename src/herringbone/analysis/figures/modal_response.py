@@ -5,39 +5,88 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.figures.operating_point import instance
 from herringbone.core import ParameterError
-from herringbone.core.paths import resources_folder
+from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 from herringbone.result.result import Result
 
 _SERIES = 1e-4
-_COMPONENT = "modal_housing"
 
 
-def housing_of(result: Result) -> ModalHousing | None:
-    """The modal data that a run used; None if they are not of a housing in the neutral format."""
-    name = instance(result, _COMPONENT)
-    files = [result.info.resources.get(f"{name}.{text}", "") for text in ("modes", "shapes")]
-    modes, shapes = (resources_folder(_COMPONENT) / file for file in files)
+def the_housing(result: Result, part: str = "") -> str:
+    """Name of the housing that is meant, the first one of a run if none is given.
+
+    Raises:
+        ParameterError: there is none.
+    """
+    housings = result.parts_with(Role.HOUSING)
+    if part and part not in housings:
+        raise ParameterError(f"'{part}' is not a {Role.HOUSING}; there are: {', '.join(housings)}")
+    if not housings:
+        raise ParameterError(f"system '{result.info.system}': no part is known as {Role.HOUSING}")
+    return part or housings[0]
+
+
+def housing_of(result: Result, part: str = "") -> ModalHousing | None:
+    """The modal data that a housing used; None if they are not in the neutral format.
+
+    Args:
+        result: of a run.
+        part: name of the housing; the first one if not given.
+
+    Raises:
+        ParameterError: there is no such housing.
+    """
+    name, anatomy = the_housing(result, part), result.info.anatomy
+    texts = [anatomy.column(name, quantity) for quantity in (Quantity.MODES, Quantity.SHAPES)]
+    files = [result.info.resources.get(text or "", "") for text in texts]
+    folder = anatomy.parts[name].resources
+    if folder is None or not all(files):
+        return None
+    modes, shapes = (folder / file for file in files)
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None
     return read_housing(Path(modes.parent))
 
 
-def seat_forces(result: Result) -> np.ndarray:
-    """Forces (n, 12) on the housing at its seats [N], in the order of `SEAT_DOFS`.
+def seat_forces(result: Result, part: str = "") -> np.ndarray:
+    """Forces (n, 12) on a housing at its seats [N], in the order of `SEAT_DOFS`.
+
+    Args:
+        result: of a run.
+        part: name of the housing; the first one if not given. In a system without housing the
+            bearings' forces on the ground are taken.
 
     Raises:
-        ParameterError: they are not recorded.
+        ParameterError: there is no such housing, no bearing at a seat, or its force is not
+            recorded.
     """
-    name = instance(result, "bearing_supports")
-    columns = [f"{name}.seat.{seat}.f_{axis}" for seat, axis in SEAT_DOFS]
+    ports = _ports_at_seats(result, part)
+    if missing := [seat for seat, _ in SEAT_DOFS if seat not in ports]:
+        raise ParameterError(
+            f"system '{result.info.system}' records no forces on the housing: no part is known as "
+            f"{Role.BEARING} at {missing[0]}"
+        )
+    columns = [f"{ports[seat]}.f_{axis}" for seat, axis in SEAT_DOFS]
     if missing := [column for column in columns if column not in result.data]:
         raise ParameterError(f"system '{result.info.system}' records no {missing[0]}")
     return result.data[columns].to_numpy()
+
+
+def _ports_at_seats(result: Result, part: str) -> dict[str, str]:
+    """`part.port` of the bearings by seat."""
+    anatomy = result.info.anatomy
+    if part or anatomy.with_role(Role.HOUSING):
+        name = the_housing(result, part)
+        joined = {p.place: anatomy.joined(name, p.kind, p.place) for p in anatomy.parts[name].ports}
+        return {seat: ".".join(ends[0]) for seat, ends in joined.items() if ends}
+    return {
+        port.place: f"{bearing}.{port.name}"
+        for bearing in reversed(anatomy.with_role(Role.BEARING))
+        for port in anatomy.ports(bearing, PortKind.SEAT)
+    }
 
 
 def modal_velocity(housing: ModalHousing, forces: np.ndarray, step: float) -> np.ndarray:

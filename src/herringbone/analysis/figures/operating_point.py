@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from herringbone.analysis.asked import shaft_torques, signal
 from herringbone.analysis.figures.spectra import mesh_frequency
-from herringbone.components.ports import HALVES
-from herringbone.components.registry import COMPONENTS
-from herringbone.core import ParameterError
+from herringbone.core.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
 
 SETTLING_SHARE = 0.2
@@ -18,37 +17,6 @@ SETTLING_SHARE = 0.2
 SPEED_BAND = 0.01
 """The steady part's speed stays within this share of its final value."""
 _SHORTEST_SHARE = 0.1
-_TEETH = "pinion.number_of_teeth"
-
-
-def instance(result: Result, component: str) -> str:
-    """Name of the first instance of a component; the component's own name if there is none."""
-    found = (name for name, model in result.info.model.items() if model == component)
-    return next(found, component)
-
-
-def signal(result: Result, component: str, variable: str) -> np.ndarray | None:
-    """Recorded output of the first instance of a component, SI unit; None if there is none."""
-    name = f"{instance(result, component)}.{variable}"
-    return result.data[name].to_numpy() if name in result.data else None
-
-
-def group(result: Result, name: str) -> list[str]:
-    """Columns of a channel group, empty if the system has none."""
-    try:
-        return result.channel(name)
-    except ParameterError:
-        return []
-
-
-def by_half(result: Result, channel: str, axis: str) -> dict[str, str]:
-    """Columns of a channel group along an axis, by gear half."""
-    found = {}
-    for column in group(result, channel):
-        *_, half, quantity = ("", *column.split("."))
-        if half in HALVES and quantity.endswith(f"_{axis}"):
-            found[half] = column
-    return found
 
 
 @dataclass(frozen=True)
@@ -80,7 +48,7 @@ def steady_part(result: Result) -> SteadyPart:
         begin = float(time[0]) if count else 0.0
         return SteadyPart(slice(0, count), begin, begin, 0.0, steady=False)
     first, steady = int(SETTLING_SHARE * count), not result.outcome.unstable
-    speed = signal(result, "gear_mesh", "pinion.w")
+    speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
     if speed is not None and steady:
         outside = np.flatnonzero(np.abs(speed - speed[-1]) > SPEED_BAND * abs(speed[-1]))
         settled = int(outside[-1]) + 1 if outside.size else 0
@@ -90,28 +58,36 @@ def steady_part(result: Result) -> SteadyPart:
     return SteadyPart(slice(first, count), float(time[first]), float(time[-1]), step, steady)
 
 
-def run_mesh_frequency(result: Result, number_of_teeth: float | None = None) -> float | None:
+def run_mesh_frequency(
+    result: Result, number_of_teeth: float | None = None, *, gear: str = ""
+) -> float | None:
     """Mesh frequency [Hz] at the mean speed of the steady part.
 
     Args:
         result: of a run.
         number_of_teeth: of the pinion; the run's own parameter if not given.
+        gear: name of the gear pair; the first one if not given.
 
     Returns:
-        None without gear mesh, when the speed is not steady, or when the steady part is shorter
-        than a mesh period (a gear at rest): no order could be told from its neighbours.
+        None without gear pair of known teeth, when the speed is not steady, or when the steady part
+        is shorter than a mesh period (a gear at rest): no order could be told from its neighbours.
     """
-    speed = signal(result, "gear_mesh", "pinion.w")
+    speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion", part=gear)
     part = steady_part(result)
     if speed is None or not part.steady:
         return None
     if number_of_teeth is None:
-        declared = COMPONENTS["gear_mesh"].declaration.variable(_TEETH).start
-        name = f"{instance(result, 'gear_mesh')}.{_TEETH}"
-        number_of_teeth = result.info.parameters.get(name, declared)
+        number_of_teeth = _teeth(result, gear or result.parts_with(Role.GEAR_PAIR)[0])
+        if number_of_teeth is None:
+            return None
     frequency = mesh_frequency(float(speed[part.rows].mean()), number_of_teeth)
     time = result.data[TIME].to_numpy()[part.rows]
     return frequency if frequency * (time[-1] - time[0]) >= 1.0 else None
+
+
+def _teeth(result: Result, gear: str) -> float | None:
+    name = result.info.anatomy.column(gear, Quantity.NUMBER_OF_TEETH, "pinion")
+    return result.info.parameters.get(name or "")
 
 
 @dataclass(frozen=True)
@@ -140,28 +116,15 @@ class PowerBalance:
         return self.drive_electrical - self.recovered
 
 
-def shaft_torques(result: Result) -> dict[str, str]:
-    """Columns of the coupling torques by gear: pinion (drive side) and wheel (load side)."""
-    columns = {"pinion": "drive_coupling.torque", "wheel": "load_coupling.torque"}
-    return {gear: column for gear, column in columns.items() if column in result.data}
-
-
-def mesh_forces(result: Result) -> dict[str, str]:
-    """Columns of the normal forces of the meshes by side: left and right."""
-    mesh = instance(result, "gear_mesh")
-    columns = {side: f"{mesh}.mesh_{side}.force" for side in ("left", "right")}
-    return {side: column for side, column in columns.items() if column in result.data}
-
-
 def power_balance(result: Result) -> PowerBalance | None:
     """Mean powers over the steady part; None without both motors and the pinion's transducer."""
     needed = [
-        signal(result, "drive_motor", "electrical_power"),
-        signal(result, "drive_motor", "torque"),
-        signal(result, "drive_motor", "flange.w"),
-        signal(result, "load_motor", "recovered_power"),
-        signal(result, "load_motor", "loss_power"),
-        signal(result, "gear_mesh", "pinion.w"),
+        signal(result, Role.DRIVE, Quantity.ELECTRICAL_POWER),
+        signal(result, Role.DRIVE, Quantity.TORQUE),
+        signal(result, Role.DRIVE, Quantity.SPEED),
+        signal(result, Role.LOAD, Quantity.RECOVERED_POWER),
+        signal(result, Role.LOAD, Quantity.LOSS_POWER),
+        signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion"),
     ]
     pinion = shaft_torques(result).get("pinion")
     if pinion is None or any(values is None for values in needed):

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
-from herringbone.analysis.figures.operating_point import steady_part
+from herringbone.analysis.figures.operating_point import SteadyPart, steady_part
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
 from herringbone.core import ParameterError
 from herringbone.housing import ModalHousing
@@ -67,34 +67,48 @@ def level_db(power: np.ndarray | float) -> np.ndarray:
         return 10.0 * np.log10(np.asarray(power) / REFERENCE_POWER)
 
 
-def radiated_power(result: Result, housing: ModalHousing | None = None) -> RadiatedPower:
-    """Estimate the sound power that a housing radiates under the bearing forces of a run.
+def power_inputs(
+    result: Result, housing: ModalHousing | None = None, *, part: str = ""
+) -> tuple[ModalHousing, np.ndarray, SteadyPart]:
+    """What the radiated power is computed of: modal data, forces (n, 12) [N], the steady part.
 
-    Args:
-        result: of a run that records the forces on the seats.
-        housing: modal data with a Gram matrix of the surface; what the run used if not given.
-
-    Raises:
-        ParameterError: no forces are recorded, the run diverged or is too short, or there is no
-            Gram matrix.
+    Args and errors: as of `radiated_power`; the result has equidistant records.
     """
-    result = result.uniform()
-    forces = seat_forces(result)
-    housing = housing or housing_of(result)
+    forces = seat_forces(result, part)
+    housing = housing or housing_of(result, part)
     if housing is None or housing.gram is None:
         raise ParameterError(
             "no Gram matrix of the surface: the radiated power takes modal data with "
             "surface_gram.csv, as `herringbone housing build` makes them"
         )
-    part = steady_part(result)
+    steady = steady_part(result)
     if result.outcome.unstable:
         raise ParameterError("the run diverged: no radiated power")
-    if part.end - part.begin < FEWEST_SAMPLES / housing.valid_to_hz:
-        raise ParameterError(f"{part.end - part.begin:g} s are too short for a radiated power")
-    velocity = modal_velocity(housing, forces, part.sample_step)[part.rows]
+    if steady.end - steady.begin < FEWEST_SAMPLES / housing.valid_to_hz:
+        raise ParameterError(f"{steady.end - steady.begin:g} s are too short for a radiated power")
+    return housing, forces, steady
+
+
+def radiated_power(
+    result: Result, housing: ModalHousing | None = None, *, part: str = ""
+) -> RadiatedPower:
+    """Estimate the sound power that a housing radiates under the bearing forces of a run.
+
+    Args:
+        result: of a run that records the forces on the seats.
+        housing: modal data with a Gram matrix of the surface; what the run used if not given.
+        part: name of the housing; the first one of the run if not given.
+
+    Raises:
+        ParameterError: there is no housing, no forces are recorded, the run diverged or is too
+            short, or there is no Gram matrix.
+    """
+    result = result.uniform()
+    housing, forces, steady = power_inputs(result, housing, part=part)
+    velocity = modal_velocity(housing, forces, steady.sample_step)[steady.rows]
     squares, directions = np.linalg.eigh(housing.gram)
     surface = velocity @ (directions * np.sqrt(np.maximum(squares, 0.0)))
-    spectrum = amplitude_spectrum(surface, part.sample_step)
+    spectrum = amplitude_spectrum(surface, steady.sample_step)
     power = 0.5 * AIR_DENSITY * SPEED_OF_SOUND * np.square(spectrum.amplitude).sum(axis=1)
     shown = spectrum.frequency <= housing.valid_to_hz
     return RadiatedPower(

@@ -15,19 +15,16 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
-from herringbone.components.velocity_sensor import (
-    ANTI_ALIAS_CORNER,
-    ANTI_ALIAS_ORDER,
-    VELOCITY_SENSOR,
-    converted,
-)
+from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
+from herringbone.core.roles import Role
+from herringbone.kernels.sampling import ANTI_ALIAS_CORNER, ANTI_ALIAS_ORDER, converted
 from herringbone.result.result import TIME, Result
 
 _FINEST = 5.0
 """Least input rate over sampling rate, and over twice the low pass."""
 _WHOLE = 1e-6
-_START = {v.name: v.start for v in VELOCITY_SENSOR.declaration.parameters}
+_START = {v.name: v.start for v in component_for(Role.SENSOR).declaration.parameters}
 
 
 class SensorRecord(NamedTuple):
@@ -46,7 +43,7 @@ class SensorRecord(NamedTuple):
 
 @dataclass(frozen=True)
 class VelocitySensor:
-    """Sensor and recorder; the component `velocity_sensor` has the same parameters.
+    """Sensor and recorder; the component that is a sensor has the same parameters.
 
     Attributes:
         high_pass_hz: of the sensor, second order [Hz]; 0 for none.
@@ -139,7 +136,7 @@ def sensor_velocity(
     """Velocity of the housing at its sensors under the bearing forces of a run.
 
     Args:
-        result: of a run with the component `modal_housing`, whose modal data have the sensors.
+        result: of a run with a housing whose modal data have the sensors.
         sensors: names.
         axis: direction that they feel; axial by default.
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
 from herringbone.core.part import Part
+from herringbone.core.roles import HALVES
 from herringbone.cosim.loops.drive import drive
 
 RECORDS = 20

@@ -9,7 +9,7 @@ themselves, thousands of times. In the given system the mesh stiffness is frozen
 the prediction, so that a point off its line is an error of one of the two; two rotors are linear.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,8 @@ from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.perturbed_run import perturbation_growth
 from herringbone.analysis.stability.simulated_limit import Bands, first_unstable, run_steps
 from herringbone.analysis.stability.step_scan import unstable_bands
-from herringbone.components.bearing_supports import BEARING_SUPPORTS
+from herringbone.components.registry import component, component_for
+from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -31,6 +32,8 @@ DAMPING_RATIOS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2)
 MASS_RATIOS = (1.0, 3.0, 10.0, 30.0, 100.0)
 _RUN_FACTORS = (0.1, 1.0, 10.0, 100.0)
 """Bearing stiffnesses at which the given system is also run."""
+_POWERS = {Quantity.STIFFNESS: 1.0, Quantity.DAMPING: 0.5}
+"""Powers of the factor by which the bearings' parameters are multiplied."""
 _FREQUENCY, _INERTIA, _DAMPING = 3000.0, 0.01, 0.02
 _HIGHEST = 1.25
 """Highest step that is run, over the predicted limit."""
@@ -88,31 +91,65 @@ def scaled_bearings(system: System, factor: float) -> System:
     Bearing damping grows with the root of the factor, so that damping ratios stay.
     """
     changed = {}
-    declaration = BEARING_SUPPORTS.declaration
-    for part in system.parts:
-        for v in declaration.parameters if part.component == BEARING_SUPPORTS.name else ():
-            power = {"stiffness": 1.0, "damping": 0.5}.get(v.name.rpartition("_")[2])
-            if power:
+    for part in _bearings(system):
+        declaration = component(str(part.component)).declaration
+        for quantity, power in _POWERS.items():
+            for v in declaration.offered(quantity):
                 value = float(part.values.get(v.name, v.start))
                 changed[f"{part.name}.{v.name}"] = value * factor**power
     scaled = system.with_values(changed)
     return scaled.with_values(equilibrium(scaled).values)
 
 
+def _bearings(system: System) -> list[PartSpec]:
+    """The bearings whose parameters are known."""
+    return [
+        part
+        for part in system.parts
+        if part.component and Role.BEARING in component(part.component).declaration.roles
+    ]
+
+
+def unscaled(system: System) -> tuple[str, ...]:
+    """What `scaled_bearings` cannot scale, one line each."""
+    bearings = _bearings(system)
+    if not bearings:
+        return ("no part is a bearing whose parameters are known: its stiffness is not varied",)
+    return tuple(
+        f"{part.name}: {part.component} has no parameter for {quantity}; it is not scaled"
+        for part in bearings
+        for quantity in _POWERS
+        if not component(str(part.component)).declaration.offered(quantity)
+    )
+
+
 def two_rotors(damping_ratio: float, ratio: float) -> System:
     """Two free rotors of an inertia ratio, and a coupling of a damping ratio."""
     reduced = _INERTIA * ratio / (1.0 + ratio)
     values = {
-        "stiffness": reduced * _FREQUENCY**2,
-        "damping": 2.0 * damping_ratio * reduced * _FREQUENCY,
+        Quantity.STIFFNESS: reduced * _FREQUENCY**2,
+        Quantity.DAMPING: 2.0 * damping_ratio * reduced * _FREQUENCY,
     }
     parts = (
-        PartSpec("left", component="load_motor", values={"inertia": _INERTIA}),
-        PartSpec("right", component="load_motor", values={"inertia": ratio * _INERTIA}),
-        PartSpec("coupling", component="shaft_coupling", values=values),
+        _part("left", Role.LOAD, {Quantity.INERTIA: _INERTIA}),
+        _part("right", Role.LOAD, {Quantity.INERTIA: ratio * _INERTIA}),
+        _part("coupling", Role.COUPLING, values),
     )
-    wires = (("left.flange", "coupling.flange_a"), ("right.flange", "coupling.flange_b"))
+    (left,), (right,), ends = map(_flanges, parts)
+    wires = tuple(zip((left, right), ends, strict=True))
     return System("two_rotors", "", parts, wires)
+
+
+def _part(name: str, role: Role, values: Mapping[Quantity, float]) -> PartSpec:
+    """A part of the component that is taken for a role."""
+    declaration = component_for(role).declaration
+    own = {v.name: value for q, value in values.items() for v in declaration.offered(q)}
+    return PartSpec(name, component=declaration.name, values=own)
+
+
+def _flanges(part: PartSpec) -> list[str]:
+    declaration = component(str(part.component)).declaration
+    return [f"{part.name}.{p.name}" for p in declaration.ports if p.kind is PortKind.FLANGE]
 
 
 def _panel(

@@ -24,6 +24,7 @@ from scipy.sparse.csgraph import connected_components
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.rates import motion_of_force
 
 TWO_MASS_RULES: dict[str, Callable[[float], float]] = {
     "jacobi:order=0": lambda zeta: 4.0 * zeta,
@@ -118,14 +119,6 @@ def highest_frequency(network: Network, instances: Sequence[Instance]) -> float:
     return math.sqrt(max(0.0, float(np.linalg.eigvalsh(0.5 * (coupling + coupling.T))[-1])))
 
 
-def motion_of(force: str) -> tuple[str, str]:
-    """Names of position and velocity that belong to a force: f_y -> s_y, v_y; tau -> phi, w."""
-    port, _, name = force.rpartition(".")
-    if name == "tau":
-        return f"{port}.phi", f"{port}.w"
-    return f"{port}.s{name[1:]}", f"{port}.v{name[1:]}"
-
-
 def bond_directions(network: Network, instances: Sequence[Instance]) -> list[Direction]:
     """The bonds of all elements that give forces for motions of the same ports."""
     found = []
@@ -133,7 +126,8 @@ def bond_directions(network: Network, instances: Sequence[Instance]) -> list[Dir
     for e in network.elements:
         forces = [c for c in network.connections if c.source == e and c.target in bodies]
         index = instances[e].component.declaration.index
-        forces = [c for c in forces if all(name in index for name in motion_of(c.output))]
+        motions = {c: motion_of_force(c.output) or () for c in forces}
+        forces = [c for c in forces if motions[c] and all(name in index for name in motions[c])]
         if not forces:
             continue
         stiffness, damping = (_slopes(instances[e], forces, kind) for kind in (0, 1))
@@ -177,7 +171,7 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
     kept = block.copy()
     matrix = np.zeros((len(forces), len(forces)))
     for column, c in enumerate(forces):
-        name = motion_of(c.output)[kind]
+        name = motion_of_force(c.output)[kind]
         change = _CHANGE.get(units[name], 1e-6)
         values = []
         for sign in (1.0, -1.0):
@@ -211,7 +205,7 @@ def _response(
             block[declaration.index[name]] += value
         kernels.rhs(block, 0.0, dx[k])
     block[:] = kept
-    velocities = [(motion_of(name)[1], x) for name, x in along]
+    velocities = [(motion_of_force(name)[1], x) for name, x in along]
     rows = [declaration.index[name] for name, _ in velocities if name in read]
     kernels.out(block, 0.0)
     before = block[rows].copy()

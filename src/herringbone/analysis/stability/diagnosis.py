@@ -10,20 +10,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from herringbone.analysis.stability.amplification import GROWTH, Amplification
-from herringbone.analysis.stability.bonds import (
-    Direction,
-    bond_directions,
-    highest_frequency,
-    motion_of,
-)
+from herringbone.analysis.stability.bonds import Direction, bond_directions, highest_frequency
 from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.step_scan import first_unstable
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import Diagnosis
+from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import LI, Algorithm
 from herringbone.cosim.layouts.layout import connected_outputs
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import System
 
 _BELOW, _ABOVE = 20.0, 4.0
@@ -89,7 +86,7 @@ def _shares(
         force = velocity = 0.0
         size = sum(d * d for _, d in direction.forces)
         for c, d in direction.forces:
-            back = feeding[c.source, motion_of(c.output)[1]]
+            back = feeding[c.source, motion_of_force(c.output)[1]]
             force += d * outputs[c.source][names[c.source].index(c.output)] / size
             velocity += d * outputs[back.source][names[back.source].index(back.output)]
         found.append(abs(force) * abs(velocity))
@@ -133,10 +130,12 @@ def _more_damping(
 
     The instances are left with other values: nothing else is to be asked of them afterwards.
     """
-    name, _, force = direction.name.partition(".")
-    element = next(instance for instance in linear[1] if instance.name == name)
+    element = next(i for i in linear[1] if direction.name.startswith(f"{i.name}."))
+    name, force = element.name, direction.name.removeprefix(f"{element.name}.")
     declaration = element.component.declaration
-    now = {v.name: element[v.name] for v in declaration.parameters if v.name.endswith("damping")}
+    now = {v.name: element[v.name] for v in declaration.offered(Quantity.DAMPING)}
+    if not now:
+        return [f"more damping at {direction.name}; {declaration.name} has no parameter for it"]
 
     def stable(factor: float) -> bool:
         for parameter, value in now.items():

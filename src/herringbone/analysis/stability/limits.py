@@ -21,8 +21,9 @@ from herringbone.analysis.stability.recommendation import (
 )
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.step_scan import GrowthOf, first_unstable_near, unstable_bands
-from herringbone.components.gear_mesh import GEAR_MESH
-from herringbone.core import HerringboneError, ParameterError
+from herringbone.components.registry import component
+from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -133,13 +134,36 @@ def stability(
         except ParameterError as error:
             notes.append(f"{algorithm}: {error}")
     by_limit = [(a, found.limit) for a, found in zip(chosen, limits, strict=True)]
-    micro_steps = [i["micro_step"] for i in instances if i.component is GEAR_MESH]
-    micro_step = max(micro_steps, default=CHARTED_MICRO_STEP)
-    ranking = rank(by_limit, highest, tolerance, micro_step)
+    ranking = rank(by_limit, highest, tolerance, _micro_step(instances))
     notes += [f"{name} is not ranked: {why}" for name, why in ranking.unranked.items()]
+    notes += _unfrozen(instances)
     return Stability(
         system.name, scene, tuple(limits), bonds, highest, tolerance, ranking, tuple(notes)
     )
+
+
+def _gear_pairs(instances: Sequence[Instance]) -> list[Instance]:
+    return [i for i in instances if Role.GEAR_PAIR in i.component.declaration.roles]
+
+
+def _micro_step(instances: Sequence[Instance]) -> float:
+    """Longest micro step [s] of the gear pairs."""
+    found = [
+        gear[v.name]
+        for gear in _gear_pairs(instances)
+        for v in gear.component.declaration.offered(Quantity.MICRO_STEP)
+    ]
+    return max(found, default=CHARTED_MICRO_STEP)
+
+
+def _unfrozen(instances: Sequence[Instance]) -> list[str]:
+    """A line for each gear pair whose meshes cannot be frozen."""
+    return [
+        f"{gear.name}: {gear.component.name} does not say how its meshes are frozen; its limits "
+        "hold at the phase of the start, for all three stiffnesses"
+        for gear in _gear_pairs(instances)
+        if gear.component.freeze is None
+    ]
 
 
 def step_limits(
@@ -164,7 +188,7 @@ def step_limits(
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
     inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan
     frequency = growth(float(inside)).frequency if bands else np.nan
-    has_mesh = any(part.component == GEAR_MESH.name for part in system.parts)
+    has_mesh = any(component(str(part.component)).freeze for part in system.parts)
     for extreme in (MeshStiffness.MINIMUM, MeshStiffness.MAXIMUM):
         if has_mesh and bands:
             found[extreme.value] = first_unstable_near(growth_at(extreme), first)

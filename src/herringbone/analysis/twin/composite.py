@@ -30,7 +30,6 @@ from herringbone.core import (
 )
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.generated import load_generated
-from herringbone.core.paths import resources_folder
 from herringbone.core.variable import Causality
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
@@ -148,10 +147,12 @@ def _declaration(
             name = _full_name(instance, v.name)
             kept = v.causality is Causality.PARAMETER or v.state or name in open_inputs
             if v.causality is Causality.OUTPUT:
-                variables.append(replace(v, name=name, feedthrough=depends(instance.name, v.name)))
+                own = {"name": name, "feedthrough": depends(instance.name, v.name)}
+                own["rate"] = v.rate and _full_name(instance, v.rate)
+                variables.append(replace(v, **own))
             elif kept and v.name not in _OWN:
                 start = float(instance.block[declaration.index[v.name]])
-                variables.append(replace(v, name=name, start=start))
+                variables.append(replace(v, name=name, start=start, at_rest=""))
     steps = [i[MICRO_STEP] for i in instances if MICRO_STEP in i.component.declaration.index]
     variables.append(
         parameter(
@@ -286,9 +287,8 @@ def _loader(
 
 def _resources(instances: list[Instance]) -> Iterator[tuple[str, Path]]:
     for instance in instances:
-        folder = resources_folder(instance.component.name)
         for name, text in instance.texts.items():
-            yield _packed_name(instance, name), folder / text
+            yield _packed_name(instance, name), instance.resources / text
 
 
 def _packed_name(instance: Instance, text: str) -> str:

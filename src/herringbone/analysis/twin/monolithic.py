@@ -87,7 +87,7 @@ class Twin:
 
     def index(self, column: str) -> int:
         """Index in the twin's block of `instance.variable`."""
-        name, _, variable = column.partition(".")
+        name, variable = self.system.split(column)
         for p, instance in enumerate(self.instances):
             if instance.name == name:
                 declaration = instance.component.declaration

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.roles import Role
 from herringbone.gears.files.component_values import component_values
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.rexs import read_rexs
@@ -14,7 +15,7 @@ from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.methods import Progress, check_method, mesh_stiffness
 
-TABLE, PICTURE, VALUES = "mesh_stiffness.csv", "gear_pair.png", "gear_mesh.toml"
+TABLE, PICTURE = "mesh_stiffness.csv", "gear_pair.png"
 _READERS = (".toml", ".rexs", ".xml")
 
 
@@ -79,7 +80,8 @@ def _write(stiffness: MeshStiffness, folder: Path, name: str) -> list[Path]:
 
     texts = {TABLE: table_text(stiffness)}
     if stiffness.pair.halves == 2:
-        texts[VALUES] = _values_text(stiffness.pair)
+        component = _component()
+        texts[f"{component}.toml"] = _values_text(stiffness.pair, component)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file_name, text in texts.items():
@@ -92,12 +94,19 @@ def _write(stiffness: MeshStiffness, folder: Path, name: str) -> list[Path]:
     return [folder / file_name for file_name in (*texts, PICTURE)]
 
 
-def _values_text(pair: GearPair) -> str:
-    """Values of the gear_mesh component as the [set] table of a scene."""
+def _component() -> str:
+    """Name of the component that takes the values, and of its instance in the shipped systems."""
+    from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
+
+    return component_for(Role.GEAR_PAIR).name
+
+
+def _values_text(pair: GearPair, component: str) -> str:
+    """Values of the gear pair's component as the [set] table of a scene."""
     lines = [
-        "# Values of the gear_mesh component for this pair: the [set] table of a scene.",
+        f"# Values of the {component} component for this pair: the [set] table of a scene.",
         f"# A steady load of the wheel is {pair.gear_ratio:.6g} times the pinion's torque.",
         "[set]",
     ]
-    lines += [f'"gear_mesh.{name}" = {value!r}' for name, value in component_values(pair).items()]
+    lines += [f'"{component}.{name}" = {value!r}' for name, value in component_values(pair).items()]
     return "\n".join(lines) + "\n"

@@ -157,5 +157,5 @@ def _impact_rows(job: GearJob, stiffness: MeshStiffness) -> list[_Row]:
         ("contact begins early by", f"{1e3 * impact.early_contact:.3f} mm"),
         ("velocity, normal to the flank", f"{impact.velocity:.4f} m/s"),
         ("force over the full face (upper bound)", f"{impact.force:.0f} N"),
-        (f"{_PULSE:g} of it, for gear_mesh.impact_force", f"{_PULSE * impact.force:.1f} N"),
+        (f"{_PULSE:g} of it, for impact_force", f"{_PULSE * impact.force:.1f} N"),
     ]

@@ -10,7 +10,6 @@ from tqdm import tqdm
 
 from herringbone.commands.options import add_command
 from herringbone.commands.output import check_writable, say, show
-from herringbone.core.paths import component_folder
 
 if TYPE_CHECKING:
     from herringbone.housing.welded.build import BuiltHousing
@@ -46,7 +45,7 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub.add_argument(
         "--seats",
         type=Path,
-        help="TOML file: units, frame, nodes of the seats; sample: fmus/modal_housing/seats.toml",
+        help="TOML file: units, frame, nodes of the seats; fmus has a sample, seats.toml",
     )
     _band_options(sub)
 
@@ -76,11 +75,13 @@ def _import(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
+    from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
+    from herringbone.core.roles import Role  # noqa: PLC0415
     from herringbone.housing import write_housing  # noqa: PLC0415 (only when it is asked for)
     from herringbone.housing.welded.build import STAGES, build_housing  # noqa: PLC0415
     from herringbone.housing.welded.design import read_design  # noqa: PLC0415
 
-    file = options.file or component_folder("modal_housing") / "welded_housing.toml"
+    file = options.file or component_for(Role.HOUSING).folder / "welded_housing.toml"
     design = read_design(file)
     output = options.output or Path("results") / file.stem
     check_writable(output.parent if output.suffix == ".zip" else output)

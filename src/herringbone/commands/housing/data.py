@@ -8,14 +8,16 @@ import numpy as np
 from tqdm import tqdm
 
 from herringbone.commands.output import check_writable, say, show
-from herringbone.components.modal_housing import MODES
+from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
+from herringbone.core.roles import Role
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.importers import import_housing
 from herringbone.housing.reduction.error import drive_point_errors
 from herringbone.housing.reduction.reduced_housing import certified_bound, reduce_housing
 
 _DECADES, _POINTS = 1.3, 800
+_MOST_MODES = component_for(Role.HOUSING).declaration.vectors[0].capacity
 
 
 def reduce_command(options: argparse.Namespace) -> int:
@@ -103,7 +105,7 @@ def import_command(options: argparse.Namespace) -> int:
             options.seats,
             band_hz=options.band,
             tolerance=options.tolerance,
-            most_modes=MODES,
+            most_modes=_MOST_MODES,
             progress=bar.set_description_str,
         )
     _write(housing, output)
@@ -141,8 +143,8 @@ def _folder(output: Path) -> Path:
 def _write(housing: ModalHousing, output: Path) -> None:
     for warning in write_housing(housing, output):
         say(f"herringbone: note: {warning}")
-    if housing.frequency_hz.size > MODES:
+    if housing.frequency_hz.size > _MOST_MODES:
         say(
             f"herringbone: note: {housing.frequency_hz.size} oscillators; the component takes "
-            f"{MODES}: lower --band or raise --tolerance of 'herringbone housing reduce'"
+            f"{_MOST_MODES}: lower --band or raise --tolerance of 'herringbone housing reduce'"
         )

@@ -98,12 +98,12 @@ class PreparedPrediction(PreparedRun):
             (p, n) for p, names in enumerate(outputs) for n in names)}  # fmt: skip
         rate, second = (np.full(len(place), -1, dtype=np.int64) for _ in range(2))
         for (p, name), k in place.items():
-            first = rate_of(name)
+            first = rate_of(network.parts[p], name)
             if p in elements:
                 rate[k] = _FORCE
             elif first and (p, first) in place:
                 rate[k] = place[p, first]
-                second[k] = place.get((p, rate_of(first) or ""), -1)
+                second[k] = place.get((p, rate_of(network.parts[p], first) or ""), -1)
         moved = {place[c.source, c.output] for c in network.connections if c.target in elements}
         blind = [f"{network.parts[p].name}.{n}" for (p, n), k in place.items()
                  if k in moved and rate[k] == -1]  # fmt: skip

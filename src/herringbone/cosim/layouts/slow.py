@@ -107,7 +107,8 @@ def lay_out_slow(
         (k, name, first[p] + i) for k, p in enumerate(parts) for i, name in enumerate(outputs[p])
     ]
     place = {(k, name): i for i, (k, name, _) in enumerate(own)}
-    rate = [place.get((k, rate_of(name) or ""), -1) for k, name, _ in own]
+    rates = [rate_of(network.parts[parts[k]], name) or "" for k, name, _ in own]
+    rate = [place.get((k, found), -1) for (k, _, _), found in zip(own, rates, strict=True)]
     samples = [network.slow[p] * per for p in parts]
     fits = [fit_matrix(n, degree[p]) for p, n in zip(parts, samples, strict=True)]
     traces = [(n + 1) * len(network.inputs(p)) for p, n in zip(parts, samples, strict=True)]

@@ -182,7 +182,7 @@ def _pairs(
             )
         raise StructureError(
             f"connection '{first}' - '{second}': both give motion and want force (body to body); "
-            "insert a shaft_coupling or another compliant element between them"
+            "insert a shaft coupling or another compliant element between them"
         )
     for part, name, suffixes in ((one, one_name, one_suffixes), (two, two_name, two_suffixes)):
         for suffix in suffixes:

@@ -1,7 +1,10 @@
 """What the names of signals tell.
 
-Which output is the rate of which: s -> v -> a, phi -> w -> a; which motion belongs to which force.
+Components declare which output is the rate of which. Of foreign FMUs only names are known: s -> v
+-> a, phi -> w -> a. Names also tell which motion belongs to which force.
 """
+
+from collections.abc import Collection
 
 from herringbone.core.part import Part
 
@@ -9,11 +12,20 @@ _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
 _MOTIONS = {"f": ("s", "v"), "tau": ("phi", "w")}
 
 
-def rate_of(name: str) -> str | None:
-    """Name of the time derivative of an output, if the name tells: `x.s_y` -> `x.v_y`."""
+def rate_of(part: Part, name: str) -> str | None:
+    """The output that is an output's time derivative, as declared or as told by `x.s_y`, `x.v_y`.
+
+    None if there is none, or none is known.
+    """
+    declared = part.variables[name].rate
+    return _named_rate(name, part.variables) if declared is None else declared or None
+
+
+def _named_rate(name: str, names: Collection[str]) -> str | None:
     port, dot, last = name.rpartition(".")
     quantity, bar, axis = last.partition("_")
-    return f"{port}{dot}{_RATES[quantity]}{bar}{axis}" if quantity in _RATES else None
+    rate = f"{port}{dot}{_RATES.get(quantity)}{bar}{axis}"
+    return rate if rate in names else None
 
 
 def motion_of_force(name: str) -> tuple[str, str] | None:
@@ -30,8 +42,8 @@ def rates(part: Part, names: list[str]) -> list[str]:
     """The given outputs' rates, and the rates of these, as far as the part has them."""
     found: list[str] = []
     for name in names:
-        first = rate_of(name)
-        for candidate in (first, rate_of(first) if first else None):
-            if candidate in part.variables and candidate not in found:
-                found.append(str(candidate))
+        first = rate_of(part, name)
+        for candidate in (first, rate_of(part, first) if first else None):
+            if candidate and candidate not in found:
+                found.append(candidate)
     return found

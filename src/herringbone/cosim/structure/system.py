@@ -19,6 +19,7 @@ class PartSpec:
         component: name of a component of this package, or None.
         fmu: FMU file, or None; exactly one of both is given.
         values: start values and parameters by variable.
+        stands_for: component in whose place an FMU was put, or None.
 
     Raises:
         StructureError: the name is no identifier.
@@ -28,6 +29,7 @@ class PartSpec:
     component: str | None = None
     fmu: Path | None = None
     values: Values = field(default_factory=dict)
+    stands_for: str | None = None
 
     def __post_init__(self) -> None:
         check_path(self.name, "instance")
@@ -92,6 +94,18 @@ class System:
         known = ", ".join(part.name for part in self.parts)
         raise StructureError(f"system '{self.name}' has no part '{name}'; it has: {known}")
 
+    def split(self, path: str) -> tuple[str, str]:
+        """Part and what is inside it, of `part.port` or `part.variable`.
+
+        Raises:
+            StructureError: there is no such part.
+        """
+        owners = [part.name for part in self.parts if path.startswith(f"{part.name}.")]
+        if not owners:
+            owners = [self.part(path.partition(".")[0]).name]
+        name = max(owners, key=len)
+        return name, path[len(name) + 1 :]
+
     def with_values(self, values: Values) -> "System":
         """The same system with values set, by `instance.variable`.
 
@@ -120,7 +134,11 @@ class System:
         return replace(
             self,
             parts=tuple(
-                PartSpec(part.name, fmu=fmu.absolute()) if part.name == instance else part
+                PartSpec(
+                    part.name, fmu=fmu.absolute(), stands_for=part.component or part.stands_for
+                )
+                if part.name == instance
+                else part
                 for part in self.parts
             ),
         )

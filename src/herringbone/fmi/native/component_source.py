@@ -13,7 +13,6 @@ from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
 from herringbone.fmi.used_states import UsedStates
 
-_RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
 _PLAIN = frozenset(string.ascii_letters + string.digits + " !#$%&'()*+,-./:;<=>@[]^_`{|}~")
 _ENTRY_POINTS = """\
 int32_t hb_step(double *b, double *w, double t, double h);
@@ -201,16 +200,9 @@ def _extents(used: UsedStates) -> list[int]:
 
 
 def _rates(declaration: Declaration, block: list[Variable | None]) -> Iterable[int]:
-    """Index of the output that is an output's time derivative, 0 if there is none.
-
-    Ports name motions by Modelica: s, v, a and phi, w, a.
-    """
-    index = {v.name: declaration.index[v.name] for v in declaration.outputs}
+    """Index of the output that is an output's time derivative, 0 if there is none."""
     for variable in block:
-        port, _, quantity = variable.name.rpartition(".") if variable else ("", "", "")
-        kind, *axis = quantity.split("_")
-        rate = "_".join([_RATES.get(kind, ""), *axis])
-        yield index.get(f"{port}.{rate}", 0) if f"{port}.{quantity}" in index else 0
+        yield declaration.index[variable.rate] if variable and variable.rate else 0
 
 
 def _vectors(used: UsedStates) -> Iterable[str]:

@@ -11,7 +11,6 @@ import numpy as np
 
 from herringbone.components.registry import component
 from herringbone.core import Component, ParameterError
-from herringbone.core.paths import resources_folder
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.used_states import UsedStates, used_states
 
@@ -79,7 +78,7 @@ def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Mode
         ResourceError: a file is missing or malformed.
     """
     found = component(name)
-    folder = resources_folder(name)
+    folder = found.resources
     if not files:
         shipped = {file.name: file for file in sorted(folder.glob("*.csv"))}
         return Model(found, _REGISTRY, name, shipped, shipped=True)

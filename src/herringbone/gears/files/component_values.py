@@ -1,4 +1,4 @@
-"""Values of the gear_mesh component that follow from a pair."""
+"""Values of the component of a gear pair that follow from a pair."""
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.checks import GEARS
@@ -7,13 +7,13 @@ from herringbone.gears.geometry.half_body import GapShaft
 
 
 def component_values(pair: GearPair) -> dict[str, float]:
-    """Parameters of `gear_mesh` by name, in SI; damping and backlash are not of the geometry.
+    """Parameters of the component by name, in SI; damping and backlash are not of the geometry.
 
     Raises:
         ParameterError: the pair is not double helical.
     """
     if pair.halves != 2:
-        raise ParameterError("the gear_mesh component is a double-helical pair; halves must be 2")
+        raise ParameterError("the component is a double-helical pair; halves must be 2")
     values = {"base_helix_angle": abs(pair.base_helix_angle)}
     for gear, name in enumerate(GEARS):
         body, shaft = pair.half_body[gear], pair.gap_shaft[gear]

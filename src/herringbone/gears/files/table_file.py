@@ -1,4 +1,4 @@
-"""Writer of the stiffness table that the gear_mesh component reads."""
+"""Writer of the stiffness table that the component of a gear pair reads."""
 
 import math
 from pathlib import Path

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
 from herringbone.core import ResourceError
+from herringbone.core.roles import HALVES
 from herringbone.housing.modal_model import AXES, SEAT_DOFS, Frame, ModalHousing, Point
 
 KINDS = ("normal", "residual", "rigid")

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from herringbone.components.ports import HALVES
 from herringbone.core import ResourceError, reason
+from herringbone.core.roles import HALVES
 from herringbone.housing.importers.mode_set import make_frame, make_point
 from herringbone.housing.importers.seat_file import SeatFile, Selection
 from herringbone.housing.modal_model import AXES, ModalHousing, Point

@@ -1,6 +1,6 @@
 """Which nodes of a foreign model are the seats and sensors, and in which units it is.
 
-A sample with all keys is `fmus/modal_housing/seats.toml`.
+A sample with all keys is `seats.toml` in the folder of the shipped housing.
 """
 
 import tomllib
@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.components.ports import HALVES
 from herringbone.core import ResourceError, reason
+from herringbone.core.roles import HALVES
 from herringbone.housing.modal_model import AXES
 
 _UNITS: Mapping[str, Mapping[str, float]] = {

@@ -1,4 +1,4 @@
-"""Makes the data set of the component `modal_housing` and its record HOUSING.md.
+"""Makes the data set of the shipped housing and its record HOUSING.md.
 
 `python -m herringbone.housing.welded.default_data` takes some five minutes and 4 GB.
 
@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core.paths import component_folder, resources_folder
+from herringbone.components.registry import component_for
+from herringbone.core.roles import Role
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.welded.build import BuiltHousing, build_housing
@@ -23,9 +24,9 @@ from herringbone.housing.welded.design import HousingDesign, read_design
 from herringbone.housing.welded.mesher import mesh_housing
 from herringbone.housing.welded.mode_shares import ModeShares
 
-COMPONENT = "modal_housing"
-DESIGN = component_folder(COMPONENT) / "welded_housing.toml"
-RECORD = component_folder(COMPONENT) / "HOUSING.md"
+COMPONENT = component_for(Role.HOUSING)
+DESIGN = COMPONENT.folder / "welded_housing.toml"
+RECORD = COMPONENT.folder / "HOUSING.md"
 PUBLISHED = (
     (248.24, "axial sway"),
     (447.29, "box twisting"),
@@ -53,7 +54,7 @@ _THESIS_NOTE = """\
 def main() -> None:
     """Make all files."""
     design = read_design(DESIGN)
-    folder = resources_folder(COMPONENT)
+    folder = COMPONENT.resources
     built = build_housing(design, progress=_say)
     write_housing(built.model, folder)
     write_thesis_modes(built.model, folder)

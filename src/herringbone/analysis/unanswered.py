@@ -1,0 +1,108 @@
+"""What the parts of a run do not answer, and why."""
+
+from collections.abc import Iterator
+
+from herringbone.analysis.asked import by_half, shaft_side
+from herringbone.analysis.figures.radiated_power import power_inputs
+from herringbone.core import ParameterError
+from herringbone.core.roles import GEARS, SIDES, Quantity, Role
+from herringbone.result.result import Result
+
+_QUESTIONS: tuple[tuple[str, Role, Quantity, str | None], ...] = (
+    ("pinion speed", Role.GEAR_PAIR, Quantity.SPEED, "pinion"),
+    *(("mesh force", Role.GEAR_PAIR, Quantity.MESH_FORCE, side) for side in SIDES),
+    *(
+        ("power", Role.DRIVE, quantity, None)
+        for quantity in (Quantity.ELECTRICAL_POWER, Quantity.TORQUE, Quantity.SPEED)
+    ),
+    *(
+        ("power", Role.LOAD, quantity, None)
+        for quantity in (Quantity.RECOVERED_POWER, Quantity.LOSS_POWER)
+    ),
+)
+"""What is asked for, of which role, as which quantity, at which place."""
+
+
+def unanswered(result: Result) -> dict[str, list[str]]:
+    """What cannot be said of a run, by the reason: no part has the role, or a part lacks something.
+
+    Empty where all parts are known and answer.
+    """
+    reasons: dict[str, list[str]] = {}
+    for what, why in _missing(result):
+        known = reasons.setdefault(what, [])
+        if why not in known:
+            known.append(why)
+    if not any(map(result.parts_with, Role)):
+        return {"what the parts are for is not known": list(reasons)}
+    found: dict[str, list[str]] = {}
+    for what, why in reasons.items():
+        found.setdefault("; ".join(why), []).append(what)
+    return found
+
+
+def _missing(result: Result) -> Iterator[tuple[str, str]]:
+    for what, role, quantity, place in _QUESTIONS:
+        yield from ((what, why) for why in _unoffered(result, role, quantity, place))
+    if result.parts_with(Role.GEAR_PAIR):
+        yield from (("number of teeth, mesh orders", why) for why in _untoothed(result))
+    yield from (("torque", why) for why in _unmeasured(result))
+    for what, channel, role in (
+        ("bearing forces", "bearing_force", Role.BEARING),
+        ("seat velocities", "seat_velocity", Role.HOUSING),
+    ):
+        if not any(by_half(result, channel, axis) for axis in "xyz"):
+            parts = result.parts_with(role)
+            why = (
+                f"{', '.join(parts)}: recorded nothing of that" if parts else _nobody(result, role)
+            )
+            yield what, why
+    for part in result.parts_with(Role.HOUSING) or ("",):
+        try:
+            power_inputs(result, part=part)
+        except ParameterError as error:
+            yield "radiated power", str(error) if part else _nobody(result, Role.HOUSING)
+
+
+def _nobody(result: Result, role: Role) -> str:
+    unknown = [name for name, info in result.info.anatomy.parts.items() if not info.roles]
+    foreign = f", and nothing is known of {', '.join(unknown)}" if unknown else ""
+    return f"no part is known as {role}{foreign}"
+
+
+def _unoffered(result: Result, role: Role, quantity: Quantity, place: str | None) -> Iterator[str]:
+    """Why parts of a role do not show a quantity."""
+    parts = result.parts_with(role)
+    if not parts:
+        yield _nobody(result, role)
+    for part in parts:
+        column = result.info.anatomy.column(part, quantity, place)
+        at = f" at its {place}" if place else ""
+        if column is None:
+            yield f"{part}, a {role}, offers no {quantity}{at}"
+        elif column not in result.data:
+            yield f"{column} is not recorded"
+
+
+def _untoothed(result: Result) -> Iterator[str]:
+    for part in result.parts_with(Role.GEAR_PAIR):
+        name = result.info.anatomy.column(part, Quantity.NUMBER_OF_TEETH, "pinion")
+        if name not in result.info.parameters:
+            yield f"{part} does not tell it"
+
+
+def _unmeasured(result: Result) -> Iterator[str]:
+    """Why the torque at a side of a gear pair is not known."""
+    gears = result.parts_with(Role.GEAR_PAIR)
+    if not gears or not result.parts_with(Role.COUPLING):
+        yield _nobody(result, Role.COUPLING if gears else Role.GEAR_PAIR)
+        return
+    for gear in gears:
+        for place in GEARS:
+            coupling = shaft_side(result, place, gear).coupling
+            if not coupling:
+                yield f"no part is known as {Role.COUPLING} at the {place} of {gear}"
+                continue
+            column = result.info.anatomy.column(coupling, Quantity.TORQUE)
+            if column not in result.data:
+                yield f"{coupling} shows none"

@@ -1,0 +1,59 @@
+"""Nobody outside the components knows one by its name: who needs one asks for its role."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.core.paths import PACKAGE
+
+NAME = re.compile(rf"(?<![A-Za-z_])({'|'.join(COMPONENTS)})(?![a-z_])")
+MODULES = {
+    f"herringbone.components.{file.stem}"
+    for file in (PACKAGE / "components").glob("*.py")
+    if file.stem.startswith(tuple(COMPONENTS))
+}
+FILES = sorted(f for f in PACKAGE.rglob("*.py") if "components" not in f.relative_to(PACKAGE).parts)
+
+
+def explanations(tree: ast.AST) -> set[int]:
+    """Strings that are statements: docstrings."""
+    return {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+
+
+def naming(source: str) -> list[str]:
+    """Line and text of every string or import that names a component."""
+    tree = ast.parse(source)
+    docs = explanations(tree)
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            names = {module, *(f"{module}.{alias.name}" for alias in node.names)}
+            found += [f"{node.lineno}: import of {name}" for name in sorted(names & MODULES)]
+        elif isinstance(node, ast.Import):
+            found += [f"{node.lineno}: {a.name}" for a in node.names if a.name in MODULES]
+        elif (
+            isinstance(node, ast.Constant)
+            and isinstance(node.value, str)
+            and id(node) not in docs
+            and NAME.search(node.value)
+        ):
+            found.append(f"{node.lineno}: {node.value!r}")
+    return found
+
+
+def test_what_is_found():
+    """The test sees names in texts, formatted texts and imports, and no docstrings."""
+    name, module = next(iter(COMPONENTS)), sorted(MODULES)[0]
+    seen = f'"""{name}"""\nx = "a.{name}.b"\ny = f"{{x}}{name}.w"\nfrom {module} import Z\n'
+    assert len(naming(seen)) == 3
+    assert {m.rpartition(".")[2] for m in MODULES} >= set(COMPONENTS)
+    assert not naming(f'x = "{name}s, {name}_2"')
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: f.relative_to(PACKAGE).as_posix())
+def test_no_component_is_named(file: Path):
+    assert not naming(file.read_text(encoding="utf-8")), "ask the registry for a role"
