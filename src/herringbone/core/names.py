@@ -4,7 +4,7 @@ Names of an FMU's variables are not among them: they are data of any form that F
 """
 
 import re
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from fnmatch import fnmatchcase
 
 from herringbone.core.errors import StructureError
@@ -72,3 +72,9 @@ def identifier_for(text: str, taken: Container[str] = ()) -> str:
 def matches(name: str, pattern: str) -> bool:
     """True if the name of a column matches a pattern (`*`, `?`); brackets are those of arrays."""
     return fnmatchcase(name, pattern.replace("[", "[[]"))
+
+
+def matches_any(names: Iterable[str], patterns: Iterable[str]) -> bool:
+    """True if one of the names of a column matches one of the patterns."""
+    wanted = list(patterns)
+    return any(matches(name, pattern) for name in names for pattern in wanted)

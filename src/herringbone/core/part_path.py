@@ -40,39 +40,66 @@ class PartPath(str):
         return self == text or self.endswith(f".{text}")
 
 
-def find_part(parts: Iterable[PartPath], text: str) -> PartPath:
+def flat_name(path: PartPath) -> str:
+    """The name of a part where names have no dots: each dot becomes two underscores."""
+    return path.replace(".", "__")
+
+
+def find_part(parts: Iterable[PartPath], text: str, where: str) -> PartPath:
     """The part that a text means: the whole path, or an ending that only one part has.
+
+    Args:
+        parts: all of them.
+        text: path or ending.
+        where: whose parts they are, for the message.
 
     Raises:
         StructureError: there is none, or there are several.
     """
     known = list(parts)
     found = [part for part in known if part.answers_to(text)]
-    if text in found or len(found) == 1:
-        return found[0] if len(found) == 1 else PartPath(text)
-    if found:
-        raise StructureError(f"{shown(text)} may mean {', '.join(found)}; write more of the path")
-    raise StructureError(f"there is no part {shown(text)}; there are: {', '.join(known)}")
+    if text in found:
+        return PartPath(text)
+    if len(found) > 1:
+        raise StructureError(
+            f"{where}: {shown(text)} may mean {' or '.join(found)}; write more of the path"
+        )
+    if not found:
+        raise StructureError(f"{where} has no part {shown(text)}; it has: {', '.join(known)}")
+    return found[0]
 
 
-def split_variable(parts: Iterable[PartPath], text: str) -> tuple[PartPath, str]:
+def split_variable(parts: Iterable[PartPath], text: str, where: str) -> tuple[PartPath, str]:
     """Part and variable that `instance.variable` means; the variable may have dots, too.
+
+    Args:
+        parts, where: see `find_part`.
+        text: path or ending of a part, a dot, and the name of a variable or port.
 
     Raises:
         ParameterError: it has no dot.
         StructureError: there is no such part, or there are several.
     """
     known = list(parts)
-    places = [i for i, c in enumerate(text) if c == "." and 0 < i < len(text) - 1]
-    if not places:
+    dots = [i for i, c in enumerate(text) if c == "." and 0 < i < len(text) - 1]
+    if not dots:
         raise ParameterError(f"{shown(text)} must be INSTANCE.VARIABLE")
-    found = {part: i for i in places for part in known if part.answers_to(text[:i])}
-    whole = [part for part, i in found.items() if part == text[:i]]
-    if len(found) > 1 and len(whole) != 1:
+    heads = [text[:i] for i in dots if any(part.answers_to(text[:i]) for part in known)]
+    whole = [head for head in heads if head in known]
+    if len(heads) > 1 and not whole:
         raise StructureError(
-            f"{shown(text)} may mean a variable of {' or of '.join(found)}; write more of the path"
+            f"{where}: {shown(text)} may mean a variable of {' or of '.join(heads)}; write more of "
+            "the path"
         )
-    if not found:
-        find_part(known, text[: places[0]])
-    part = whole[0] if whole else next(iter(found))
-    return part, text[found[part] + 1 :]
+    head = (whole or heads or [text[: dots[0]]])[-1]
+    return find_part(known, head, where), text[len(head) + 1 :]
+
+
+def endings(parts: Iterable[PartPath], column: str) -> tuple[str, ...]:
+    """The names by which a column may be called: `part.variable`, its part by any ending."""
+    owners = [part for part in parts if column.startswith(f"{part}.")]
+    scope = max(owners, key=len).scope if owners else ""
+    names = [column]
+    for segment in scope.split(".") if scope else ():
+        names.append(names[-1][len(segment) + 1 :])
+    return tuple(names)

@@ -71,7 +71,7 @@ class AlgebraicLoop:
     def remedy(self) -> str:
         """How to take the loop away."""
         j, own, stiffness = self._strongest()
-        body = self.names[j].partition(".")[0]
+        body = self.names[j].removesuffix(f".{self.forces[j].input}")
         series = ""
         if own > 0.0 and stiffness > 0.0:
             series = (

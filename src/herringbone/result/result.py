@@ -14,7 +14,8 @@ from scipy.interpolate import CubicSpline
 from herringbone.core import HerringboneError, Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
-from herringbone.core.names import matches
+from herringbone.core.names import matches, matches_any, shown
+from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
 
 if TYPE_CHECKING:
@@ -99,11 +100,32 @@ class Result:
         Raises:
             ParameterError: a pattern matches nothing.
         """
-        names = [c for c in self.data.columns if c != TIME]
+        parts = [PartPath(part) for part in self.info.model]
+        names = {c: endings(parts, c) for c in self.data.columns if c != TIME}
         for pattern in patterns:
-            if not any(matches(name, pattern) for name in names):
+            if not any(matches(name, pattern) for called in names.values() for name in called):
                 raise ParameterError(f"no column matches '{pattern}'; see result.data.columns")
-        return [n for n in names if any(matches(n, p) for p in patterns)]
+        return [c for c, called in names.items() if matches_any(called, patterns)]
+
+    def column(self, name: str) -> str:
+        """The column of that name, or the only one whose name ends so, its part cut short.
+
+        Raises:
+            ParameterError: there is none, or there are several.
+        """
+        if name in self.data:
+            return name
+        parts = [PartPath(part) for part in self.info.model]
+        found = [c for c in self.data.columns if name in endings(parts, c)]
+        if len(found) > 1:
+            raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
+        if not found:
+            raise ParameterError(f"there is no column {shown(name)}; see result.data.columns")
+        return found[0]
+
+    def __getitem__(self, name: str) -> pd.Series:
+        """Recorded values of a column (n,), SI unit; see `column`."""
+        return self.data[self.column(name)]
 
     def channel(self, group: str) -> list[str]:
         """Columns of a channel group.

@@ -89,8 +89,7 @@ def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[
     for instance, file in files.items():
         with _named(instance):
             require_file(Path(file))
-        system.part(instance)
-        if Role.HOUSING in anatomy(system).parts[instance].roles:
+        if Role.HOUSING in anatomy(system).parts[system.part(instance).name].roles:
             notes += replacement_notes(Path(file))
         system = system.with_fmu(instance, Path(file))
     return system, notes

@@ -81,5 +81,5 @@ def _offsets(system: System, offsets: Values) -> Values:
         start = part.values.get(variable)
         if start is None and part.component:
             start = COMPONENTS[part.component].declaration.variable(variable).start
-        found[path] = float(start or 0.0) + float(offset)
+        found[f"{instance}.{variable}"] = float(start or 0.0) + float(offset)
     return found

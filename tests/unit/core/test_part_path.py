@@ -5,7 +5,7 @@ import re
 import pytest
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.part_path import PartPath, find_part, split_variable
+from herringbone.core.part_path import PartPath, endings, find_part, flat_name, split_variable
 
 PARTS = [PartPath(p) for p in ("motor", "first.gear", "second.gear", "second.housing", "a.b.gear")]
 
@@ -29,8 +29,8 @@ def test_a_path_knows_its_scope_and_name():
     ],
 )
 def test_what_is_understood(text, part, variable):
-    assert split_variable(PARTS, text) == (part, variable)
-    assert find_part(PARTS, text.removesuffix(f".{variable}")) == part
+    assert split_variable(PARTS, text, "the rig") == (part, variable)
+    assert find_part(PARTS, text.removesuffix(f".{variable}"), "the rig") == part
 
 
 @pytest.mark.parametrize(
@@ -39,19 +39,40 @@ def test_what_is_understood(text, part, variable):
         ("motor", ParameterError, "'motor' must be INSTANCE.VARIABLE"),
         (".w", ParameterError, "must be INSTANCE.VARIABLE"),
         ("motor.", ParameterError, "must be INSTANCE.VARIABLE"),
-        ("gear.w", StructureError, "of first.gear or of second.gear or of a.b.gear; write more"),
-        ("ear.w", StructureError, "there is no part 'ear'; there are: motor, first.gear,"),
-        ("second.motor.w", StructureError, "there is no part 'second'"),
+        (
+            "gear.w",
+            StructureError,
+            "'gear' may mean first.gear or second.gear or a.b.gear; w",
+        ),
+        ("ear.w", StructureError, "the rig has no part 'ear'; it has: motor, first.gear,"),
+        ("second.motor.w", StructureError, "the rig has no part 'second'"),
     ],
 )
 def test_what_is_refused(text, error, said):
     with pytest.raises(error, match=re.escape(said)):
-        split_variable(PARTS, text)
+        split_variable(PARTS, text, "the rig")
 
 
 def test_a_whole_path_wins_over_endings_of_others():
     parts = [PartPath("gear"), PartPath("first.gear")]
-    assert find_part(parts, "gear") == "gear"
-    assert split_variable(parts, "gear.w") == ("gear", "w")
-    with pytest.raises(StructureError, match=r"'gear' may mean first\.gear, second\.gear"):
-        find_part(PARTS[1:3], "gear")
+    assert find_part(parts, "gear", "it") == "gear"
+    assert split_variable(parts, "gear.w", "it") == ("gear", "w")
+    with pytest.raises(StructureError, match=r"it: 'gear' may mean first\.gear or second\.gear"):
+        find_part(PARTS[1:3], "gear", "it")
+
+
+def test_names_of_a_column():
+    assert endings(PARTS, "motor.flange.w") == ("motor.flange.w",)
+    assert endings(PARTS, "a.b.gear.x.y") == ("a.b.gear.x.y", "b.gear.x.y", "gear.x.y")
+    assert endings(PARTS, "stranger.y") == ("stranger.y",)
+
+
+def test_a_flat_name_has_no_dots():
+    assert flat_name(PartPath("a.b_c.d")) == "a__b_c__d"
+
+
+def test_a_variable_may_belong_to_two_parts():
+    parts = [PartPath("x.gear"), PartPath("y.gear.pinion")]
+    with pytest.raises(StructureError, match=r"a variable of gear or of gear\.pinion; write more"):
+        split_variable(parts, "gear.pinion.w", "it")
+    assert split_variable(parts, "x.gear.pinion.w", "it") == ("x.gear", "pinion.w")

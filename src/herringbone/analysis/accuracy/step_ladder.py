@@ -13,8 +13,9 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.accuracy.work_precision import REFUSED, Point
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.names import matches
+from herringbone.core.names import matches_any
 from herringbone.core.part import Part, closing_all
+from herringbone.core.part_path import endings
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.record import Grid
@@ -80,7 +81,7 @@ class Reference:
             for name in own
         ]
         self.groups = {
-            group: [n for n in names if any(matches(n, p) for p in patterns)]
+            group: [n for n in names if matches_any(endings(system.paths, n), patterns)]
             for group, patterns in system.channels.items()
         }
         self.groups = {group: columns for group, columns in self.groups.items() if columns}

@@ -26,6 +26,8 @@ NAMESPACES: Final = {
     "hb": "urn:herringbone:ssp",
 }
 CHANNELS_ANNOTATION: Final = "herringbone.channels"
+PARTS_ANNOTATION: Final = "herringbone.parts"
+"""Paths of parts whose names are flat in the file, by these names."""
 
 
 def is_ssp(path: Path) -> bool:

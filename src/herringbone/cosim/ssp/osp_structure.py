@@ -40,7 +40,7 @@ def osp_structure(
         SubElement(root, name).text = text
     simulators = SubElement(root, "Simulators")
     for part in parts:
-        simulator = SubElement(simulators, "Simulator", name=part.name, source=sources[part.file])
+        simulator = SubElement(simulators, "Simulator", name=part.label, source=sources[part.file])
         if part.values:
             values = SubElement(simulator, "InitialValues")
             for name, kind, text in part.typed_values():
@@ -49,5 +49,5 @@ def osp_structure(
     for c in network.connections:
         connection = SubElement(connections, "VariableConnection")
         for part, variable in ((c.source, c.output), (c.target, c.input)):
-            SubElement(connection, "Variable", simulator=parts[part].name, name=variable)
+            SubElement(connection, "Variable", simulator=parts[part].label, name=variable)
     return root

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 from herringbone.core import FmuError, StructureError
 from herringbone.core.files import is_file
-from herringbone.core.names import check_name, identifier_for, is_identifier, shown
+from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
@@ -22,6 +22,7 @@ from herringbone.cosim.ssp.format import (
     FMU_TYPE,
     NAMESPACES,
     PARAMETER_TYPE,
+    PARTS_ANNOTATION,
     local_name,
     parse_xml,
     qualified,
@@ -112,10 +113,19 @@ class _Reader:
         if twice := [name for name in names if names.count(name) > 1]:
             raise self.refusal(f"component name {shown(twice[0])} stands twice; rename one")
         self.names.update({name: name for name in names if is_identifier(name)})
+        self.names.update({name: path for name, path in self.paths(system) if name in names})
         for name in names:
             if name not in self.names and name:
                 taken = set(self.names.values())
                 self.names[name] = self.renamed(name, "component", taken)
+
+    def paths(self, system: Element) -> Iterator[tuple[str, str]]:
+        """Names of components and their paths, which this package writes as an annotation."""
+        for annotation in system.iterfind("ssd:Annotations/ssc:Annotation", NAMESPACES):
+            if annotation.get("type") == PARTS_ANNOTATION:
+                for part in annotation.iterfind("hb:Parts/hb:Part", NAMESPACES):
+                    path = check_path(part.get("path", ""), f"{self.file}: path of a part")
+                    yield part.get("name", ""), path
 
     def path_here(self, path: str) -> str:
         """A path `component.variable` of the file with the component's identifier."""

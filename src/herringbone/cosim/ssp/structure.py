@@ -11,6 +11,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import PartVariable
+from herringbone.core.part_path import PartPath, flat_name
 from herringbone.cosim.fmu.file import is_fmi3, read_fmu
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.layouts.layout import record_names
@@ -19,6 +20,7 @@ from herringbone.cosim.ssp.format import (
     FMU_TYPE,
     NAMESPACES,
     PARAMETER_TYPE,
+    PARTS_ANNOTATION,
     VERSION,
 )
 from herringbone.cosim.structure.network import Network
@@ -36,7 +38,7 @@ _TO_TEXT: dict[str, Callable[[Any], str]] = {
 class DescribedPart:
     """A part of which only the model description is known."""
 
-    name: str
+    name: PartPath
     file: Path
     values: Values
 
@@ -75,7 +77,12 @@ class DescribedPart:
     @property
     def values_file(self) -> str:
         """Place of the parameter file in the .ssp."""
-        return f"resources/{self.name}.ssv"
+        return f"resources/{self.label}.ssv"
+
+    @property
+    def label(self) -> str:
+        """Name of the component in the file, which has one flat system."""
+        return flat_name(self.name)
 
 
 def xml_root(tag: str, prefixes: Iterable[str], **attributes: str) -> Element:
@@ -133,7 +140,7 @@ def _connectors(network: Network) -> list[list[str]]:
 def _add_component(
     elements: Element, part: DescribedPart, names: Sequence[str], source: str
 ) -> None:
-    component = SubElement(elements, "ssd:Component", name=part.name, type=FMU_TYPE, source=source)
+    component = SubElement(elements, "ssd:Component", name=part.label, type=FMU_TYPE, source=source)
     if names:
         connectors = SubElement(component, "ssd:Connectors")
         for name in names:
@@ -154,9 +161,9 @@ def _add_connections(system: Element, parts: Sequence[DescribedPart], network: N
         SubElement(
             connections,
             "ssd:Connection",
-            startElement=parts[c.source].name,
+            startElement=parts[c.source].label,
             startConnector=c.output,
-            endElement=parts[c.target].name,
+            endElement=parts[c.target].label,
             endConnector=c.input,
         )
 
@@ -173,6 +180,12 @@ def _add_system_annotations(element: Element, system: System, step: float) -> No
         absoluteTolerance="1e-4",
         relativeTolerance="1e-4",
     )
+    scoped = [path for path in system.paths if path.scope]
+    if scoped:
+        annotation = SubElement(annotations, "ssc:Annotation", type=PARTS_ANNOTATION)
+        names = SubElement(annotation, "hb:Parts")
+        for path in scoped:
+            SubElement(names, "hb:Part", name=flat_name(path), path=path)
     if system.channels:
         annotation = SubElement(annotations, "ssc:Annotation", type=CHANNELS_ANNOTATION)
         channels = SubElement(annotation, "hb:Channels")

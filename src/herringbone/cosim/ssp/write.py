@@ -6,12 +6,15 @@ element only, one parameter file per component with bare variable names and the 
 from the one in the system. libcosim sets start values of states only from its own format, which
 lies in the file as well (`osp_structure`).
 
+Names of nested parts are flat there (see `core.part_path.flat_name`); an annotation keeps their
+paths.
+
 Connectors are the connected variables and all outputs that this master would record; signal nodes
 stay out, so that other masters hold inputs over a step.
 """
 
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -60,13 +63,16 @@ def write_ssp(
     _write_zip(entries, file)
 
 
-def _resource_names(parts: Iterable[DescribedPart]) -> dict[Path, str]:
+def _resource_names(parts: Sequence[DescribedPart]) -> dict[Path, str]:
     """Place of each FMU file in the .ssp; instances of one file share it."""
+    labels = [part.label for part in parts]
+    if twice := [label for label in labels if labels.count(label) > 1]:
+        raise StructureError(f"two parts are called {twice[0]} in a flat file; rename one")
     names: dict[Path, str] = {}
     for part in parts:
         if part.file not in names:
             name = f"resources/{part.file.name}"
-            names[part.file] = f"resources/{part.name}.fmu" if name in names.values() else name
+            names[part.file] = f"resources/{part.label}.fmu" if name in names.values() else name
     if len(set(names.values())) < len(names):
         raise StructureError("two FMU files want the same name; rename one of them")
     return names

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import Part, PartVariable
+from herringbone.core.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System
@@ -61,14 +62,14 @@ class Network:
         Raises:
             ParameterError: no such instance, no body, a multiple below 1, or no body is left.
         """
-        index = {part.name: p for p, part in enumerate(self.parts)}
+        index = {PartPath(part.name): p for p, part in enumerate(self.parts)}
         slow = {}
-        for name, multiple in multiples.items():
-            what = f"slow: {name}={multiple}"
-            if name not in index:
-                raise ParameterError(
-                    f"{what}: there is no instance '{name}'; {self._that_can_be_slow}"
-                )
+        for asked, multiple in multiples.items():
+            what = f"slow: {asked}={multiple}"
+            try:
+                name = find_part(index, asked, "it")
+            except StructureError as error:
+                raise ParameterError(f"{what}: {error}; {self._that_can_be_slow}") from error
             if index[name] not in self.bodies or index[name] in self.feedthrough:
                 kind = "has no input" if index[name] in self.sources else "has direct feedthrough"
                 raise ParameterError(
@@ -123,9 +124,7 @@ def _split(
     path: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
 ) -> tuple[Part, str, list[str]]:
     """Part, name inside it, and the suffixes of the port's variables ([] for one variable)."""
-    name, _, inner = path.partition(".")
-    if name not in index:
-        system.part(name)
+    name, inner = system.split(path)
     part = parts[index[name]]
     if inner in part.variables:
         return part, inner, []

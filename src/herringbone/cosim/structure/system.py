@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from herringbone.core import ParameterError, StructureError
-from herringbone.core.names import check_name, check_path, shown
+from herringbone.core import StructureError
+from herringbone.core.names import check_name, shown
+from herringbone.core.part_path import PartPath, find_part, split_variable
 
 Values = Mapping[str, float | str]
 
@@ -15,7 +16,7 @@ class PartSpec:
     """One participant of a system.
 
     Attributes:
-        name: instance name, unique in the system with everything nested in it.
+        name: path of the part in the system, unique; a text becomes one.
         component: name of a component of this package, or None.
         fmu: FMU file, or None; exactly one of both is given.
         values: start values and parameters by variable.
@@ -25,14 +26,14 @@ class PartSpec:
         StructureError: the name is no identifier.
     """
 
-    name: str
+    name: PartPath
     component: str | None = None
     fmu: Path | None = None
     values: Values = field(default_factory=dict)
     stands_for: str | None = None
 
     def __post_init__(self) -> None:
-        check_path(self.name, "instance")
+        object.__setattr__(self, "name", PartPath(self.name))
 
     @property
     def foreign(self) -> bool:
@@ -78,33 +79,45 @@ class System:
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise StructureError(
-                f"system '{self.name}': instance name {', '.join(twice)} is used twice; "
-                "names are flat over nested systems, rename one"
+                f"system '{self.name}': instance name {', '.join(twice)} is used twice; rename one"
             )
 
     def part(self, name: str) -> PartSpec:
-        """The part of that name.
+        """The part of that path, or the only one whose path ends so.
 
         Raises:
-            StructureError: there is none.
+            StructureError: there is none, or there are several.
         """
-        for part in self.parts:
-            if part.name == name:
-                return part
-        known = ", ".join(part.name for part in self.parts)
-        raise StructureError(f"system '{self.name}' has no part '{name}'; it has: {known}")
+        found = find_part(self.paths, name, f"system '{self.name}'")
+        return next(part for part in self.parts if part.name == found)
 
-    def split(self, path: str) -> tuple[str, str]:
+    @property
+    def paths(self) -> tuple[PartPath, ...]:
+        """Canonical names of all parts."""
+        return tuple(part.name for part in self.parts)
+
+    def split(self, path: str) -> tuple[PartPath, str]:
         """Part and what is inside it, of `part.port` or `part.variable`.
 
         Raises:
-            StructureError: there is no such part.
+            ParameterError: the path has no dot.
+            StructureError: there is no such part, or there are several.
         """
-        owners = [part.name for part in self.parts if path.startswith(f"{part.name}.")]
-        if not owners:
-            owners = [self.part(path.partition(".")[0]).name]
-        name = max(owners, key=len)
-        return name, path[len(name) + 1 :]
+        return split_variable(self.paths, path, f"system '{self.name}'")
+
+    def nested_as(self, scope: str) -> "System":
+        """The same system with all paths as they are when it is nested under a name."""
+
+        def inside(path: str) -> str:
+            return f"{scope}.{path}"
+
+        return replace(
+            self,
+            parts=tuple(replace(part, name=part.name.inside(scope)) for part in self.parts),
+            connections=tuple((inside(a), inside(b)) for a, b in self.connections),
+            ports={name: inside(path) for name, path in self.ports.items()},
+            channels={name: tuple(map(inside, p)) for name, p in self.channels.items()},
+        )
 
     def with_values(self, values: Values) -> "System":
         """The same system with values set, by `instance.variable`.
@@ -115,10 +128,7 @@ class System:
         """
         parts = {part.name: dict(part.values) for part in self.parts}
         for path, value in values.items():
-            instance, dot, variable = path.partition(".")
-            if not dot or not variable:
-                raise ParameterError(f"'{path}' must be INSTANCE.VARIABLE")
-            self.part(instance)
+            instance, variable = self.split(path)
             parts[instance][variable] = value
         return replace(
             self, parts=tuple(replace(part, values=parts[part.name]) for part in self.parts)
@@ -130,14 +140,14 @@ class System:
         Raises:
             StructureError: there is no such instance.
         """
-        self.part(instance)
+        replaced = self.part(instance).name
         return replace(
             self,
             parts=tuple(
                 PartSpec(
                     part.name, fmu=fmu.absolute(), stands_for=part.component or part.stands_for
                 )
-                if part.name == instance
+                if part.name == replaced
                 else part
                 for part in self.parts
             ),
@@ -149,18 +159,19 @@ class System:
         Raises:
             StructureError: there is no such instance, or nothing is left.
         """
-        for instance in instances:
-            self.part(instance)
-        parts = tuple(part for part in self.parts if part.name not in instances)
+        dropped = {self.part(instance).name for instance in instances}
+        parts = tuple(part for part in self.parts if part.name not in dropped)
         if not parts:
             raise StructureError(f"system '{self.name}': no part is left")
-        kept = {part.name for part in parts}
-        inside = lambda path: path.partition(".")[0] in kept  # noqa: E731
+
+        def kept(path: str) -> bool:
+            return self.split(path)[0] not in dropped
+
         return replace(
             self,
             parts=parts,
-            connections=tuple(c for c in self.connections if all(map(inside, c))),
-            ports={name: path for name, path in self.ports.items() if inside(path)},
+            connections=tuple(c for c in self.connections if all(map(kept, c))),
+            ports={name: path for name, path in self.ports.items() if kept(path)},
         )
 
     @property

@@ -103,7 +103,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
             parts.append(spec)
         else:
             inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
-            nested[name] = inner.with_values(table.get("set", {}))
+            nested[name] = inner.with_values(table.get("set", {})).nested_as(name)
     return _assemble(data, file, parts, nested)
 
 
@@ -171,7 +171,8 @@ def _assemble(
     for inner in nested.values():
         parts += inner.parts
         connections += inner.connections
-        channels |= inner.channels
+        for name, patterns in inner.channels.items():
+            channels[name] = (*channels.get(name, ()), *patterns)
     for pair in data.get("connections", []):
         texts = isinstance(pair, list) and all(isinstance(path, str) for path in pair)
         if not texts or len(pair) != 2:
