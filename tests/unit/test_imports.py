@@ -45,7 +45,12 @@ TOP = {"__init__", "__main__", "commands"}
 
 ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
-    "llvmlite": {"cosim/loops/calls.py", "cosim/fmu/fmi3_calls.py", "fmi/native/objects.py"},
+    "llvmlite": {
+        "cosim/loops/calls.py",
+        "cosim/fmu/fmi3_calls.py",
+        "fmi/native/objects.py",
+        "kernels/linking.py",
+    },
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},
     "matplotlib": {"plotting"},

@@ -3,14 +3,17 @@
 A file, not `exec`, so that numba can cache what such a module compiles.
 """
 
-import hashlib
 import importlib.util
-import os
+import logging
 import sys
-import tempfile
+from pathlib import Path
 from types import ModuleType
 
+from herringbone.core.cache_keys import digest_of
+from herringbone.core.cached_file import write_file
 from herringbone.core.paths import cache_folder
+
+_LOG = logging.getLogger("herringbone")
 
 
 def load_generated(kind: str, source: str) -> ModuleType:
@@ -20,19 +23,25 @@ def load_generated(kind: str, source: str) -> ModuleType:
         kind: what it is, such as "twin"; becomes part of its name.
         source: Python source.
     """
-    digest = hashlib.sha256(source.encode()).hexdigest()[:16]
+    digest = digest_of(source)
     name = f"herringbone_{kind}_{digest}"
     if name in sys.modules:
         return sys.modules[name]
     file = cache_folder("generated") / f"{name}.py"
-    if not file.is_file():
-        with tempfile.NamedTemporaryFile(
-            "w", dir=file.parent, suffix=".part", delete=False, encoding="utf-8"
-        ) as part:
-            part.write(source)
-        os.replace(part.name, file)  # noqa: PTH105 (atomic on all platforms)
+    if not _is_written(file, source):
+        write_file(file, source.encode())
     spec = importlib.util.spec_from_file_location(name, file)
     module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]
     sys.modules[name] = module
     spec.loader.exec_module(module)  # type: ignore[union-attr]
     return module
+
+
+def _is_written(file: Path, source: str) -> bool:
+    """True if the file holds the source; a line is logged if it holds something else."""
+    if not file.is_file():
+        return False
+    if file.read_bytes() == source.encode():
+        return True
+    _LOG.warning("%s is damaged; it is written anew", file)
+    return False

@@ -1,16 +1,12 @@
 """Where things lie: component folders, system folders, generated artefacts."""
 
-import hashlib
 import os
-from functools import cache
 from pathlib import Path
 
 from herringbone.core.errors import ResourceError
 
 PACKAGE = Path(__file__).resolve().parents[1]
 CACHE_VARIABLE = "HERRINGBONE_CACHE"
-_COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
-"""Packages whose sources decide what is compiled and packed."""
 
 
 def _clone() -> Path | None:
@@ -23,9 +19,14 @@ def _data(folder: str) -> Path:
     return (clone if clone else PACKAGE / "data") / folder
 
 
+def components_folder() -> Path:
+    """Folder of the components' own folders."""
+    return _data("fmus")
+
+
 def component_folder(component: str) -> Path:
     """Folder of a component: script, README, resources."""
-    return _data("fmus") / component
+    return components_folder() / component
 
 
 def systems_folder() -> Path:
@@ -33,40 +34,28 @@ def systems_folder() -> Path:
     return _data("system_models")
 
 
-@cache
-def content_hash() -> str:
-    """Hash of the sources and resources that decide what is compiled and packed.
+def cache_root() -> Path:
+    """Folder of everything that is generated: `build/` in a clone, else the user's cache folder.
 
-    Golden results are left out: they follow from the sources.
+    HERRINGBONE_CACHE overrides both.
     """
-    digest = hashlib.sha256()
-    for root in (*(PACKAGE / name for name in _COMPUTING), _data("fmus")):
-        for file in sorted(root.rglob("*")):
-            source = file.suffix in {".py", ".csv", ".c", ".h"} and file.is_file()
-            if source and file.name != "golden.csv":
-                digest.update(file.relative_to(root).as_posix().encode())
-                digest.update(file.read_bytes())
-    return digest.hexdigest()[:16]
+    clone = _clone()
+    if CACHE_VARIABLE in os.environ:
+        return Path(os.environ[CACHE_VARIABLE])
+    if clone:
+        return clone / "build"
+    if "LOCALAPPDATA" in os.environ:
+        return Path(os.environ["LOCALAPPDATA"]) / "herringbone"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "herringbone"
 
 
 def cache_folder(kind: str) -> Path:
-    """Folder for generated artefacts of these sources, made if needed.
-
-    `build/` in a clone, the user's cache folder when installed; HERRINGBONE_CACHE overrides both.
+    """Folder for generated artefacts of a kind, made if needed; see `core.cache_keys`.
 
     Raises:
         ResourceError: the folder cannot be made.
     """
-    clone = _clone()
-    if CACHE_VARIABLE in os.environ:
-        root = Path(os.environ[CACHE_VARIABLE])
-    elif clone:
-        root = clone / "build"
-    elif "LOCALAPPDATA" in os.environ:
-        root = Path(os.environ["LOCALAPPDATA"]) / "herringbone"
-    else:
-        root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "herringbone"
-    folder = root / kind / content_hash()
+    folder = cache_root() / kind
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -75,8 +64,3 @@ def cache_folder(kind: str) -> Path:
             f"set {CACHE_VARIABLE} to a folder that can be written"
         ) from error
     return folder
-
-
-# Taken now, before the modules that it covers are imported: sources that are edited later in this
-# process must not get compiled code cached under their name.
-content_hash()

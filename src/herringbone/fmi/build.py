@@ -8,6 +8,7 @@ from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import FmuError
+from herringbone.core.cache_keys import packed_key
 from herringbone.core.paths import cache_folder
 
 
@@ -24,7 +25,7 @@ def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
         StructureError: there is no component of that name.
         FmuError: pythonfmu failed.
     """
-    folder = cache_folder("fmus")
+    folder = cache_folder(f"fmus/{packed_key()}")
     names = list(COMPONENTS if names is None else names)
     fmus = {component(name).name: folder / f"{name}.fmu" for name in names}
     missing = [name for name, fmu in fmus.items() if not fmu.is_file()]

@@ -7,7 +7,7 @@ from typing import Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Text, Variable
-from herringbone.core.paths import content_hash
+from herringbone.core.cache_keys import sources_key
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface
@@ -44,7 +44,7 @@ def identifier(component: Component, built_with: str = "") -> str:
         component: the component.
         built_with: see `UsedStates`.
     """
-    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {content_hash()}{built_with}"))
+    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{component.name} {sources_key()}{built_with}"))
 
 
 def model_description(component: Component, native: UsedStates | None = None) -> Element:

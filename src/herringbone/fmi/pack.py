@@ -13,7 +13,7 @@ from pathlib import Path
 from pythonfmu import FmuBuilder
 
 from herringbone.components.registry import component
-from herringbone.core.paths import content_hash
+from herringbone.core.cache_keys import sources_key
 from herringbone.fmi.archive import write_archive
 
 
@@ -23,7 +23,7 @@ def pack(name: str, folder: Path) -> Path:
     All scripts of one process must have different module names, or the first one runs in place of
     the others; the module name therefore holds the component and the hash of the sources.
     """
-    module = f"herringbone_{name}_{content_hash()}"
+    module = f"herringbone_{name}_{sources_key()}"
     with tempfile.TemporaryDirectory() as scratch:
         script = Path(scratch) / f"{module}.py"
         shutil.copyfile(component(name).folder / f"{name}.py", script)

@@ -12,8 +12,8 @@ from pythonfmu.enums import Fmi2Status
 
 from herringbone.components.registry import component
 from herringbone.core import FmuError, Instance
+from herringbone.core.cache_keys import sources_key
 from herringbone.core.instance import check_value
-from herringbone.core.paths import content_hash
 from herringbone.core.units import quantity
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface, model_description, state
@@ -51,7 +51,7 @@ class ComponentSlave(GuardedSlave):
         self._inputs = frozenset(
             reference for reference, v in self._reals.items() if v.causality is Causality.INPUT
         )
-        self._owner = f"{self._component.name} {content_hash()}"
+        self._owner = f"{self._component.name} {sources_key()}"
         self._tables = ""
         self._phase = _Phase.INSTANTIATED
         self._outdated = True
@@ -64,10 +64,10 @@ class ComponentSlave(GuardedSlave):
         """Warn if the FMU was built from other sources than the package that computes it."""
         script = Path(self.resources or "", "slavemodule.txt")
         built = script.read_text().strip().rpartition("_")[2] if script.is_file() else ""
-        if built and built != content_hash():
+        if built and built != sources_key():
             self._say(
                 f"{self.instance_name}: this FMU was built from sources {built}, but the installed "
-                f"package herringbone has {content_hash()}; build the FMU again",
+                f"package herringbone has {sources_key()}; build the FMU again",
                 Fmi2Status.warning,
             )
 

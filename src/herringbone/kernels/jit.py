@@ -1,35 +1,19 @@
-"""The decorators of kernels, and where compiled kernels are cached."""
+"""The decorators of kernels."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-import numba
 from numba import types
-from numba.core import config
-from numba.core.ccallback import CFunc
+from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
-from herringbone.core.paths import cache_folder
+from herringbone.kernels.cache import cached
+from herringbone.kernels.linking import LINKED, QUICK, WHOLE, CFunction, KernelDispatcher
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_OPTIONS = {"error_model": "numpy", "fastmath": False, "nogil": True}
-
-
-@contextmanager
-def _kernel_cache() -> Iterator[None]:
-    """Cache what is decorated inside in a folder that is named by the content of all sources.
-
-    numba notices a change of the file that holds a cached function, but not of the files that hold
-    its callees. Nor does it tell apart how hard it was asked to optimise.
-    """
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder("kernels") / f"optimised-{int(config.OPT)}")
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
+_C_OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
+_OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True}
 
 
 def kernel(function: Callable[P, T]) -> Callable[P, T]:
@@ -38,8 +22,7 @@ def kernel(function: Callable[P, T]) -> Callable[P, T]:
     It makes no arrays, so that references to arrays need not be counted: in the compiled loop,
     which passes dozens of them on, that would take most of the time.
     """
-    with _kernel_cache():
-        return numba.njit(**_OPTIONS, cache=True, _nrt=False)(function)
+    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}), function)
 
 
 def inlined(function: Callable[P, T]) -> Callable[P, T]:
@@ -48,26 +31,32 @@ def inlined(function: Callable[P, T]) -> Callable[P, T]:
     A tuple of arrays is passed by copying every field of every array; with dozens of arrays that
     takes longer than most functions.
     """
-    with _kernel_cache():
-        return numba.njit(**_OPTIONS, cache=True, _nrt=False, forceinline=True)(function)
+    return cached(
+        KernelDispatcher(function, {**_OPTIONS, "_nrt": False, "forceinline": True}), function
+    )
 
 
 def allocating(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for a function that makes arrays of its own."""
-    with _kernel_cache():
-        return numba.njit(**_OPTIONS, cache=True, _nrt=True)(function)  # whoever calls it
+    return cached(
+        KernelDispatcher(function, {**_OPTIONS, "_nrt": True}), function
+    )  # whoever calls it
+
+
+def seldom(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a function that is called a few times: it is compiled quickly."""
+    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, QUICK), function)
 
 
 def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """Compile a function that a factory makes for `owner`; its callers hold the cache.
 
-    The owner becomes part of its name: numba tells closures of one factory apart by a counter of
-    the process, so that callers that different processes cached could share a symbol.
+    The owner becomes part of its name, for messages and profiles.
     """
 
     def decorate(function: Callable[P, T]) -> Callable[P, T]:
         function.__qualname__ = f"{owner}.{function.__qualname__}"
-        return numba.njit(**_OPTIONS, _nrt=False)(function)
+        return KernelDispatcher(function, {**_OPTIONS, "_nrt": False})
 
     return decorate
 
@@ -84,11 +73,21 @@ def reals_at(typing_context, addresses, index):  # noqa: ANN001, ANN201
     return signature, generate
 
 
-def c_function(signature: object) -> Callable[[Callable], CFunc]:
+def c_function(signature: object) -> Callable[[Callable], CFunction]:
     """Compile a function of a module that is called by its C address, and cache it."""
 
-    def decorate(function: Callable) -> CFunc:
-        with _kernel_cache():
-            return numba.cfunc(signature, error_model="numpy", cache=True)(function)
+    def decorate(function: Callable) -> CFunction:
+        found = CFunction(function, normalize_signature(signature), {}, _C_OPTIONS, WHOLE)
+        return cached(found, function)
 
     return decorate
+
+
+def c_code(signature: object, function: Callable) -> CFunction:
+    """LLVM code of a function that is called by its C address, with all that it calls.
+
+    It is not optimised: that is done for a target, see `fmi.native.objects`.
+    """
+    compiled = CFunction(function, normalize_signature(signature), {}, _C_OPTIONS, LINKED)
+    compiled.compile()
+    return compiled

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from herringbone.analysis.housing.contract import check_housing
 from herringbone.core import HerringboneError
+from herringbone.core.cache_keys import sources_key
 from herringbone.core.paths import cache_folder
 from herringbone.cosim.fmu.opening import open_fmu
 
@@ -19,7 +20,7 @@ def replacement_notes(fmu: Path) -> list[str]:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
     except OSError:
         return []
-    known = cache_folder("housing-checks") / f"{digest}.json"
+    known = cache_folder(f"housing-checks/{sources_key()}") / f"{digest}.json"
     if known.is_file():
         return json.loads(known.read_text(encoding="utf-8"))
     try:

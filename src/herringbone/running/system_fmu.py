@@ -1,19 +1,15 @@
 """A whole system as one native FMU."""
 
-import pickle
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from herringbone.analysis.twin.composite import make_composite
-from herringbone.core import Component, ParameterError
-from herringbone.cosim.structure.system import System
+from herringbone.core import ParameterError
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.running.export import prepared, written
 from herringbone.scenes import Scene
-
-_FACTORY = f"{__name__}:unpacked_component"
 
 
 def export_fmu(
@@ -50,17 +46,11 @@ def export_fmu(
     composite = make_composite(structure, tuple(outside))
     model = Model(
         composite.component,
-        _FACTORY,
-        pickle.dumps((structure, tuple(outside))).hex(),
+        (make_composite.__module__,),
         composite.resources,
+        identity=repr((structure, tuple(outside))),
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):
         shutil.copyfile(built, file)
     return file
-
-
-def unpacked_component(argument: str) -> Component:
-    """The component of a pickled (system, outside); for the process that compiles its kernels."""
-    found: tuple[System, tuple[str, ...]] = pickle.loads(bytes.fromhex(argument))
-    return make_composite(*found).component

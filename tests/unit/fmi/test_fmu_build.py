@@ -6,7 +6,8 @@ import pytest
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, StructureError
-from herringbone.core.paths import component_folder, content_hash
+from herringbone.core.cache_keys import sources_key
+from herringbone.core.paths import component_folder
 from herringbone.fmi import build, build_python_fmus, check_fmu
 from herringbone.fmi.state import FmuState, from_bytes, to_bytes
 
@@ -44,7 +45,7 @@ def test_content_of_the_file(name, python_fmus):
         for file in (component_folder(name) / "resources").glob("*.csv"):
             assert archive.read(f"resources/{file.name}") == file.read_bytes()
     assert names == sorted(names)
-    assert module == f"herringbone_{name}_{content_hash()}"
+    assert module == f"herringbone_{name}_{sources_key()}"
     assert script == (component_folder(name) / f"{name}.py").read_text()
     assert f"binaries/linux64/{name}.so" in names
     assert f"binaries/win64/{name}.dll" in names

@@ -21,6 +21,7 @@ from herringbone.fmi.native import (
     build,
     build_native_fmus,
     compiler,
+    objects,
     own_platform,
     symbols,
 )
@@ -47,7 +48,7 @@ def test_two_builds_are_identical(native_fmus, tmp_path, monkeypatch):
 
 
 def test_a_build_is_used_again(native_fmus, monkeypatch):
-    monkeypatch.setattr(build, "_compile_kernels", lambda *_: pytest.fail("built again"))
+    monkeypatch.setattr(build, "object_code", lambda *_: pytest.fail("built again"))
     assert build_native_fmus(["drive_motor"]) == {"drive_motor": native_fmus["drive_motor"]}
 
 
@@ -56,9 +57,7 @@ def test_other_resources_make_another_fmu(tmp_path):
     name, file = next(iter(model.resources.items()))
     other = tmp_path / name
     other.write_bytes(file.read_bytes() + b"# other\n")
-    changed = type(model)(
-        model.component, model.factory, model.argument, {**model.resources, name: other}
-    )
+    changed = type(model)(model.component, model.modules, {**model.resources, name: other})
     assert changed.key != model.key
     assert registered_model("bench_controller").key == model.key
 
@@ -126,14 +125,23 @@ def test_gate_refuses_a_young_libc(compiled, monkeypatch):
 
 
 @pytest.mark.slow
-def test_kernels_for_all_platforms_need_no_functions(tmp_path):
-    models = [registered_model(name) for name in ("gear_mesh", "modal_housing")]
-    build._compile_kernels(tmp_path, list(PLATFORMS.values()), models)
-    for platform in PLATFORMS.values():
-        for model in models:
-            data = (tmp_path / platform.name / f"{model.name}.o").read_bytes()
-            symbols.check_object(data, platform, model.name)
-            assert symbols.undefined(data) <= symbols._IN_OBJECTS
+def test_kernels_for_all_platforms_need_no_functions():
+    for name in ("gear_mesh", "modal_housing"):
+        for platform, code in objects.object_code(COMPONENTS[name], PLATFORMS.values()).items():
+            symbols.check_object(code, platform, name)
+            assert symbols.undefined(code) <= symbols._IN_OBJECTS
+
+
+def test_damaged_files_are_made_anew(tmp_path, monkeypatch, caplog):
+    monkeypatch.setattr(build, "cache_folder", lambda kind: tmp_path / kind)
+    good = build_native_fmus(["shaft_coupling"])["shaft_coupling"].read_bytes()
+    for suffix in (".fmu", f".{OWN.extension}", ".o"):
+        for file in tmp_path.rglob(f"*{suffix}"):
+            file.write_bytes(file.read_bytes()[:100])
+    assert build_native_fmus(["shaft_coupling"])["shaft_coupling"].read_bytes() == good
+    assert "shaft_coupling.fmu is damaged; it is made anew" in caplog.text
+    assert f"shaft_coupling.{OWN.extension} is damaged" in caplog.text
+    assert f"{OWN.name}.o is damaged" in caplog.text
 
 
 @pytest.mark.slow

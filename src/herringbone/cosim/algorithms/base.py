@@ -180,8 +180,9 @@ class PreparedRun(ABC):
 
     def passes(self, macro_steps: int) -> list[int]:
         """Calls of doStep so far, by part."""
-        taken = self.layout.slow.taken
-        return [int(n) if n >= 0 else macro_steps for n in taken]
+        if self.layout.slow is None:
+            return [macro_steps] * len(self.degree)
+        return [int(n) if n >= 0 else macro_steps for n in self.layout.slow.taken]
 
     @property
     def rollbacks(self) -> int:

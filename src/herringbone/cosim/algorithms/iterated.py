@@ -153,7 +153,8 @@ class PreparedNodes(PreparedRun):
         del macro_steps
         if self._buffers is None:
             return [0] * len(self.degree)
-        return np.maximum(self._buffers.passes, self.layout.slow.taken).tolist()
+        passes, slow = self._buffers.passes, self.layout.slow
+        return (passes if slow is None else np.maximum(passes, slow.taken)).tolist()
 
     @property
     def rollbacks(self) -> int:

@@ -58,9 +58,12 @@ class InterfaceJacobian:
         """
         count = self.nodes.degree * self.nodes.unknown.size
         jacobian, off = np.zeros((count, count)), np.zeros(len(self.owners))
+        saved, room = buffers.history.copy(), (buffers.rest.copy(), buffers.nodes.copy())
         failed = sensitivity(
-            self.layout, self.nodes, buffers, jacobian, off, _CHANGE * size, PREDICTION, t, h, known
-        )
+            self.layout, self.nodes, buffers, jacobian, off, _CHANGE * size, *room,
+            PREDICTION, t, h, known,
+        )  # fmt: skip
+        buffers.history[:] = saved
         if failed >= 0 or not np.isfinite(jacobian).all():
             name = self.network.parts[failed].name if failed >= 0 else "the coupling"
             raise StepRefusedError(

@@ -48,7 +48,7 @@ class Layout(NamedTuple):
     record_reference: np.ndarray
     stage_first: np.ndarray
     stage_part: np.ndarray
-    slow: Slow
+    slow: Slow | None
     derivatives: Derivatives
 
 

@@ -92,8 +92,10 @@ def _offsets(sizes: Sequence[int]) -> np.ndarray:
 
 def lay_out_slow(
     network: Network, outputs: Sequence[Sequence[str]], degree: Sequence[int], per: int
-) -> Slow:
-    """Arrays of a network's slow parts; empty ones if there are none.
+) -> Slow | None:
+    """Arrays of a network's slow parts; None if there are none.
+
+    The loops are compiled without all that slow parts need, then.
 
     Args:
         network: parts and connections.
@@ -101,6 +103,8 @@ def lay_out_slow(
         degree: nodes of each part's inputs.
         per: samples of the signals in a macro step.
     """
+    if not network.slow:
+        return None
     parts = list(network.slow)
     first = _offsets([len(names) for names in outputs])
     own = [
@@ -127,5 +131,5 @@ def lay_out_slow(
         _offsets(traces),
         np.zeros(sum(traces)),
         _offsets([fit.size for fit in fits]),
-        np.concatenate([fit.ravel() for fit in fits]) if fits else np.zeros(0),
+        np.concatenate([fit.ravel() for fit in fits]),
     )

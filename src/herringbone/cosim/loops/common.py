@@ -9,6 +9,7 @@ interpolated.
 import numpy as np
 
 from herringbone.cosim.layouts.layout import Chunk, Layout
+from herringbone.cosim.layouts.slow import Slow
 from herringbone.cosim.loops.calls import do_step, exchange_reals
 from herringbone.cosim.loops.derivatives import set_derivatives, write_input
 from herringbone.kernels.jit import inlined
@@ -124,6 +125,22 @@ def set_inputs(
 
 
 @inlined
+def is_slow(slow: Slow | None, p: int) -> bool:
+    """True if a part steps once in several macro steps."""
+    if slow is None:
+        return False
+    return slow.taken[p] >= 0
+
+
+@inlined
+def is_waiting(slow: Slow | None, p: int) -> bool:
+    """True if a part has not reached the present communication point."""
+    if slow is None:
+        return False
+    return slow.waiting[p] != 0
+
+
+@inlined
 def get_outputs(layout: Layout, history: np.ndarray, p: int, records: np.ndarray, row: int) -> int:
     """Get all connected outputs of a part into row 0 of the history; FMI status.
 
@@ -145,7 +162,7 @@ def get_outputs(layout: Layout, history: np.ndarray, p: int, records: np.ndarray
             layout, p, layout.get_real, layout.record_reference, at, count, records, place
         )
     for i in range(first, end):
-        if layout.slow.waiting[p]:  # its connected outputs are predicted meanwhile
+        if is_waiting(layout.slow, p):  # its connected outputs are predicted meanwhile
             records[row, layout.output_record[i]] = history[0, i]
         else:
             history[0, i] = records[row, layout.output_record[i]]

@@ -5,38 +5,45 @@ import numpy as np
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.jit import seldom
 
 
-@allocating
-def sensitivity(
+@seldom
+def sensitivity(  # noqa: PLR0912 (loops instead of array expressions)
     layout: Layout,
     nodes: NodeLayout,
     buffers: Buffers,
     jacobian: np.ndarray,
     off: np.ndarray,
     change: np.ndarray,
+    base: np.ndarray,
+    first: np.ndarray,
     order: int,
     t: float,
     h: float,
     known: int,
 ) -> int:
-    """dG/dU by forward differences over doStep, (unknowns p) squared; all is restored after.
+    """dG/dU by forward differences over doStep, (unknowns p) squared; states are restored after.
 
     Args:
         jacobian: is written.
         off: (outputs,) is written: by how much the first pass, repeated last, gives other values.
         change: of each unknown.
+        base, first: room for the residual and the signals at the nodes, as long as these.
 
     Returns:
         -1, or the part that failed.
     """
-    saved = buffers.history.copy()
     failed = begin(layout, nodes, buffers, order, known, t, h, True)
     if failed < 0:
         failed = one_pass(layout, nodes, buffers, t, h)
     count = nodes.unknown.size
-    base, first = buffers.rest.copy(), buffers.nodes.copy()
+    for k in range(base.shape[0]):
+        for i in range(count):
+            base[k, i] = buffers.rest[k, i]
+    for k in range(first.shape[0]):
+        for i in range(first.shape[1]):
+            first[k, i] = buffers.nodes[k, i]
     for column in range(jacobian.shape[1]):
         if failed >= 0:
             break
@@ -59,5 +66,4 @@ def sensitivity(
         for k in range(nodes.degree + 1):
             off[i] = max(off[i], abs(buffers.nodes[k, i] - first[k, i]))
     refused = restore(layout, nodes, buffers, True)
-    buffers.history[:] = saved
     return failed if failed >= 0 else refused

@@ -189,12 +189,13 @@ def begin(
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
             buffers.trial[k, i] = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
-    predict_slow_nodes(layout, buffers.nodes, buffers.history[1], known - 1, h)
+    predict_slow_nodes(layout.slow, layout, buffers.nodes, buffers.history[1], known - 1, h)
     for s in range(nodes.sources.size):
         p = nodes.sources[s]
         if trial and nodes.get_state[p] == 0:
             for i in range(layout.output_first[p], layout.output_first[p + 1]):
-                buffers.nodes[1:, i] = buffers.nodes[0, i]
+                for node in range(1, nodes.degree + 1):
+                    buffers.nodes[node, i] = buffers.nodes[0, i]
             continue
         failed = _step_group(layout, nodes, buffers, nodes.sources[s : s + 1], t, h)
         if failed >= 0:

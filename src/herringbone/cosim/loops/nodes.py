@@ -19,6 +19,7 @@ from herringbone.cosim.loops.common import (
     NOT_FINITE,
     PART_FAILED,
     get_outputs,
+    is_slow,
     not_finite,
     record_row,
 )
@@ -133,8 +134,8 @@ def run_iterated(
         finish(layout, nodes, buffers)
         buffers.spacing[0] = 1.0
         for node in range(1, nodes.degree + 1):
-            trace_slow(layout, buffers.nodes[node], n, node, nodes.degree)
-        failed = finish_slow(layout, buffers.history, chunk, n)
+            trace_slow(layout.slow, layout, buffers.nodes[node], n, node, nodes.degree)
+        failed = finish_slow(layout.slow, layout, buffers.history, chunk, n)
         if failed >= 0:
             return PART_FAILED, n, failed
         culprit = not_finite(layout, buffers.history)
@@ -144,7 +145,7 @@ def run_iterated(
         if is_watched(chunk.energy, h):
             watch_nodes(chunk.energy, buffers.nodes, buffers.trial, h)
         for p in range(layout.component.size if row >= 0 else 0):
-            fast = layout.slow.taken[p] < 0
+            fast = not is_slow(layout.slow, p)
             if fast and get_outputs(layout, buffers.history, p, chunk.records, row) > LAST_GOOD:
                 return PART_FAILED, n + 1, p
         if contraction > control.slow:

@@ -43,58 +43,65 @@ def _remember(slow: Slow, k: int, values: np.ndarray) -> None:
 
 
 @inlined
-def _sample(layout: Layout, k: int, sample: int, values: np.ndarray) -> None:
+def _sample(slow: Slow, layout: Layout, k: int, sample: int, values: np.ndarray) -> None:
     """The present inputs of slow part k become a sample of its trace."""
-    p = layout.slow.parts[k]
+    p = slow.parts[k]
     first, count = layout.input_first[p], layout.input_first[p + 1] - layout.input_first[p]
-    at = layout.slow.trace_first[k] + sample * count
+    at = slow.trace_first[k] + sample * count
     for i in range(count):
-        layout.slow.trace[at + i] = values[layout.input_source[first + i]]
+        slow.trace[at + i] = values[layout.input_source[first + i]]
 
 
 @inlined
-def start_slow(layout: Layout, values: np.ndarray) -> None:
+def start_slow(slow: Slow, layout: Layout, values: np.ndarray) -> None:
     """The run starts with these outputs."""
-    for k in range(layout.slow.parts.size):
-        for _ in range(layout.slow.past.shape[0]):
-            _remember(layout.slow, k, values)
-        _sample(layout, k, 0, values)
+    for k in range(slow.parts.size):
+        for _ in range(slow.past.shape[0]):
+            _remember(slow, k, values)
+        _sample(slow, layout, k, 0, values)
 
 
 @inlined
-def predict_slow(layout: Layout, history: np.ndarray, n: int, h: float) -> None:
+def predict_slow(slow: Slow | None, layout: Layout, history: np.ndarray, n: int, h: float) -> None:
     """Outputs of slow parts at the end of macro step n."""
+    if slow is None:
+        return
     if n == 0:
-        start_slow(layout, history[1])
-    for i in range(layout.slow.output.size):
-        history[0, layout.slow.output[i]] = slow_motion(layout.slow, i, n, 1.0, h)
+        start_slow(slow, layout, history[1])
+    for i in range(slow.output.size):
+        history[0, slow.output[i]] = slow_motion(slow, i, n, 1.0, h)
 
 
 @inlined
 def predict_slow_nodes(
-    layout: Layout, nodes: np.ndarray, start: np.ndarray, n: int, h: float
+    slow: Slow | None, layout: Layout, nodes: np.ndarray, start: np.ndarray, n: int, h: float
 ) -> None:
     """Outputs of slow parts at the nodes of macro step n; the run starts with `start`."""
+    if slow is None:
+        return
     if n == 0:
-        start_slow(layout, start)
+        start_slow(slow, layout, start)
     degree = nodes.shape[0] - 1
     for node in range(1, degree + 1):
-        for i in range(layout.slow.output.size):
-            value = slow_motion(layout.slow, i, n, node / degree, h)
-            nodes[node, layout.slow.output[i]] = value
+        for i in range(slow.output.size):
+            value = slow_motion(slow, i, n, node / degree, h)
+            nodes[node, slow.output[i]] = value
 
 
 @inlined
-def trace_slow(layout: Layout, values: np.ndarray, n: int, node: int, per: int) -> None:
+def trace_slow(
+    slow: Slow | None, layout: Layout, values: np.ndarray, n: int, node: int, per: int
+) -> None:
     """Collect the inputs of slow parts at node / per of macro step n."""
-    for k in range(layout.slow.parts.size):
-        _sample(layout, k, (n % layout.slow.multiple[k]) * per + node, values)
+    if slow is None:
+        return
+    for k in range(slow.parts.size):
+        _sample(slow, layout, k, (n % slow.multiple[k]) * per + node, values)
 
 
 @inlined
-def _set_fitted(layout: Layout, k: int) -> int:
+def _set_fitted(slow: Slow, layout: Layout, k: int) -> int:
     """Set the inputs of slow part k to the polynomial nearest to its trace; FMI status."""
-    slow = layout.slow
     p = slow.parts[k]
     count = layout.input_first[p + 1] - layout.input_first[p]
     if count == 0:
@@ -115,12 +122,16 @@ def _set_fitted(layout: Layout, k: int) -> int:
 
 
 @inlined
-def finish_slow(layout: Layout, history: np.ndarray, chunk: Chunk, n: int) -> int:
+def finish_slow(
+    slow: Slow | None, layout: Layout, history: np.ndarray, chunk: Chunk, n: int
+) -> int:
     """Step the slow parts that macro step n brings to their communication point; -1, or who failed.
 
     All are recorded, if it is time for a row; those that wait as predicted.
     """
-    slow, row = layout.slow, record_row(chunk, n)
+    if slow is None:
+        return -1
+    row = record_row(chunk, n)
     for k in range(slow.parts.size):
         p, multiple = slow.parts[k], slow.multiple[k]
         slow.waiting[p] = (n + 1) % multiple != 0
@@ -129,7 +140,7 @@ def finish_slow(layout: Layout, history: np.ndarray, chunk: Chunk, n: int) -> in
                 return p
             continue
         t, h = chunk.t0 + (n + 1 - multiple) * chunk.h, multiple * chunk.h
-        if _set_fitted(layout, k) > LAST_GOOD:
+        if _set_fitted(slow, layout, k) > LAST_GOOD:
             return p
         slow.taken[p] += 1
         if do_step(layout.do_step[p], layout.component[p], t, h) > LAST_GOOD:
@@ -137,5 +148,5 @@ def finish_slow(layout: Layout, history: np.ndarray, chunk: Chunk, n: int) -> in
         if get_outputs(layout, history, p, chunk.records, row) > LAST_GOOD:
             return p
         _remember(slow, k, history[0])
-        _sample(layout, k, 0, history[0])
+        _sample(slow, layout, k, 0, history[0])
     return -1

@@ -36,14 +36,14 @@ def run_stages(
     h = chunk.h
     for n in range(chunk.start, chunk.start + chunk.count):
         start_step(history)
-        predict_slow(layout, history, n, h)
+        predict_slow(layout.slow, layout, history, n, h)
         t, row = chunk.t0 + n * h, record_row(chunk, n)
         for stage in range(layout.stage_first.size - 1):
             failed = step_stage(layout, history, stage, order, n + 1, t, h, chunk.records, row)
             if failed >= 0:
                 return PART_FAILED, n, failed
-        trace_slow(layout, history[0], n, 1, 1)
-        failed = finish_slow(layout, history, chunk, n)
+        trace_slow(layout.slow, layout, history[0], n, 1, 1)
+        failed = finish_slow(layout.slow, layout, history, chunk, n)
         if failed >= 0:
             return PART_FAILED, n, failed
         culprit = not_finite(layout, history)

@@ -1,33 +1,22 @@
 """Build native FMUs into the cache of generated artefacts."""
 
-import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
+from herringbone.core.cache_keys import digest_of, kernels_key, wrapper_key
+from herringbone.core.cached_file import is_stored, store
 from herringbone.core.paths import cache_folder
-from herringbone.fmi.native.compiler import compile_library, require_compiler
+from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.native.model import Model, registered_model
+from herringbone.fmi.native.objects import object_code
 from herringbone.fmi.native.pack import pack_native
 from herringbone.fmi.native.platforms import Platform, own_platform, platform_of
 from herringbone.fmi.native.symbols import check_library, check_object
 
-_ENVIRONMENT = {
-    "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CPU_FEATURES": "",
-    "NUMBA_DISABLE_INTEL_SVML": "1",
-}
-"""What numba must be asked for before it is imported: code for any processor."""
-_KINDS: dict[str, dict[str, str]] = {
-    "fast": {},
-    "small": {"NUMBA_OPT": "1", "NUMBA_LOOP_VECTORIZE": "0", "NUMBA_SLP_VECTORIZE": "0"},
-}
-"""What else it is asked for: see `objects`. Unrolled loops cannot be rolled up again."""
 VERSIONS = (2, 3)
 """FMI versions that native FMUs are built for."""
 
@@ -70,37 +59,34 @@ def build_native_fmus(
 def build_models(
     models: Sequence[Model], *, platforms: Sequence[str] = (), fmi: int = 2
 ) -> dict[str, Path]:
-    """As `build_native_fmus`, for any models; all must have the same factory."""
+    """As `build_native_fmus`, for any models."""
     if fmi not in VERSIONS:
         raise ParameterError(f"FMI version {fmi}; it must be 2 or 3")
     chosen = _chosen(platforms)
     fmus = {
-        model.name: _folder(model)
-        / f"fmi{fmi}"
-        / "+".join(p.name for p in chosen)
+        model.name: cache_folder("native-fmus")
+        / f"{model.name}-{model.key}"
+        / f"fmi{fmi}-{'+'.join(p.name for p in chosen)}"
         / f"{model.name}.fmu"
         for model in models
     }
-    missing = [model for model in models if not fmus[model.name].is_file()]
-    _make_libraries(missing, chosen, fmi)
+    missing = [model for model in models if not is_stored(fmus[model.name])]
     for model in missing:
-        fmu = fmus[model.name]
-        fmu.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=fmu.parent) as scratch:
+        _make_libraries(model, chosen, fmi)
+        with tempfile.TemporaryDirectory() as scratch:
             libraries = {platform: _library(model, platform, fmi) for platform in chosen}
-            pack_native(model, libraries, fmi, Path(scratch) / fmu.name).replace(fmu)
+            packed = pack_native(model, libraries, fmi, Path(scratch) / f"{model.name}.fmu")
+            store(fmus[model.name], packed.read_bytes())
     return fmus
-
-
-def _folder(model: Model) -> Path:
-    return cache_folder("native") / f"{model.name}-{model.key}"
 
 
 def _library(model: Model, platform: Platform, fmi: int) -> Path:
     """Where the library of a model for an FMI version lies in the cache."""
     compiler = require_compiler(platform)
-    folder = _folder(model) / f"{platform.name}-{compiler.name}-fmi{fmi}"
-    return folder / f"{model.name}.{platform.extension}"
+    folder = cache_folder("native-libraries") / f"{model.name}-{model.library_key}"
+    return (
+        folder / f"{platform.name}-{compiler.name}-fmi{fmi}" / f"{model.name}.{platform.extension}"
+    )
 
 
 def _chosen(platforms: Sequence[str]) -> list[Platform]:
@@ -115,63 +101,51 @@ def _chosen(platforms: Sequence[str]) -> list[Platform]:
 
 def _kernels(model: Model, platform: Platform) -> Path:
     """Where the object code of a model's kernels lies in the cache; FMI versions share it."""
-    return _folder(model) / f"{platform.name}.o"
+    folder = cache_folder("native-objects") / f"{model.name}-{model.kernels_key}"
+    return folder / f"{platform.name}.o"
 
 
-def _make_kernels(models: list[Model], platforms: list[Platform]) -> None:
+def _make_kernels(model: Model, platforms: list[Platform]) -> None:
     """Make the object code that is not in the cache."""
-    missing = [p for p in platforms if any(not _kernels(m, p).is_file() for m in models)]
-    wanted = [m for m in models if any(not _kernels(m, p).is_file() for p in platforms)]
-    if not wanted:
+    missing = [p for p in platforms if not is_stored(_kernels(model, p))]
+    if not missing:
         return
-    with tempfile.TemporaryDirectory(dir=cache_folder("native")) as scratch:
-        folder = Path(scratch)
-        _compile_kernels(folder, missing, wanted)
-        for model in wanted:
-            for platform in missing:
-                file = folder / platform.name / f"{model.name}.o"
-                check_object(file.read_bytes(), platform, model.name)
-                target = _kernels(model, platform)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                file.replace(target)
+    for platform, code in object_code(model.component, missing).items():
+        check_object(code, platform, model.name)
+        store(_kernels(model, platform), code)
 
 
-def _make_libraries(models: list[Model], platforms: list[Platform], fmi: int) -> None:
+def _wrapper(platform: Platform, fmi: int) -> list[Path]:
+    """Object files of the wrapper, from the cache if they are there."""
+    compiler = require_compiler(platform)
+    key = digest_of(wrapper_key(), kernels_key(compile_wrapper.__module__))
+    folder = cache_folder("native-objects") / f"wrapper-{key}"
+    folder = folder / f"{platform.name}-{compiler.name}-fmi{fmi}"
+    files = sorted(folder.glob("*.o"))
+    if files and all([is_stored(file) for file in files]):
+        return files
+    with tempfile.TemporaryDirectory() as scratch:
+        compile_wrapper(compiler, platform, Path(scratch), fmi)
+        made = {folder / file.name: file.read_bytes() for file in Path(scratch).glob("*.o")}
+    for file, code in made.items():
+        store(file, code)
+    return sorted(made)
+
+
+def _make_libraries(model: Model, platforms: list[Platform], fmi: int) -> None:
     """Make the libraries that are not in the cache."""
-    missing = [p for p in platforms if any(not _library(m, p, fmi).is_file() for m in models)]
-    wanted = [m for m in models if any(not _library(m, p, fmi).is_file() for p in platforms)]
-    _make_kernels(wanted, missing)
-    with tempfile.TemporaryDirectory(dir=cache_folder("native")) as scratch:
-        folder = Path(scratch)
-        for model in wanted:
-            description = folder / f"{model.name}.c"
-            description.write_text(component_source(model.states), encoding="ascii")
-            for platform in missing:
-                kernels = _kernels(model, platform)
-                target = _library(model, platform, fmi)
-                library = folder / target.name
-                compiler = require_compiler(platform)
-                compile_library(compiler, platform, description, kernels, library, fmi=fmi)
-                check_library(library.read_bytes(), platform, model.name)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                library.replace(target)
-
-
-def _compile_kernels(folder: Path, platforms: list[Platform], models: list[Model]) -> None:
-    for kind, asked in _KINDS.items():
-        command = [
-            sys.executable, "-m", "herringbone.fmi.native.objects", kind, str(folder),
-            ",".join(p.name for p in platforms), models[0].factory, *(m.argument for m in models),
-        ]  # fmt: skip
-        environment = {**os.environ, **_ENVIRONMENT, **asked}
-        run = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-        _refuse_failure(run, models)
-
-
-def _refuse_failure(run: subprocess.CompletedProcess[str], models: list[Model]) -> None:
-    if run.returncode:
-        names = ", ".join(model.name for model in models)
-        lines = run.stderr.splitlines()
-        errors = [line for line in lines if "Error: " in line] or lines[-1:]
-        why = errors[-1].strip() if errors else f"exit code {run.returncode}"
-        raise FmuError(f"the kernels of {names} could not be compiled: {why}")
+    missing = [p for p in platforms if not is_stored(_library(model, p, fmi))]
+    if not missing:
+        return
+    _make_kernels(model, missing)
+    with tempfile.TemporaryDirectory() as scratch:
+        description = Path(scratch) / f"{model.name}.c"
+        description.write_text(component_source(model.states), encoding="ascii")
+        for platform in missing:
+            target, compiler = _library(model, platform, fmi), require_compiler(platform)
+            library = Path(scratch) / target.name
+            objects = [*_wrapper(platform, fmi), _kernels(model, platform)]
+            compile_library(compiler, platform, description, objects, library)
+            code = library.read_bytes()
+            check_library(code, platform, model.name)
+            store(target, code)

@@ -4,6 +4,7 @@ import importlib.util
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,9 +24,14 @@ _FLAGS = (
 )  # fmt: skip
 _NO_UNWINDING = ("-fno-asynchronous-unwind-tables", "-fno-unwind-tables")  # nothing is thrown
 _SYSTEM = {
-    "so": (*_NO_UNWINDING, "-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
-    "dll": ("-D__USE_MINGW_ANSI_STDIO=0", "-rtlib=none", "-Wl,--gc-sections"),
-    "dylib": (*_NO_UNWINDING, "-Wl,-dead_strip"),
+    "so": _NO_UNWINDING,
+    "dll": ("-D__USE_MINGW_ANSI_STDIO=0",),
+    "dylib": _NO_UNWINDING,
+}
+_LINK = {
+    "so": ("-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,defs"),
+    "dll": ("-rtlib=none", "-Wl,--gc-sections"),
+    "dylib": ("-Wl,-dead_strip",),
 }
 """What differs by system. Windows: its own printf, and nothing of the compiler's library, which
 would be a third of the file; functions there need their tables for unwinding."""
@@ -70,38 +76,61 @@ def require_compiler(platform: Platform) -> Compiler:
     return found
 
 
-def compile_library(
-    compiler: Compiler,
-    platform: Platform,
-    description: Path,
-    kernels: Path,
-    library: Path,
-    *,
-    fmi: int = 2,
-) -> None:
-    """Compile the wrapper with a component's description, and link it with the kernels.
+def compile_wrapper(compiler: Compiler, platform: Platform, folder: Path, fmi: int) -> None:
+    """Compile the wrapper, which all components share, into object files.
 
     Args:
         compiler: for `platform`.
         platform: what the library is for.
-        description: C file from `component_source`.
-        kernels: object file.
-        library: file that is written.
+        folder: in which the object files are written.
         fmi: FMI version, 2 or 3; the functions of the other one are left out.
 
     Raises:
         FmuError: the compiler failed.
     """
-    headers = Path(fmpy.__file__).parent / "c-code"
-    link = list(_SYSTEM[platform.extension])
+    flags = [*_FLAGS, *_system(platform), *_include(), "-c"]
+    for source in _sources(fmi):  # zig takes one at a time
+        _run(compiler, platform, [*flags, str(source), "-o", f"{source.stem}.o"], folder)
+
+
+def compile_library(
+    compiler: Compiler,
+    platform: Platform,
+    description: Path,
+    objects: Sequence[Path],
+    library: Path,
+) -> None:
+    """Compile a component's description, and link it with the wrapper and the kernels.
+
+    Args:
+        compiler: for `platform`.
+        platform: what the library is for.
+        description: C file from `component_source`.
+        objects: object files of the wrapper and of the kernels.
+        library: file that is written.
+
+    Raises:
+        FmuError: the compiler failed.
+    """
+    link = list(_LINK[platform.extension])
     if platform.extension == "dylib":
         link.append(f"-Wl,-install_name,@rpath/{library.name}")
-    command = [
-        *compiler.command, "-shared", "-s", *_FLAGS, *(f"-I{folder}" for folder in INCLUDES),
-        f"-I{headers}", *map(str, _sources(fmi)), str(description), str(kernels),
-        "-o", str(library), *link,
-    ]  # fmt: skip
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    flags = ["-shared", "-s", *_FLAGS, *_system(platform), *_include()]
+    inputs = [str(description), *map(str, objects)]
+    _run(compiler, platform, [*flags, *inputs, "-o", library.name, *link], library.parent)
+
+
+def _system(platform: Platform) -> tuple[str, ...]:
+    return _SYSTEM[platform.extension]
+
+
+def _include() -> list[str]:
+    return [f"-I{folder}" for folder in (*INCLUDES, Path(fmpy.__file__).parent / "c-code")]
+
+
+def _run(compiler: Compiler, platform: Platform, arguments: Sequence[str], folder: Path) -> None:
+    command = [*compiler.command, *arguments]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     if run.returncode:
         raise FmuError(f"{compiler.name} for {platform.name} failed: {_reason(run.stderr)}")
 

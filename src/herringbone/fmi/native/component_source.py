@@ -6,8 +6,8 @@ from collections.abc import Container, Iterable
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Declaration, Text, Variable
+from herringbone.core.cache_keys import sources_key
 from herringbone.core.component import unbounded, unchanged
-from herringbone.core.paths import content_hash
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
@@ -58,7 +58,7 @@ def component_source(used: UsedStates) -> str:
     entries = {
         "name": _string(component.name),
         "token": _string(identifier(component, used.built_with)),
-        "sources": _string(content_hash()),
+        "sources": _string(sources_key()),
         "states": declaration.state_count,
         "visible_states": len(declaration.states),
         "first_input": declaration.first_input,

@@ -1,7 +1,5 @@
 """What a native FMU is built from."""
 
-import hashlib
-import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,28 +9,26 @@ import numpy as np
 
 from herringbone.components.registry import component
 from herringbone.core import Component, ParameterError
+from herringbone.core.cache_keys import digest_of, kernels_key, packed_key, wrapper_key
+from herringbone.fmi.native import compiler, objects
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.used_states import UsedStates, used_states
-
-_REGISTRY = "herringbone.components.registry:component"
 
 
 @dataclass(frozen=True)
 class Model:
-    """A component, and how the process that compiles its kernels gets it.
+    """A component, and what decides on its FMU.
 
     Attributes:
         component: the component.
-        factory: "package.module:function"; called with `argument` it returns the component.
-        argument: text for the factory.
+        modules: from which its kernels are compiled, with all that they import.
         resources: the files that lie in the FMU's resources folder, by name.
         identity: what else decides on the kernels, such as the wiring of a system.
         shipped: it is made of nothing but the package, so that its FMU is known as the component.
     """
 
     component: Component
-    factory: str
-    argument: str
+    modules: tuple[str, ...]
     resources: Mapping[str, Path]
     identity: str = ""
     shipped: bool = False
@@ -49,19 +45,26 @@ class Model:
         return used_states(self.component, self.resources, built_with)
 
     @cached_property
+    def kernels_key(self) -> str:
+        """Key of the object code of its kernels."""
+        compiled = kernels_key(objects.__name__, *self.modules)
+        return digest_of(self.name, compiled, self.identity)
+
+    @cached_property
+    def library_key(self) -> str:
+        """Key of its library."""
+        linked = kernels_key(compiler.__name__)
+        return digest_of(self.kernels_key, linked, wrapper_key(), component_source(self.states))
+
+    @cached_property
     def key(self) -> str:
-        """Hash of all that decides on the FMU, besides the sources of the package."""
-        source = component_source(self.states)
-        return self._hash(self.factory, self.argument, self.identity, source)
+        """Key of its FMU."""
+        return self._hash(self.library_key, packed_key())
 
     def _hash(self, *texts: str) -> str:
         """Hash of texts and of the resources."""
-        digest = hashlib.sha256()
-        for text in texts:
-            digest.update(text.encode() + b"\0")
-        for name, file in sorted(self.resources.items()):
-            digest.update(name.encode() + b"\0" + file.read_bytes())
-        return digest.hexdigest()[:16]
+        files = [(n.encode(), f.read_bytes()) for n, f in sorted(self.resources.items())]
+        return digest_of(*texts, *(part for pair in files for part in pair))
 
 
 def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Model:
@@ -78,20 +81,15 @@ def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Mode
         ResourceError: a file is missing or malformed.
     """
     found = component(name)
+    modules = (found.kernels.out.__module__,)
     folder = found.resources
     if not files:
         shipped = {file.name: file for file in sorted(folder.glob("*.csv"))}
-        return Model(found, _REGISTRY, name, shipped, shipped=True)
+        return Model(found, modules, shipped, shipped=True)
     own = {text.name: folder / text.start for text in found.declaration.texts}
     if unknown := sorted(files.keys() - own.keys()):
         known = f"it has {', '.join(own)}" if own else "it has none"
         raise ParameterError(f"{name} has no resource file '{unknown[0]}'; {known}")
     taken = {parameter: files.get(parameter, file) for parameter, file in own.items()}
     found.load(np.zeros(found.declaration.size), taken)
-    return Model(found, _REGISTRY, name, {own[p].name: file for p, file in taken.items()})
-
-
-def made_component(factory: str, argument: str) -> Component:
-    """The component that a factory makes."""
-    module, _, function = factory.partition(":")
-    return getattr(importlib.import_module(module), function)(argument)
+    return Model(found, modules, {own[p].name: file for p, file in taken.items()})

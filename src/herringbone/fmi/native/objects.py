@@ -1,33 +1,30 @@
-"""Object code of kernels: `python -m ...native.objects KIND FOLDER PLATFORMS FACTORY ...`.
+"""Object code of kernels, without Python, for any platform.
 
-numba compiles each kernel behind a C signature; its LLVM code is taken, given another target, and
-optimised with every function but the entry points internal. LLVM then sees that no kernel ever
-reports an error, and drops all of numba's error path: nothing of Python remains. That is checked,
-see `symbols`.
+numba writes each kernel behind a C signature as LLVM code, which does not depend on the processor
+of this computer; it is optimised for its target with every function but the entry points internal.
+LLVM then sees that no kernel ever reports an error, and drops all of numba's error path: nothing of
+Python remains. That is checked, see `symbols`.
 
-It runs in processes of their own, because numba must be asked for a generic processor before it is
-imported, and before that how hard it shall optimise: first with KIND `fast`, for the entry points
-that a simulation calls all the time, then with `small` for the others; see `build`.
+The entry points that a simulation calls all the time are made fast, the others small.
 """
 
-import re
-import sys
 from collections.abc import Callable, Iterable
-from pathlib import Path
 
 import llvmlite.binding as llvm
-from numba import carray, cfunc, types
-from numba.core.ccallback import CFunc
+from numba import carray, types
 
 from herringbone.components.resources.loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
 from herringbone.core.component import unbounded, unchanged
-from herringbone.fmi.native.model import made_component
-from herringbone.fmi.native.platforms import Platform, platform_of
+from herringbone.fmi.native.platforms import Platform
+from herringbone.kernels.jit import c_code
+from herringbone.kernels.linking import CFunction
 
-_TARGET_LINES = re.compile(r"^target (triple|datalayout) = .*$", re.MULTILINE)
 _OPTIMISATION = 3
+_PLAIN = 1
+"""Before code is made small: it shows that indices are inside their tuples, so that no kernel
+fails. Small code alone does not tell, as it keeps functions apart."""
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
 _FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators"}
@@ -39,8 +36,8 @@ _COUNTS = types.CPointer(types.int64)
 _TIME = types.float64
 
 
-def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
-    """The fast or the other kernels of a component behind their C signatures, by symbol.
+def entry_points(of: Component) -> dict[str, CFunction]:
+    """The kernels of a component behind their C signatures, by symbol.
 
     The optional ones, `start`, `load` and `indicators`, only if the component has them.
     """
@@ -98,18 +95,16 @@ def entry_points(of: Component, *, fast: bool) -> dict[str, CFunc]:
         found["hb_load"] = (types.int32(_REALS, _COUNTS, _REALS, _REALS, _REALS), load)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
-    return {
-        symbol: cfunc(signature, error_model="numpy")(function)
-        for symbol, (signature, function) in found.items()
-        if (symbol in _FAST) == fast
-    }
+    return {symbol: c_code(signature, function) for symbol, (signature, function) in found.items()}
 
 
-def _linked(kernels: dict[str, CFunc], target: llvm.TargetMachine, triple: str) -> llvm.ModuleRef:
+def _linked(
+    kernels: dict[str, CFunction], target: llvm.TargetMachine, triple: str
+) -> llvm.ModuleRef:
     """LLVM code of entry points for a target; what they share is there once."""
     whole = None
     for symbol, compiled in kernels.items():
-        module = llvm.parse_assembly(_TARGET_LINES.sub("", compiled.inspect_llvm()))
+        module = compiled.code.clone()
         module.triple, module.data_layout = triple, str(target.target_data)
         entry = module.get_function(compiled.native_name)
         entry.name, entry.linkage, entry.visibility = symbol, "external", "hidden"
@@ -137,12 +132,13 @@ def _make_small(module: llvm.ModuleRef) -> None:
             function.add_function_attribute("minsize")
 
 
-def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine, *, fast: bool) -> None:
-    options = llvm.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+def _optimise(
+    module: llvm.ModuleRef, target: llvm.TargetMachine, level: int = _OPTIMISATION, *, fast: bool
+) -> None:
+    options = llvm.create_pipeline_tuning_options(speed_level=level)
     options.slp_vectorization = options.loop_vectorization = options.loop_unrolling = fast
     builder = llvm.create_pass_builder(target, options)
-    for _ in range(_PASSES):
-        builder.getModulePassManager().run(module, builder)
+    builder.getModulePassManager().run(module, builder)
 
 
 def _target(platform: Platform) -> llvm.TargetMachine:
@@ -151,43 +147,33 @@ def _target(platform: Platform) -> llvm.TargetMachine:
     )
 
 
-def _optimised(kernels: dict[str, CFunc], platform: Platform, *, fast: bool) -> llvm.ModuleRef:
+def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool) -> llvm.ModuleRef:
     """LLVM code of entry points for a platform."""
     target = _target(platform)
     module = _linked(kernels, target, platform.triple)
     _internalise(module, kernels)
-    if not fast:
-        _make_small(module)
     module.verify()
-    _optimise(module, target, fast=fast)
+    if not fast:
+        _optimise(module, target, _PLAIN, fast=False)
+        _make_small(module)
+    for _ in range(_PASSES):
+        _optimise(module, target, fast=fast)
     return module
 
 
-def main(
-    kind: str, folder: Path, platforms: list[Platform], factory: str, arguments: list[str]
-) -> None:
-    """Write FOLDER/PLATFORM/COMPONENT for the components that a factory makes.
+def _of_platform(kernels: dict[str, CFunction], platform: Platform) -> bytes:
+    """Object code of all entry points for a platform."""
+    target = _target(platform)
+    fast = {symbol: compiled for symbol, compiled in kernels.items() if symbol in _FAST}
+    small = {symbol: compiled for symbol, compiled in kernels.items() if symbol not in _FAST}
+    whole = _optimised(fast, platform, fast=True)
+    whole.link_in(_optimised(small, platform, fast=False))
+    return target.emit_object(whole)
 
-    That is LLVM code (.bc) of the fast entry points or, with it, object code (.o) of all.
-    """
+
+def object_code(component: Component, platforms: Iterable[Platform]) -> dict[Platform, bytes]:
+    """Object code of a component's kernels by platform."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    fast = kind == "fast"
-    for argument in arguments:
-        component = made_component(factory, argument)
-        kernels = entry_points(component, fast=fast)
-        for platform in platforms:
-            module = _optimised(kernels, platform, fast=fast)
-            file = folder / platform.name / f"{component.name}.bc"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            if fast:
-                file.write_bytes(module.as_bitcode())
-            else:
-                whole = llvm.parse_bitcode(file.read_bytes())
-                whole.link_in(module)
-                file.with_suffix(".o").write_bytes(_target(platform).emit_object(whole))
-
-
-if __name__ == "__main__":
-    wanted = [platform_of(name) for name in sys.argv[3].split(",")]
-    main(sys.argv[1], Path(sys.argv[2]), wanted, sys.argv[4], sys.argv[5:])
+    kernels = entry_points(component)
+    return {platform: _of_platform(kernels, platform) for platform in platforms}

@@ -1,0 +1,151 @@
+"""The keys of everything that is cached: what a generated artefact depends on, and nothing else.
+
+| artefact | key |
+|---|---|
+| kernel | syntax of its module and of all modules of the package that this one imports |
+| generated module | its text; as a kernel's source it is a module like others |
+| object code of a component or system | syntax of its modules and of the compiler; the wiring |
+| native library | its object code, the C sources, its description in C, which has `sources_key` |
+| FMU | `packed_key`, its resources; a native one: its library |
+
+Syntax: without comments, docstrings and layout, see `core.syntax`. All sources are read before the
+modules that they make are imported: what is edited later in this process must not get compiled code
+cached under its name.
+"""
+
+import contextlib
+import hashlib
+import json
+import sys
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from herringbone.core.cached_file import write_file
+from herringbone.core.paths import PACKAGE, cache_root, components_folder
+from herringbone.core.syntax import Syntax, syntax_of
+
+_NAME = PACKAGE.name
+_COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
+"""Packages that decide what is compiled and packed."""
+_RESOURCES = {".py", ".csv"}
+_LENGTH = 16
+
+
+def digest_of(*texts: str | bytes) -> str:
+    """A short hash of texts."""
+    digest = hashlib.sha256()
+    for text in texts:
+        digest.update((text.encode() if isinstance(text, str) else text) + b"\0")
+    return digest.hexdigest()[:_LENGTH]
+
+
+def kernels_key(*modules: str) -> str:
+    """Key of what is compiled from modules: their import closure, as syntax."""
+    return digest_of(*(f"{m} {_MODULES[m].digest}" for m in sorted(_closure(modules))))
+
+
+@cache
+def module_key(module: str, file: str) -> str:
+    """Key of the kernels of a module: of the package, or a file outside that may import from it."""
+    if module in _MODULES:
+        return kernels_key(module)
+    syntax = syntax_of(Path(file).read_text(encoding="utf-8"))
+    return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)))
+
+
+@cache
+def sources_key() -> str:
+    """Identity of FMUs: the sources and resources that decide what is compiled and packed.
+
+    Golden results are left out: they follow from the sources.
+    """
+    return digest_of(
+        *(f"{n} {s.digest}" for n, s in sorted(_MODULES.items()) if n.split(".")[1] in _COMPUTING),
+        *_contents(PACKAGE / "fmi", {".c", ".h"}),
+        *_contents(components_folder(), _RESOURCES),
+    )
+
+
+@cache
+def packed_key() -> str:
+    """Key of packed FMUs: `sources_key`, and the docstrings, which are their documentation."""
+    return digest_of(sources_key(), *_contents(PACKAGE / "components", {".py"}))
+
+
+@cache
+def wrapper_key() -> str:
+    """Key of the C sources around the kernels of native FMUs."""
+    return digest_of(*_contents(PACKAGE / "fmi", {".c", ".h"}))
+
+
+def _contents(root: Path, suffixes: set[str]) -> Iterable[bytes]:
+    for file in sorted(root.rglob("*")):
+        if file.suffix in suffixes and file.is_file() and file.name != "golden.csv":
+            yield file.relative_to(root).as_posix().encode()
+            yield file.read_bytes()
+
+
+def _closure(modules: Iterable[str]) -> set[str]:
+    """Modules of the package that are reached by imports."""
+    found, todo = set(), list(modules)
+    while todo:
+        module = todo.pop()
+        if module in found or module not in _MODULES:
+            continue
+        found.add(module)
+        todo += _known(_MODULES[module].imports)
+    return found
+
+
+def _known(imports: Iterable[str]) -> list[str]:
+    """Those of the imported names that are modules of the package, and the packages around them."""
+    found = set()
+    for name in imports:
+        parts = name.split(".")
+        if parts[0] == _NAME:
+            found |= {".".join(parts[:k]) for k in range(2, len(parts) + 1)}
+    return sorted(found & _MODULES.keys())
+
+
+def _read_modules() -> dict[str, Syntax]:
+    """All modules of the package; files that have not changed are not parsed again."""
+    memo = cache_root() / f"syntax-{sys.version_info[0]}.{sys.version_info[1]}.json"
+    known = _remembered(memo)
+    modules, remembered = {}, {}
+    for file in sorted(PACKAGE.rglob("*.py")):
+        status = file.stat()
+        stamp = [str(file), status.st_mtime_ns, status.st_size]
+        parts = file.relative_to(PACKAGE).with_suffix("").parts
+        name = ".".join((_NAME, *parts)).removesuffix(".__init__")
+        if name == _NAME:  # it only says where names are
+            continue
+        old = known.get(name)
+        if old and old[:3] == stamp:
+            modules[name] = Syntax(old[3], tuple(old[4]))
+        else:
+            modules[name] = _syntax_of(file)
+        remembered[name] = [*stamp, modules[name].digest, list(modules[name].imports)]
+    if remembered != known:
+        with contextlib.suppress(OSError):  # it only saves time
+            write_file(memo, json.dumps(remembered).encode())
+    return modules
+
+
+def _syntax_of(file: Path) -> Syntax:
+    source = file.read_bytes()
+    try:
+        return syntax_of(source.decode())
+    except SyntaxError:  # whoever imports it gets the message
+        return Syntax(digest_of(source), ())
+
+
+def _remembered(memo: Path) -> dict[str, list]:
+    try:
+        found = json.loads(memo.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+_MODULES = _read_modules()

@@ -1,0 +1,126 @@
+"""Where compiled kernels are cached, and when they are made anew.
+
+numba takes a cached kernel as long as the file that holds it is the same, byte by byte: it sees
+neither the files that hold its callees nor that an edit was but a comment. Here kernels are taken
+as long as the syntax of all that they are compiled from is the same (see `core.cache_keys`). Files
+that cannot be read, being cut off or empty, are made anew.
+
+What it leans on inside of numba is tested for every minor version that is admitted.
+"""
+
+import hashlib
+import inspect
+import logging
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from numba.core import config
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    _CacheLocator,
+)
+from numba.core.compiler import CompileResult
+from numba.core.cpu import CPUContext
+from numba.core.typing import Signature
+
+from herringbone.core.cache_keys import module_key
+from herringbone.core.paths import cache_folder
+
+D = TypeVar("D")
+_LOG = logging.getLogger("herringbone")
+_DIGEST = hashlib.sha256().digest_size
+
+
+class _Locator(_CacheLocator):
+    """Where the code of one kernel lies."""
+
+    def __init__(self, function: Callable, file: str) -> None:
+        self._py_file, self._function = file, function
+
+    def get_cache_path(self) -> str:
+        """A folder for each module, and each way of compiling it."""
+        module = self._function.__module__.removeprefix("herringbone.")
+        return str(cache_folder("kernels") / f"optimised-{int(config.OPT)}" / module)
+
+    def get_source_stamp(self) -> str:
+        """Key of what it is compiled from."""
+        return module_key(self._function.__module__, self._py_file)
+
+    def get_disambiguator(self) -> str:
+        """Nothing: no two kernels of a module have the same name."""
+        return "kernel"
+
+    @classmethod
+    def from_function(cls, py_func: Callable, py_file: str) -> "_Locator":
+        """The locator of a kernel."""
+        return cls(py_func, py_file)
+
+
+class _Files(CompileResultCacheImpl):
+    """numba's files, under names of ours."""
+
+    def __init__(self, py_func: Callable) -> None:
+        self._lineno = py_func.__code__.co_firstlineno
+        self._locator = _Locator(py_func, inspect.getfile(py_func))
+        self._filename_base = self.get_filename_base(py_func.__qualname__, "")
+
+
+class _CheckedData(IndexDataCacheFile):
+    """numba's files, with a digest in front of the machine code."""
+
+    def _save_data(self, name: str, data: tuple) -> None:
+        content = self._dump(data)
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+    def _load_data(self, name: str) -> tuple:
+        read = Path(self._data_path(name)).read_bytes()
+        digest, content = read[:_DIGEST], read[_DIGEST:]
+        if hashlib.sha256(content).digest() != digest:
+            raise ValueError("it is damaged")
+        return pickle.loads(content)
+
+
+class KernelCache(FunctionCache):
+    """numba's cache of a function, with our keys; it survives damaged files."""
+
+    _impl_class = _Files
+
+    def __init__(self, py_func: Callable) -> None:
+        super().__init__(py_func)
+        locator = self._impl.locator
+        self._cache_file = _CheckedData(
+            self._cache_path, self._impl.filename_base, locator.get_source_stamp()
+        )
+
+    def load_overload(self, sig: Signature, target_context: CPUContext) -> CompileResult | None:
+        """A compiled kernel; None: it must be compiled."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception as error:
+            self._make_anew(error)
+            return None
+
+    def save_overload(self, sig: Signature, data: CompileResult) -> None:
+        """Save a compiled kernel."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            _LOG.warning("%s is not cached: %s", self._py_func.__qualname__, error)
+
+    def _make_anew(self, error: Exception) -> None:
+        _LOG.warning(
+            "cached kernel %s cannot be read (%s); it is compiled again",
+            self._impl.filename_base, error or type(error).__name__,
+        )  # fmt: skip
+        self.flush()
+
+
+def cached(compiled: D, function: Callable) -> D:
+    """Let a dispatcher or C callback of numba cache what it compiles of a function."""
+    compiled._cache = KernelCache(function)
+    return compiled

@@ -1,0 +1,183 @@
+"""Kernels are cached by what they are compiled from; damaged files are compiled again.
+
+This leans on the inside of numba: it is run with every minor version that pyproject admits.
+"""
+
+import importlib.util
+import subprocess
+import sys
+from importlib.metadata import requires, version
+
+import pytest
+
+from herringbone.core import cache_keys
+from herringbone.core.cached_file import is_stored, store
+from herringbone.core.syntax import syntax_of
+from herringbone.kernels.linking import Piece, Whole
+
+SOURCE = """
+from herringbone.kernels.elementary import sine
+from herringbone.kernels.jit import kernel
+
+
+@kernel
+def inner_part(x: float) -> float:
+    return 2.0 * sine(x)
+
+
+@kernel
+def whole(x: float) -> float:
+    return inner_part(x) + 1.0
+"""
+FACTORY = """
+import math
+
+import numpy as np
+from herringbone.kernels.jit import inner, kernel
+
+
+def factory(factor: float):
+    @inner("same")
+    def scaled(x: float) -> float:
+        value = factor * x + np.floor(x)
+        for i in range(200):  # too long to become a part of its caller
+            value = max(value, math.sqrt(abs(value) * i) * 1e-9) + min(x, 0.0)
+            value = max(value, math.sqrt(abs(value) * x) * 1e-9) + min(x, 0.0)
+            value = max(value, math.sqrt(abs(value) + i) * 1e-9) + min(x, 0.0)
+        return value
+
+    return scaled
+"""
+CALLER = """
+from closures import factory
+from herringbone.kernels.jit import kernel
+
+part = factory({factor})
+
+
+@kernel
+def {name}(x: float) -> float:
+    return part(x) + part(x + 1.0) + part(x + 2.0)
+"""
+
+
+def in_process(folder, code, cache):
+    """What a process prints that finds modules in a folder."""
+    environment = {
+        "PATH": "/usr/bin:/bin",
+        "PYTHONPATH": str(folder),
+        "HERRINGBONE_CACHE": str(cache),
+    }
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
+    return run.stdout.strip()
+
+
+def load(file, text):
+    """A module of a file that is written."""
+    file.write_text(text)
+    spec = importlib.util.spec_from_file_location(file.stem, file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """An empty cache folder."""
+    monkeypatch.setenv("HERRINGBONE_CACHE", str(tmp_path / "cache"))
+    cache_keys.module_key.cache_clear()
+    yield tmp_path / "cache"
+    cache_keys.module_key.cache_clear()
+
+
+def compiled_again(tmp_path, text):
+    """Calls the kernel of an edited module, as a new process would; True if it was compiled."""
+    cache_keys.module_key.cache_clear()
+    module = load(tmp_path / "edited.py", text)
+    value = module.whole(0.5)
+    assert value == pytest.approx(1.958851077208406, abs=1e-15) or "3.0" in text
+    return not module.whole.stats.cache_hits
+
+
+def test_the_installed_numba_is_one_that_is_admitted():
+    (asked,) = (r for r in requires("herringbone") if r.startswith("numba"))
+    assert asked in {"numba<0.70,>=0.68", "numba>=0.68,<0.70"}
+    assert tuple(map(int, version("numba").split(".")[:2])) in {(0, 68), (0, 69)}
+
+
+def test_syntax_leaves_out_comments_docstrings_and_layout():
+    plain = syntax_of("import a\nx = 1\ndef f(y):\n    return y\n")
+    said = '"""Says."""\nimport a\n\nx = 1  # one\n"""What x is."""\n'
+    said += 'def f(y):\n    """Doc."""\n    return (y)\n'
+    assert syntax_of(said) == plain
+    assert syntax_of("import a\nx = 2\ndef f(y):\n    return y\n").digest != plain.digest
+
+
+def test_closure_holds_what_is_imported_and_no_more():
+    found = cache_keys._closure(["herringbone.components.gear_mesh"])
+    assert {"herringbone.kernels.jit", "herringbone.kernels.elementary"} <= found
+    assert "herringbone.components.drive_motor" not in found
+    assert not any(name.startswith("herringbone.cosim") for name in found)
+
+
+def test_a_comment_does_not_compile_and_code_does(cache, tmp_path):
+    assert compiled_again(tmp_path, SOURCE)
+    assert not compiled_again(tmp_path, SOURCE)
+    commented = "# a comment\n" + SOURCE.replace("float:\n", 'float:\n    """Doc."""\n')
+    assert not compiled_again(tmp_path, commented)
+    assert compiled_again(tmp_path, SOURCE.replace("2.0", "3.0"))
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("left", [0, 60])
+def test_damaged_kernels_are_compiled_again(cache, tmp_path, caplog, suffix, left):
+    assert compiled_again(tmp_path, SOURCE)
+    for file in cache.rglob(f"*.{suffix}"):
+        file.write_bytes(file.read_bytes()[:left])
+    assert compiled_again(tmp_path, SOURCE)
+    assert "cached kernel" in caplog.text
+    assert "it is compiled again" in caplog.text
+    assert not compiled_again(tmp_path, SOURCE)
+
+
+def test_pieces_have_no_machine_code_and_are_inside_of_their_whole(cache, tmp_path):
+    module = load(tmp_path / "edited.py", SOURCE)
+    module.whole(0.5)
+    (whole,) = module.whole.overloads.values()
+    (piece,) = module.inner_part.piece.overloads.values()
+    assert isinstance(whole.library, Whole)
+    assert isinstance(piece.library, Piece)
+    assert piece.library.get_pointer_to_function(piece.fndesc.mangled_name) == 0
+    assert not module.inner_part.overloads
+    defined = [f for f in whole.library._final_module.functions if not f.is_declaration]
+    assert [f for f in defined if "inner_part" in f.name and f.linkage.name != "internal"] == []
+
+
+def test_caches_of_two_processes_agree_in_a_third(tmp_path):
+    """Closures of one factory have the same symbol in both: numba counts them by process."""
+    (tmp_path / "closures.py").write_text(FACTORY)
+    (tmp_path / "first.py").write_text(CALLER.format(factor=2.0, name="one"))
+    (tmp_path / "second.py").write_text(CALLER.format(factor=5.0, name="two"))
+    cache = tmp_path / "cache"
+    in_process(tmp_path, "import first; first.one(0.5)", cache)
+    in_process(tmp_path, "import second; second.two(0.5)", cache)
+    code = (
+        "import first, second; print(first.one(0.5), second.two(0.5), "
+        "sum(first.one.stats.cache_hits.values()), sum(second.two.stats.cache_hits.values()))"
+    )
+    one, two = (sum(factor * (0.5 + i) + i for i in range(3)) for factor in (2.0, 5.0))
+    assert in_process(tmp_path, code, cache) == f"{one} {two} 1 1"
+
+
+def test_a_stored_file_is_known_by_its_digest(tmp_path, caplog):
+    file = tmp_path / "kind" / "thing.bin"
+    assert not is_stored(file)
+    assert caplog.text == ""
+    store(file, b"content")
+    assert is_stored(file)
+    for damaged in (b"", b"contenu"):
+        file.write_bytes(damaged)
+        assert not is_stored(file)
+    assert "thing.bin is damaged; it is made anew" in caplog.text
