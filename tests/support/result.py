@@ -10,6 +10,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.ports import HALVES
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Outcome, OutcomeKind
+from herringbone.core.part_path import PartPath
 from herringbone.core.variable import Causality
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.result.result import Result, RunInfo
@@ -68,6 +69,11 @@ def _tones() -> dict[str, Tone]:
     return found
 
 
+def _tone(tones: dict[str, Tone], part: PartPath, variable: str) -> Tone:
+    """Of a column, whatever system contains its part."""
+    return tones.get(f"{part.name}.{variable}", Tone(1.0, 0.1, 0.01))
+
+
 def make_result(
     system: str = "test_rig", t_end: float = 0.2, record_step: float = 20e-6, **info: object
 ) -> Result:
@@ -86,8 +92,9 @@ def make_result(
         for variable in COMPONENTS[part.component].declaration.variables:
             if variable.causality is Causality.OUTPUT:
                 name = f"{part.name}.{variable.name}"
-                columns[name] = tones.get(name, Tone(1.0, 0.1, 0.01))(time)
+                columns[name] = _tone(tones, part.name, variable.name)(time)
                 units[name] = variable.unit
+    gear, housing = structure.part("gear_mesh").name, structure.part("modal_housing").name
     fields = {
         "system": system,
         "scene": "loaded",
@@ -95,7 +102,7 @@ def make_result(
         "t_end": t_end,
         "communication_step": record_step,
         "record_step": record_step,
-        "micro_steps": {"gear_mesh": 2.5e-6},
+        "micro_steps": {gear: 2.5e-6},
         "algorithm": "gs",
         "fmu": "in-process",
         "macro_steps": time.size - 1,
@@ -103,8 +110,8 @@ def make_result(
         "rollbacks": 0,
         "wall_s": 0.5,
         "anatomy": anatomy(structure),
-        "parameters": {"gear_mesh.pinion.number_of_teeth": 27.0},
-        "resources": {"modal_housing.modes": "modes.csv", "modal_housing.shapes": "shapes.csv"},
+        "parameters": {f"{gear}.pinion.number_of_teeth": 27.0},
+        "resources": {f"{housing}.{name}": f"{name}.csv" for name in ("modes", "shapes")},
     } | info
     outcome = Outcome(OutcomeKind.COMPLETED, t_end)
     return Result(pd.DataFrame(columns), units, outcome, RunInfo(**fields), structure.channels)

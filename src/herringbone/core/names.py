@@ -45,9 +45,9 @@ def check_path(text: str, what: str) -> str:
     return text
 
 
-def shown(text: str) -> str:
-    """A text in quotes as messages show it: on one line, and cut if it is long."""
-    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
+def shown(text: str, most: int = _SHOWN) -> str:
+    """A text in quotes as messages show it: on one line, and cut if it is longer than `most`."""
+    return repr(text if len(text) <= most else text[: most - 3] + "...")
 
 
 def identifier_for(text: str, taken: Container[str] = ()) -> str:

@@ -61,7 +61,7 @@ def find_scene(system_folder: Path, name: str) -> Path:
         if is_file(file):
             return file
     known = ", ".join(sorted(f.stem for f in folder.glob("*.toml"))) or "none"
-    raise ParameterError(f"there is no scene {shown(name)}; {folder.parent.name} has: {known}")
+    raise ParameterError(f"there is no scene {shown(name, 300)}; {folder.parent.name} has: {known}")
 
 
 def read_scene(file: Path) -> Scene:

@@ -58,11 +58,11 @@ def seat_shapes():
 def test_bonds_of_the_test_rig(rig, seat_shapes):
     """A seat's mass is 1 / sum of its squared shapes; six bearings hold, the pinion floats."""
     table = {bond.name: bond for bond in bond_table(*rig)}
-    expected = [f"bearing_supports.shaft.{half}.f_{axis}" for half, axis in BEARINGS]
+    expected = [f"gearbox.bearing_supports.shaft.{half}.f_{axis}" for half, axis in BEARINGS]
     assert set(table) == {*expected, *COUPLINGS}
     for name, (mass, k), shape in zip(expected, BEARINGS.values(), seat_shapes, strict=True):
         bond, seat = table[name], 1.0 / (shape @ shape)
-        assert bond.bodies == ("gear_mesh", "modal_housing")
+        assert bond.bodies == ("gearbox.gear_mesh", "gearbox.modal_housing")
         assert bond.masses == pytest.approx((mass, seat), rel=EXACT)
         assert bond.frequency == pytest.approx(math.sqrt(k / mass + k / seat), rel=EXACT)
         zeta = DAMPING_RATIO * math.sqrt(1.0 + mass / seat)

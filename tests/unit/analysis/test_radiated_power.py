@@ -42,8 +42,8 @@ def result_under(force):
     result = make_result(t_end=0.5, record_step=STEP)
     data = result.data.copy()
     for seat, axis in SEAT_DOFS:
-        data[f"bearing_supports.seat.{seat}.f_{axis}"] = 0.0
-    data["bearing_supports.seat.pinion_left.f_y"] = force(data["time"].to_numpy())
+        data[f"gearbox.bearing_supports.seat.{seat}.f_{axis}"] = 0.0
+    data["gearbox.bearing_supports.seat.pinion_left.f_y"] = force(data["time"].to_numpy())
     return replace(result, data=data)
 
 
@@ -101,10 +101,11 @@ def test_data_of_a_run(tmp_path):
     result = make_result()
     np.testing.assert_array_equal(housing_of(result).gram, default_housing().gram)
     write_housing(oscillators([500.0], [0.1], [[GRAM]]), tmp_path)
-    own = {f"modal_housing.{name}": str(tmp_path / f"{name}.csv") for name in ("modes", "shapes")}
+    names = "modes", "shapes"
+    own = {f"gearbox.modal_housing.{name}": str(tmp_path / f"{name}.csv") for name in names}
     info = replace(result.info, resources=own)
     assert housing_of(replace(result, info=info)).frequency_hz == [500.0]
-    thesis = {f"modal_housing.{name}": f"thesis_{name}.csv" for name in ("modes", "shapes")}
+    thesis = {f"gearbox.modal_housing.{name}": f"thesis_{name}.csv" for name in ("modes", "shapes")}
     assert housing_of(replace(result, info=replace(result.info, resources=thesis))) is None
     assert (component_folder("modal_housing") / "resources" / "thesis_modes.csv").is_file()
     assert housing_of(replace(result, info=replace(result.info, resources={}))) is None
@@ -114,7 +115,7 @@ def test_refused():
     result = make_result()
     with pytest.raises(ParameterError, match="no Gram matrix of the surface"):
         radiated_power(result, replace(default_housing(), gram=None))
-    column = "bearing_supports.seat.wheel_left.f_x"
+    column = "gearbox.bearing_supports.seat.wheel_left.f_x"
     with pytest.raises(ParameterError, match=f"records no {column}"):
         seat_forces(replace(result, data=result.data.drop(columns=column)))
     diverged = replace(result, outcome=Outcome(OutcomeKind.DIVERGED, 0.1))

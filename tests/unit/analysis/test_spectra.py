@@ -91,7 +91,7 @@ def test_mesh_orders():
 
 def test_mesh_frequency_of_a_run_uses_its_number_of_teeth():
     assert run_mesh_frequency(make_result()) == pytest.approx(MESH_FREQUENCY, rel=1e-5)
-    other = make_result(parameters={"gear_mesh.pinion.number_of_teeth": 30.0})
+    other = make_result(parameters={"gearbox.gear_mesh.pinion.number_of_teeth": 30.0})
     assert run_mesh_frequency(other) == pytest.approx(500.0, rel=1e-5)
     assert run_mesh_frequency(other, 54) == pytest.approx(900.0, rel=1e-5)
     assert run_mesh_frequency(make_foreign_result()) is None
@@ -103,11 +103,11 @@ def test_steady_part_leaves_out_the_first_fifth_and_the_run_up():
     assert part.steady
     assert part.begin == pytest.approx(0.04)
     speed = SPEED * np.minimum(1.0, result.data["time"].to_numpy() / 0.15)
-    result.data["gear_mesh.pinion.w"] = speed
+    result.data["gearbox.gear_mesh.pinion.w"] = speed
     part = steady_part(result)
     assert part.steady
     assert part.begin == pytest.approx(0.15 * 0.99, abs=1e-4)
-    result.data["gear_mesh.pinion.w"] = SPEED * result.data["time"].to_numpy()
+    result.data["gearbox.gear_mesh.pinion.w"] = SPEED * result.data["time"].to_numpy()
     assert not steady_part(result).steady
     assert run_mesh_frequency(result) is None
 
@@ -123,7 +123,7 @@ def test_power_balance_closes():
 
 def test_moments_and_largest_lines_of_a_group():
     result = make_result()
-    found = moments(result, "bearing_supports.shaft.pinion_left.f_y")
+    found = moments(result, "gearbox.bearing_supports.shaft.pinion_left.f_y")
     assert found.mean == pytest.approx(1988.0, abs=0.1)
     assert found.ac_rms == pytest.approx(math.sqrt(0.5 * (12.0**2 + 4.8**2 + 1.0)), rel=0.01)
     lines = largest_lines(result, result.channel("bearing_force"), 3000.0)

@@ -67,7 +67,11 @@ def test_unknown_port_names_those_that_exist():
 
 
 def test_path_without_port():
-    refused("has no variable or port ''", [mass("m"), spring()], ("m", "spring.a"))
+    refused(
+        "connection 'm': it must be PART.PORT or PART.VARIABLE",
+        [mass("m"), spring()],
+        ("m", "spring.a"),
+    )
 
 
 def test_port_against_variable():
@@ -139,7 +143,7 @@ def test_one_output_may_feed_many():
 
 
 def test_body_to_body():
-    said = refused("insert a shaft_coupling", [mass("m"), mass("n")], ("m.flange", "n.flange"))
+    said = refused("insert a shaft coupling", [mass("m"), mass("n")], ("m.flange", "n.flange"))
     assert "'m.flange' - 'n.flange'" in said
 
 

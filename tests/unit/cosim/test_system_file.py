@@ -97,15 +97,15 @@ def test_nested_system_is_flattened(tmp_path):
         shaft = "box.pinion"
     """, "outer")  # fmt: skip
     system = read_system(outer)
-    assert [p.name for p in system.parts] == ["coupling", "gear", "bearing"]
+    assert [p.name for p in system.parts] == ["coupling", "box.gear", "box.bearing"]
     assert system.part("gear").values == {"backlash": 1e-4}
     assert system.connections == (
-        ("gear.pinion_left", "bearing.shaft.pinion_left"),
-        ("gear.pinion", "coupling.flange_b"),
-        ("gear.pinion.phi", "x.u"),
+        ("box.gear.pinion_left", "box.bearing.shaft.pinion_left"),
+        ("box.gear.pinion", "coupling.flange_b"),
+        ("box.gear.pinion.phi", "x.u"),
     )
-    assert system.ports == {"shaft": "gear.pinion"}
-    assert system.channels == {"force": ("bearing.*.f_y",)}
+    assert system.ports == {"shaft": "box.gear.pinion"}
+    assert system.channels == {"force": ("box.bearing.*.f_y",)}
 
 
 def test_unknown_port_of_a_nested_system(tmp_path):
@@ -114,11 +114,23 @@ def test_unknown_port_of_a_nested_system(tmp_path):
     refused("'box.wheel': 'box' offers the ports pinion", write(tmp_path, text, "outer"))
 
 
-def test_instance_names_clash_over_nesting(tmp_path):
+def test_the_same_system_may_be_nested_twice(tmp_path):
     write(tmp_path, INNER, "inner")
-    text = '[parts.gear]\ncomponent = "gear_mesh"\n[parts.box]\nsystem = "../inner"'
-    said = refused("instance name gear is used twice", write(tmp_path, text, "outer"))
-    assert "rename one" in said
+    parts = '[parts.gear]\ncomponent = "gear_mesh"\n' + "".join(
+        f'[parts.{name}]\nsystem = "../inner"\nset = {{ "gear.backlash" = {value} }}\n'
+        for name, value in (("first", 1e-4), ("second", 2e-4))
+    )
+    system = read_system(write(tmp_path, parts, "outer"))
+    names = ["gear", "first.gear", "first.bearing", "second.gear", "second.bearing"]
+    assert list(system.paths) == names
+    assert system.part("first.gear").values == {"backlash": 1e-4}
+    assert system.part("second.gear").values == {"backlash": 2e-4}
+    assert system.channels == {"force": ("first.bearing.*.f_y", "second.bearing.*.f_y")}
+    with pytest.raises(
+        StructureError, match=r"'bearing' may mean first\.bearing or second\.bearing"
+    ):
+        system.with_values({"bearing.pressure_angle": 0.3})
+    assert system.with_values({"gear.backlash": 3e-4}).part("gear").values == {"backlash": 3e-4}
 
 
 def test_system_that_contains_itself(tmp_path):

@@ -50,7 +50,7 @@ def test_bearing_forces_show_four_halves_in_newton(rig):
     assert whole.get_ylabel() == "force y [N]"
     assert last.get_ylabel() == "force y, AC [N]"
     values = last.lines[0].get_ydata()
-    column = rig.data["bearing_supports.shaft.pinion_left.f_y"].to_numpy()
+    column = rig["bearing_supports.shaft.pinion_left.f_y"].to_numpy()
     mean = column[column.size // 5 :].mean()
     assert values == pytest.approx(column[-values.size :] - mean, abs=1e-9)
     assert last.get_legend().get_texts()[0].get_text() == "pinion left, mean 1988 N"
@@ -60,7 +60,7 @@ def test_seat_velocities_are_in_millimetres_per_second(rig):
     figure = seat_velocities(rig)
     assert len(panels(figure)) == 6
     last = panels(figure)[1]
-    column = rig.data["modal_housing.pinion_left.v_x"].to_numpy()
+    column = rig["modal_housing.pinion_left.v_x"].to_numpy()
     assert last.lines[0].get_ydata()[-1] == pytest.approx(1e3 * column[-1])
     assert "[mm/s]" in last.get_ylabel()
 
@@ -111,7 +111,7 @@ def test_every_panel_of_the_overview_has_a_legend_beside_its_title(system):
 
 
 def test_spectra_of_a_run_up_have_no_orders(rig):
-    data = rig.data.assign(**{"gear_mesh.pinion.w": rig.data["time"] * 500.0})
+    data = rig.data.assign(**{"gearbox.gear_mesh.pinion.w": rig.data["time"] * 500.0})
     (text,) = panels(spectra(replace(rig, data=data)))[0].texts
     assert text.get_text() == "speed not steady: no mesh orders"
 

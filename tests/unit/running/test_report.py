@@ -48,11 +48,11 @@ def test_headline_and_cost(rig):
 
 def test_operating_point(rig):
     text = summary_text(rig)
-    speed = mean(rig, "gear_mesh.pinion.w") * 30.0 / math.pi
+    speed = mean(rig, "gearbox.gear_mesh.pinion.w") * 30.0 / math.pi
     assert numbers(line(text, "Pinion speed")) == pytest.approx([speed, 450.0], abs=0.06)
     torques = [mean(rig, f"{c}_coupling.torque") for c in ("drive", "load")]
     assert numbers(line(text, "Torque")) == pytest.approx(torques, abs=0.06)
-    left, right = (mean(rig, f"gear_mesh.mesh_{side}.force") for side in ("left", "right"))
+    left, right = (mean(rig, f"gearbox.gear_mesh.mesh_{side}.force") for side in ("left", "right"))
     share = 100.0 * left / (left + right)
     found = numbers(line(text, "Mesh force"))
     assert found == pytest.approx([left, share, right, 100.0 - share], rel=1e-3)
@@ -70,10 +70,10 @@ def test_row_of_a_half(rig):
     row = numbers(line(summary_text(rig), "wheel right"))
     expected = []
     for axis in "yz":
-        values = rig.data[f"bearing_supports.shaft.wheel_right.f_{axis}"].to_numpy()[STEADY]
+        values = rig[f"bearing_supports.shaft.wheel_right.f_{axis}"].to_numpy()[STEADY]
         expected += [values.mean(), values.std()]
     for axis in "xyz":
-        values = rig.data[f"modal_housing.wheel_right.v_{axis}"].to_numpy()[STEADY]
+        values = rig[f"modal_housing.wheel_right.v_{axis}"].to_numpy()[STEADY]
         expected.append(1e3 * math.sqrt(np.mean(values**2)))
     means = [0, 2]
     assert [row[i] for i in means] == pytest.approx([expected[i] for i in means], abs=0.051)
@@ -171,7 +171,7 @@ def test_report_writes_files_that_exist(tmp_path):
     assert len(names) == 9
     summary = json.loads(Path(result.files[2]).read_text(encoding="utf-8"))
     assert summary["results"] == list(result.files)
-    assert summary["parameters"] == {"gear_mesh.pinion.number_of_teeth": 27.0}
+    assert summary["parameters"] == {"gearbox.gear_mesh.pinion.number_of_teeth": 27.0}
     assert Path(result.files[1]).read_text(encoding="utf-8") == summary_text(result)
 
 
@@ -203,8 +203,8 @@ def test_an_adaptive_run_is_reported_on_equidistant_records():
     assert even.uniform() is even
     found = uneven.uniform().data
     assert np.ptp(np.diff(found["time"])) < 1e-12
-    wanted = CubicSpline(even.data["time"], even.data["bearing_supports.shaft.pinion_left.f_y"])
-    off = found["bearing_supports.shaft.pinion_left.f_y"] - wanted(found["time"])
+    wanted = CubicSpline(even.data["time"], even["bearing_supports.shaft.pinion_left.f_y"])
+    off = found["gearbox.bearing_supports.shaft.pinion_left.f_y"] - wanted(found["time"])
     assert np.abs(off).max() < 0.02 * 12.0  # of the amplitude
     text = summary_text(uneven)
     assert "communication 1 us to 40 us, median 20 us, 1 taken back" in text

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
+from herringbone.core.names import shown
 from herringbone.core.part import Part, PartVariable
 from herringbone.core.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
@@ -124,7 +125,12 @@ def _split(
     path: str, system: System, parts: Sequence[Part], index: Mapping[str, int]
 ) -> tuple[Part, str, list[str]]:
     """Part, name inside it, and the suffixes of the port's variables ([] for one variable)."""
-    name, inner = system.split(path)
+    try:
+        name, inner = system.split(path)
+    except ParameterError as error:
+        raise StructureError(
+            f"connection {shown(path)}: it must be PART.PORT or PART.VARIABLE"
+        ) from error
     part = parts[index[name]]
     if inner in part.variables:
         return part, inner, []

@@ -28,6 +28,7 @@ from herringbone.core.paths import systems_folder
 from herringbone.cosim.structure.system import PartSpec, System
 
 FILE_NAME = "system.toml"
+_LONGEST_PATH = 300
 _KEYS: dict[str, type] = {
     "name": str, "description": str, "connections": list, "parts": dict, "ports": dict,
     "channels": dict,
@@ -55,8 +56,8 @@ def find_system(reference: str | Path) -> Path:
             return folder
     shipped = ", ".join(sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}")))
     raise StructureError(
-        f"there is no system {shown(str(reference))}: give one of {shipped}, a folder with "
-        f"{FILE_NAME}, or an .ssp file"
+        f"there is no system {shown(str(reference), _LONGEST_PATH)}: give one of {shipped}, "
+        f"a folder with {FILE_NAME}, or an .ssp file"
     )
 
 
