@@ -7,7 +7,7 @@ from herringbone.benchmarks.macro_step import PARALLEL, STEP, plain_loop
 from herringbone.core.part import Part
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
-from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
 BEARINGS, FORCES = "bearing_supports", ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]

@@ -4,13 +4,39 @@
     result = hb.run("test_rig", t_end=0.2)
     result.plot()
 
-Units are SI. Names are loaded when they are used, so that the import is quick.
+Units are SI. Names are loaded when they are used, so that the import is quick. The library logs to
+the logger `herringbone` and below; without a handler of the application's nothing is shown.
 """
 
 from importlib import import_module
-from importlib.metadata import version
+from logging import NullHandler, getLogger
+from typing import TYPE_CHECKING
 
-__version__ = version("herringbone")
+if TYPE_CHECKING:
+    from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.core import HerringboneError, OutcomeKind
+    from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
+    from herringbone.cosim.structure.system import System
+    from herringbone.result.result import Result
+    from herringbone.running.api import run
+    from herringbone.scenes import Scene
+
+    __version__: str
+
+__all__ = [
+    "LI",
+    "FixedPoint",
+    "GaussSeidel",
+    "HerringboneError",
+    "Jacobi",
+    "OutcomeKind",
+    "Predict",
+    "Result",
+    "Scene",
+    "System",
+    "radiated_power",
+    "run",
+]
 
 _WHERE = {
     "run": "herringbone.running.api",
@@ -28,10 +54,17 @@ _WHERE = {
     "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 
-__all__ = [*sorted(_WHERE)]  # noqa: PLE0604 (the names are those of the table)
+getLogger(__name__).addHandler(NullHandler())
+
+if not TYPE_CHECKING:  # type checkers take the names above, and know no others
+
+    def __getattr__(name: str) -> object:
+        if name == "__version__":
+            return import_module("importlib.metadata").version("herringbone")
+        if name in _WHERE:
+            return getattr(import_module(_WHERE[name]), name)
+        raise AttributeError(f"module 'herringbone' has no attribute '{name}'")
 
 
-def __getattr__(name: str) -> object:
-    if name in _WHERE:
-        return getattr(import_module(_WHERE[name]), name)
-    raise AttributeError(f"module 'herringbone' has no attribute '{name}'")
+def __dir__() -> list[str]:
+    return sorted({*(name for name in globals() if name.startswith("__")), *__all__, "__version__"})

@@ -12,7 +12,7 @@ from herringbone.core import ParameterError
 from herringbone.cosim.fmu.opening import open_fmu
 from herringbone.cosim.loops.calls import do_step, exchange_derivatives
 from herringbone.fmi import check_fmu
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 
 GEAR = "gear_mesh.mesh_left.force"
 

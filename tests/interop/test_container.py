@@ -15,7 +15,7 @@ from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.ssp.structure import DescribedPart
 from herringbone.cosim.structure.network import build_network
 from herringbone.fmi.native import build_native_fmus
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
 assembly = pytest.importorskip("fmu_manipulation_toolbox.assembly")

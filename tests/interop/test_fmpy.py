@@ -14,7 +14,7 @@ from herringbone.cosim.ssp.structure import DescribedPart
 from herringbone.cosim.structure.network import build_network
 from herringbone.fmi import golden
 from herringbone.fmi.native import build_native_fmus
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
 MESH, HOUSING = "gear_mesh", "modal_housing"

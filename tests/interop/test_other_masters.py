@@ -24,8 +24,9 @@ from herringbone.core.paths import component_folder
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.ssp.write import PARAMETER_SET
-from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.api import run
 from herringbone.running.export import export_ssp
+from herringbone.running.loading import load_scene, load_system
 
 STEP, COUNT, EVERY = 1e-6, 400, 50
 PARALLEL = Jacobi(order=0, schedule="parallel")

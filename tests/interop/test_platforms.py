@@ -20,7 +20,7 @@ import herringbone as hb
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.fmi.native import PLATFORMS, build_native_fmus, own_platform
 from herringbone.fmi.native.compiler import require_compiler
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
 STEP, COUNT, EVERY = 2e-6, 100_000, 1000

@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,8 @@ from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.result.result import TIME, Result
-from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.api import run
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 from herringbone.running.system_fmu import export_fmu
 from herringbone.scenes import Scene, Start
@@ -101,7 +103,7 @@ def _micro_step(parts: Anatomy) -> str:
 def _cheapest_coupled(scene: Scene, parameter: str) -> tuple[Callable[[], Result], float]:
     found = []
     for algorithm, step, micro_step in _COUPLED:
-        options = {
+        options: dict[str, Any] = {
             "scene": scene,
             "algorithm": algorithm,
             "step": step,
@@ -124,7 +126,11 @@ def _cheapest_twin(system: System, box: Path) -> tuple[Callable[[], Result], flo
         scene = Scene(
             "twin", "", T_END, RECORD_STEP, Start.REST, {f"{_BOX}.micro_step": micro_step}
         )
-        options = {"scene": scene, "algorithm": Jacobi(order=0), "step": RECORD_STEP}
+        options: dict[str, Any] = {
+            "scene": scene,
+            "algorithm": Jacobi(order=0),
+            "step": RECORD_STEP,
+        }
         result = run(one, **options)
         error = _error(system, result)
         if error <= TOLERANCE:

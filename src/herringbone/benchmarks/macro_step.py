@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from herringbone.analysis.stability.limits import fastest_bond
@@ -23,7 +24,7 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
-from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
 STEP = 2.5e-6
@@ -73,7 +74,10 @@ def measure(steps: int = 20000, repeats: int = 5) -> MacroStep:
         kernels = lambda: _ours(replace(system, connections=()), "native", steps, steps)  # noqa: E731
         found = {name: [measure_() for _ in range(repeats)] for name, measure_ in loops.items()}
         alone = [kernels() for _ in range(repeats)]
-    medians = {n: None if None in v else statistics.median(v) for n, v in found.items()}
+    medians = {
+        n: None if None in v else statistics.median(t for t in v if t is not None)
+        for n, v in found.items()
+    }
     return MacroStep(medians, statistics.median(alone))
 
 
@@ -83,8 +87,8 @@ def _others(system: System, file: Path, steps: int) -> dict[str, Callable[[], fl
     outputs = record_names(build_network(system, parts))
     names = [f"{p.name}.{n}" for p, ns in zip(parts, outputs, strict=True) for n in ns]
     return {
-        name + ("" if recorded else ", nothing recorded"): lambda name=name, recorded=recorded: (
-            macro_step(name, file, STEP, steps, recorded)
+        name + ("" if recorded else ", nothing recorded"): partial(
+            macro_step, name, file, STEP, steps, recorded
         )
         for name in PACKAGES
         for recorded in (names, ())

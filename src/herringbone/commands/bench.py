@@ -56,8 +56,8 @@ def _macro_step() -> tuple[str, dict[str, Any]]:
         )
     kernels = f"{found.kernels / first:8.2f}{1e6 * found.kernels:10.2f}"
     lines.append(f"{kernels}  of which doStep of all parts: the rest is the loop")
-    seconds = {"loops": dict(found.loops), "kernels": found.kernels}
-    return "\n".join(lines), seconds
+    timed = {"loops": dict(found.loops), "kernels": found.kernels}
+    return "\n".join(lines), timed
 
 
 def _accuracy() -> tuple[str, dict[str, Any]]:

@@ -23,7 +23,7 @@ from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
-from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
 LEVELS = (1e-2, 1e-3)

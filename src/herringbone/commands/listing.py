@@ -23,7 +23,7 @@ def overview() -> str:
     lines = ["Components:"]
     lines += _table([(c.name, c.declaration.description) for c in COMPONENTS.values()])
     lines += ["", "Systems and scenes:"]
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for file in sorted(systems_folder().glob(f"*/{FILE_NAME}")):
         rows.append((file.parent.name, read_toml(file).get("description", "")))
         for scene in sorted(file.parent.glob("scenes/*.toml")):

@@ -98,7 +98,8 @@ class _Report:
     def __init__(self, options: argparse.Namespace, bar: "_Bar") -> None:
         self._options, self._bar = options, bar
         self._start = Path.cwd()  # FMUs may change it
-        self._shown, self._files = Path(), ()
+        self._shown = Path()
+        self._files: tuple[str, ...] = ()
 
     def write(self, result: "Result") -> None:
         """Write all files."""

@@ -38,7 +38,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.running import api, start  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running import loading, start  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.scenes import Start  # noqa: PLC0415
 
     output = options.output or (Path("results") if options.atlas else None)
@@ -47,8 +47,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
-    structure, folder = api.load_system(options.system)
-    scene = api.load_scene(folder, options.scene)
+    structure, folder = loading.load_system(options.system)
+    scene = loading.load_scene(folder, options.scene)
     values = {**scene.values, **values}
     scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
     for note in structure.notes:

@@ -29,10 +29,11 @@ _SHAFT = {  # gap shaft: y [N/m], z [N/m], rotation [N m/rad]
 def _shaft_damping(gear: str) -> tuple[float, float, float]:
     """2 % of the local critical damping of the two halves against each other."""
     bodies = (_MASS[gear], _MASS[gear], _INERTIA[gear])
-    return tuple(
+    radial, axial, torsional = (
         2.0 * _SHAFT_DAMPING_RATIO * math.sqrt(k * m / 2.0)
         for k, m in zip(_SHAFT[gear], bodies, strict=True)
     )
+    return radial, axial, torsional
 
 
 def _states() -> list[Variable]:

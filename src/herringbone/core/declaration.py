@@ -79,7 +79,8 @@ class Declaration:
         self._check()
 
     def _check(self) -> None:
-        names = [v.name for v in (*self.variables, *self.texts, *self.vectors)]
+        names = [v.name for v in self.variables]
+        names += [v.name for v in self.texts] + [v.name for v in self.vectors]
         twice = sorted({n for n in names if names.count(n) > 1})
         if twice:
             raise StructureError(f"{self.name}: declared twice: {', '.join(twice)}")

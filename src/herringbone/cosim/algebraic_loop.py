@@ -101,10 +101,11 @@ def measure_loop(network: Network) -> AlgebraicLoop | None:
     forces = tuple(
         c for c in network.connections if c.target in candidates and motion_of_force(c.input)
     )
+    positions = [motion[0] for c in forces if (motion := motion_of_force(c.input))]
     matrix, compliance = np.zeros((len(forces), len(forces))), np.zeros(len(forces))
-    for j, c in enumerate(forces):
+    for j, (c, position) in enumerate(zip(forces, positions, strict=True)):
         body = network.parts[c.target]
-        start, position = body.get([c.input])[0], motion_of_force(c.input)[0]
+        start = body.get([c.input])[0]
         found, moved = [], [0.0, 0.0]
         for k, change in enumerate((_CHANGE, -_CHANGE)):
             body.set(c.input, start + change)

@@ -9,6 +9,7 @@ import contextlib
 import ctypes
 import os
 from collections.abc import Iterator
+from typing import Any
 
 from herringbone.core import EXIT_CODES, OutcomeKind
 
@@ -30,7 +31,7 @@ def _at_exit(_: int | None) -> None:
 @contextlib.contextmanager
 def exit_guard() -> Iterator[None]:
     """Context in which FMUs are called; may be nested."""
-    library = None if os.name == "nt" else ctypes.CDLL(None)
+    library: Any = None if os.name == "nt" else ctypes.CDLL(None)
     if not hasattr(library, "__cxa_atexit"):
         yield
         return

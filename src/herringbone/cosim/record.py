@@ -23,7 +23,7 @@ class Grid(NamedTuple):
     """
 
     step: float
-    count: int
+    count: int  # type: ignore[assignment]  # hides tuple.count, which nobody calls
     every: int
 
 

@@ -44,7 +44,8 @@ def settle_derivatives(network: Network, prepared: PreparedRun) -> list[str]:
 
 def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
     """Lower the order of a part's input derivatives until it takes them; what it refused."""
-    signals, refused = prepared.layout.derivatives, []
+    signals = prepared.layout.derivatives
+    refused: list[str] = []
     for order in range(int(signals.order[p]), 0, -1):
         status = set_derivatives(prepared.layout, p, order)
         if status <= LAST_GOOD:

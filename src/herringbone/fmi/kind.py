@@ -7,6 +7,7 @@ from herringbone.fmi.native import find_compiler, own_platform
 
 FmuKind = Literal["native", "python", "in-process"]
 AUTO: Final = "auto"
+_KINDS: tuple[FmuKind, ...] = get_args(FmuKind)
 
 
 def choose_kind(fmu: str) -> tuple[FmuKind, tuple[str, ...]]:
@@ -18,10 +19,11 @@ def choose_kind(fmu: str) -> tuple[FmuKind, tuple[str, ...]]:
     Raises:
         ParameterError: there is no such kind.
     """
-    if fmu in get_args(FmuKind):
-        return fmu, ()
+    for kind in _KINDS:
+        if fmu == kind:
+            return kind, ()
     if fmu != AUTO:
-        kinds = ", ".join((AUTO, *get_args(FmuKind)))
+        kinds = ", ".join((AUTO, *_KINDS))
         raise ParameterError(f"fmu = {fmu!r}; it must be one of {kinds}")
     own = own_platform()
     if own and find_compiler(own):

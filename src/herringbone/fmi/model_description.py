@@ -3,7 +3,7 @@
 import math
 import uuid
 from importlib.metadata import version
-from typing import Final
+from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Text, Variable
@@ -22,19 +22,19 @@ LOG_CATEGORIES: Final = {
     "logStatusFatal": "Log messages with fmi2Fatal status.",
     "logAll": "Log all messages.",
 }
-_CAPABILITIES: Final = {
+_CAPABILITIES: Final[dict[str, Any]] = {
     "needsExecutionTool": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
-_STEPS: Final = {
+_STEPS: Final[dict[str, Any]] = {
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "false",
 }
-_NATIVE: Final = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
-_DERIVATIVES: Final = {"providesDirectionalDerivative": "true"}
+_NATIVE: Final[dict[str, Any]] = {"canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"}
+_DERIVATIVES: Final[dict[str, Any]] = {"providesDirectionalDerivative": "true"}
 
 
 def identifier(component: Component, built_with: str = "") -> str:
@@ -107,7 +107,7 @@ def add_log_categories(root: Element) -> None:
         SubElement(categories, "Category", name=name, description=description)
 
 
-def sizes(variable: Variable) -> dict[str, str]:
+def sizes(variable: Variable) -> dict[str, Any]:
     """The attributes of a finite range, and of a nominal value."""
     range_ = {"min": variable.minimum, "max": variable.maximum}
     found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
@@ -177,7 +177,7 @@ def _add_derivatives(
 
     States and derivatives that are calculated are unknown in initialisation, in order of position.
     """
-    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
+    variables, structure = child(root, "ModelVariables"), child(root, "ModelStructure")
     position = {reference: i for i, reference in enumerate(references, 1)}
     derivatives = Element("Derivatives")
     structure.insert(1, derivatives)
@@ -186,13 +186,18 @@ def _add_derivatives(
             variables.append(_real(reference, rate))
             position[reference] = len(variables)
         element = variables[position[reference] - 1]
-        element.find("Real").set("derivative", str(position[state]))
+        child(element, "Real").set("derivative", str(position[state]))
         SubElement(derivatives, "Unknown", index=str(position[reference]))
-    unknowns = structure.find("InitialUnknowns")
+    unknowns = child(structure, "InitialUnknowns")
     for reference in {*rates, *(reference for reference, _ in rates.values())}:
         if variables[position[reference] - 1].get("initial") == "calculated":
             SubElement(unknowns, "Unknown", index=str(position[reference]))
-    unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index")))
+    unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index", "")))
+
+
+def child(parent: Element, tag: str) -> Element:
+    """A child element that is there."""
+    return next(parent.iterfind(tag))
 
 
 def _join(indices: list[int]) -> str:

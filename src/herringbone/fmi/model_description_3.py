@@ -6,7 +6,7 @@ scalars of other FMUs connect to X. Value references are those of FMI 2.0: indic
 
 from dataclasses import replace
 from importlib.metadata import version
-from typing import Final
+from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Variable
@@ -16,20 +16,21 @@ from herringbone.fmi.model_description import (
     STEP_SIZE,
     add_log_categories,
     add_units,
+    child,
     identifier,
     sizes,
 )
 from herringbone.fmi.used_states import UsedStates
 
 _TIME_UNIT: Final = "s"
-_CAPABILITIES: Final = {
+_CAPABILITIES: Final[dict[str, Any]] = {
     "needsExecutionTool": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
     "providesDirectionalDerivatives": "true",
 }
-_STEPS: Final = {
+_STEPS: Final[dict[str, Any]] = {
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "1",
 }
@@ -166,8 +167,8 @@ def _add_derivatives(
 
     States and derivatives that are calculated are unknown in initialisation.
     """
-    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
-    shown = {int(v.get("valueReference")): v for v in variables}
+    variables, structure = child(root, "ModelVariables"), child(root, "ModelStructure")
+    shown = {int(v.get("valueReference", "")): v for v in variables}
     outputs = len(structure.findall("Output"))
     for place, (state, (reference, rate)) in enumerate(rates.items(), outputs):
         derivative = Element("ContinuousStateDerivative", valueReference=str(reference))
@@ -183,7 +184,7 @@ def _add_derivatives(
 
 def _add_indicators(root: Element, component: Component) -> None:
     """Event indicators are variables in FMI 3.0."""
-    variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
+    variables, structure = child(root, "ModelVariables"), child(root, "ModelStructure")
     first = interface.time_reference(component.declaration) + 1
     for k in range(component.indicator_count):
         SubElement(

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from enum import IntEnum
 from operator import itemgetter
 from pathlib import Path
+from typing import cast
 from xml.etree.ElementTree import Element
 
 from pythonfmu.enums import Fmi2Status
@@ -42,8 +43,8 @@ class ComponentSlave(GuardedSlave):
         folder = Path(self.resources) if self.resources else None
         self._instance = Instance(self._component, self.instance_name, folder)
         block = self._instance.block
-        self._values = memoryview(block)
-        self._saved = memoryview(block[: declaration.first_table]).cast("B")
+        self._values = cast("memoryview[float]", block.data)
+        self._saved = block[: declaration.first_table].data.cast("B")
         self._first_parameter = declaration.mutable_size * block.itemsize
         self._reals = interface.reals(declaration)
         self._texts = interface.texts(declaration)

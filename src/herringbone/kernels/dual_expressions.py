@@ -13,7 +13,7 @@ from numba.core.dispatcher import Dispatcher
 from herringbone.kernels import elementary
 
 SUFFIX = "_dot"
-_DERIVATIVES = {
+_DERIVATIVES: dict[object, tuple[str, str]] = {
     elementary.sine: ("sine", "{0}_dot * cosine({0})"),
     elementary.cosine: ("cosine", "-{0}_dot * sine({0})"),
     elementary.exponential: ("exponential", "{0}_dot * exponential({0})"),
@@ -22,7 +22,7 @@ _DERIVATIVES = {
     min: ("min", "({1}_dot if {1} < {0} else {0}_dot)"),
     max: ("max", "({1}_dot if {1} > {0} else {0}_dot)"),
 }
-_LOCALLY_CONSTANT = {math.floor: "math.floor", int: "int", range: "range"}
+_LOCALLY_CONSTANT: dict[object, str] = {math.floor: "math.floor", int: "int", range: "range"}
 
 Dual = tuple[ast.expr, ast.expr | None]
 """An expression and its tangent; None: the tangent is zero."""
@@ -35,11 +35,11 @@ class NotDifferentiableError(TypeError):
 class Program(Protocol):
     """Where derivatives, kernels and constants are collected."""
 
-    def derivative(self, kernel: Callable) -> str:
+    def derivative(self, kernel: Dispatcher) -> str:
         """Name of a kernel's derivative."""
         ...
 
-    def original(self, kernel: Callable) -> str:
+    def original(self, kernel: Dispatcher) -> str:
         """Name under which a kernel itself can be called."""
         ...
 
@@ -56,12 +56,16 @@ class DualExpressions:
         kernel: a compiled kernel.
     """
 
-    def __init__(self, program: Program, kernel: Callable) -> None:
+    def __init__(self, program: Program, kernel: Dispatcher) -> None:
         self._program = program
         self._function = kernel.py_func
         self._tree = definition_of(kernel)
         arguments = self._tree.args.args
-        self._local = {node.id for node in ast.walk(self._tree) if _is_target(node)}
+        self._local = {
+            node.id
+            for node in ast.walk(self._tree)
+            if isinstance(node, ast.Name) and _is_target(node)
+        }
         self._local |= {a.arg for a in arguments}
         self._active = {a.arg for a in arguments if is_real(a.annotation)}
         self._before: list[ast.stmt] = []
@@ -126,7 +130,7 @@ class DualExpressions:
             case ast.Div():
                 change = tq and ast.UnaryOp(ast.USub(), _product(value, tq))
                 return value, ast.BinOp(_sum(tp, change), ast.Div(), q)
-            case ast.Pow() if tq is None:
+            case ast.Pow() if tq is None and tp is not None:
                 lower = ast.BinOp(p, operator, ast.BinOp(q, ast.Sub(), ast.Constant(1)))
                 return value, _product(_product(q, lower), tp)
         raise self._unknown(value)
@@ -152,12 +156,12 @@ class DualExpressions:
         duals = [self._dual(a) for a in arguments]
         if all(t is None for _, t in duals):
             return ast.Call(_expression(name), [p for p, _ in duals], []), None
-        names = []
+        names: list[ast.Name] = []
         for p, t in duals:
             names.append(self._temporary())
             self._before.append(assignment([names[-1]], p))
             self._before.append(assignment([dotted(names[-1])], t or zero()))
-        value = ast.Call(_expression(name), names, [])
+        value = ast.Call(_expression(name), [*names], [])
         return value, _expression(rule.format(*(n.id for n in names)))
 
     def _call_of_kernel(self, call: ast.Call) -> ast.Call:
@@ -201,7 +205,7 @@ class DualExpressions:
         )
 
 
-def definition_of(kernel: Callable) -> ast.FunctionDef:
+def definition_of(kernel: Dispatcher) -> ast.FunctionDef:
     """The source of a kernel as a tree."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(kernel.py_func)))
     return tree.body[0]  # type: ignore[return-value]

@@ -15,6 +15,8 @@ import math
 import textwrap
 from collections.abc import Callable
 
+from numba.core.dispatcher import Dispatcher
+
 from herringbone.core.generated import load_generated
 from herringbone.kernels.dual_expressions import (
     SUFFIX,
@@ -61,14 +63,14 @@ class _Program:
         self._imports: dict[str, str] = {}
         self._functions: dict[str, str] = {}
 
-    def derivative(self, kernel: Callable) -> str:
+    def derivative(self, kernel: Dispatcher) -> str:
         """Name of a kernel's derivative."""
         name = mangled(kernel.py_func) + SUFFIX
         if name not in self._functions:
             self._functions[name] = _Function(self, kernel).source(name)
         return name
 
-    def original(self, kernel: Callable) -> str:
+    def original(self, kernel: Dispatcher) -> str:
         """Name under which a kernel itself can be called."""
         function = kernel.py_func
         name = mangled(function)
@@ -140,7 +142,7 @@ class _Function(DualExpressions):
                 return [ast.If(self._value(test), self._block(body), self._block(other))]
             case ast.Return(None):
                 return [s]
-            case ast.Return(value):
+            case ast.Return(ast.expr() as value):
                 return [ast.Return(self._returned(value))]
         raise self._unknown(s)
 

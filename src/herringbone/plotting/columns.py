@@ -47,7 +47,7 @@ def generic_overview(result: Result) -> Figure:
 
 
 def _by_unit(result: Result, columns: list[str]) -> dict[str, list[str]]:
-    units = {result.units[c]: [] for c in columns}
+    units: dict[str, list[str]] = {result.units[c]: [] for c in columns}
     for column in columns:
         units[result.units[column]].append(column)
     return units

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,7 +15,7 @@ from herringbone.plotting.style import COLOURS, MARKER_COLOUR, figure_legend, st
 _WIDTH, _HEIGHT = 12.6, 4.6
 _MARKERS = "osD^v"
 _TITLE = "Largest stable step of coupling algorithms: stable below the lines"
-_KEYS = {
+_KEYS: dict[str, dict[str, Any]] = {
     "predicted from the linear parts": {"linestyle": "-"},
     "first unstable step in runs of the same parts (mesh frozen at mean stiffness)": {
         "linestyle": "",

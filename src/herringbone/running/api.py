@@ -99,22 +99,22 @@ def run(
     structure, notes = started(structure, chosen)
     if reference:
         refuse_foreign_parts(structure)
-    fmu, why = choose_kind(fmu)
-    notes = [*notes, *broken, *why]
+    fmu, slower = choose_kind(fmu)
+    lines = [*notes, *broken, *slower]
     with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as parts:
         if coupling is None:
             coupling, why = _chosen_for(parts, tolerance)
-            notes.append(why)
+            lines.append(why)
         asked, step = step, coupling.start_step if step is None else step
-        notes += _stability_notes(structure, coupling, step, slow)
+        lines += _stability_notes(structure, coupling, step, slow)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
-        notes += _record_notes(record_step, coupling, grid)
+        lines += _record_notes(record_step, coupling, grid)
         bond = fastest_bond(structure)
         recording = simulate(
             structure, parts, coupling, grid, progress, bond_frequency=bond, slow=slow
         )
-        notes += _step_notes(asked, coupling, recording)
-        every = make_result(structure, chosen, coupling, fmu, recording, notes)
+        lines += _step_notes(asked, coupling, recording)
+        every = make_result(structure, chosen, coupling, fmu, recording, lines)
         result = decimated(every, chosen.record_step) if reference else every
         if recorded:
             recorded(result)

@@ -6,7 +6,7 @@ the parts of the system cannot answer stands in lines of its own, with the reaso
 
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
@@ -36,7 +36,7 @@ def summary_text(result: Result) -> str:
     """A summary of a run for people: how it was computed, operating point, forces, spectra."""
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
-    sections = (
+    sections: tuple[Callable[[Result], Iterator[str]], ...] = (
         _operating_point, _power, _seats, _spectral_lines, _radiation, _unknown, _signals, _errors,
     )  # fmt: skip
     if len(result.data) < 2 or result.outcome.unstable:

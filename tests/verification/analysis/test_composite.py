@@ -9,7 +9,7 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Instance, ResourceError, StructureError
 from herringbone.fmi.used_states import used_states
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
 SEATS_OUTSIDE = ("modal_housing",)

@@ -8,7 +8,7 @@ from herringbone.benchmarks import macro_step
 from herringbone.commands.main import main
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.fmi.native import find_compiler, own_platform
-from herringbone.running.api import load_scene, load_system, open_parts
+from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
 pytestmark = pytest.mark.skipif(

@@ -18,7 +18,7 @@ from herringbone.core import Instance, StructureError
 from herringbone.cosim.algorithms import LI, GaussSeidel, Jacobi
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.fmi.interface import has_model_exchange
-from herringbone.running.api import load_scene, load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
 PERIOD = 5e-4

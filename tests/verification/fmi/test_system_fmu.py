@@ -10,7 +10,8 @@ from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
-from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.api import run
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 from herringbone.running.system_fmu import export_fmu
 from herringbone.scenes import Scene, Start

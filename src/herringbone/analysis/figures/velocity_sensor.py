@@ -149,10 +149,11 @@ def sensor_velocity(
     result = result.uniform()
     housing = housing_of(result)
     known = housing.dofs if housing else ()
-    if missing := [name for name in sensors if (name, axis) not in known]:
+    missing = [name for name in sensors if (name, axis) not in known]
+    if housing is None or missing:
         raise ParameterError(
-            f"the modal data of the run have no sensor {missing[0]} along {axis}; it takes data "
-            "with sensors, as 'herringbone housing build' makes them"
+            f"the modal data of the run have no sensor {', '.join(missing[:1])} along {axis}; it "
+            "takes data with sensors, as 'herringbone housing build' makes them"
         )
     step = float(np.diff(result.data[TIME].to_numpy()[:2])[0])
     modal = modal_velocity(housing, seat_forces(result), step)

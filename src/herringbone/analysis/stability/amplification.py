@@ -145,7 +145,8 @@ class Amplification:
             eigenvalues, vectors = np.linalg.eig(matrix)
         sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
-        vector = vector / np.abs(vector / self._change[self._used]).max()
+        used = np.empty(0, int) if self._used is None else self._used
+        vector = vector / np.abs(vector / self._change[used]).max()
         history = self._base.copy()
         with self._prepared(step) as prepared:
             self._advance(prepared, step, history)
@@ -153,7 +154,7 @@ class Amplification:
             base = history[0].copy()
             found = []
             for changes in (vector.real, vector.imag):
-                self._advance(prepared, step, history, dict(zip(self._used, changes, strict=True)))
+                self._advance(prepared, step, history, dict(zip(used, changes, strict=True)))
                 found.append(history[0] - base)
         return np.split(found[0] + 1j * found[1], self._first[1:-1])
 

@@ -74,7 +74,9 @@ def atlas(
     damping = [two_rotors(zeta, 3.0) for zeta in DAMPING_RATIOS]
     ratio = [two_rotors(_DAMPING, ratio) for ratio in MASS_RATIOS]
     stiff = [scaled_bearings(system, factor) for factor in STIFFNESS_FACTORS]
-    panels = (
+    panels: tuple[
+        tuple[str, str, Sequence[float], Sequence[System], Sequence[float]], ...
+    ] = (
         (f"{system.name}: bearing stiffness", "bearing stiffness / nominal [1]", STIFFNESS_FACTORS,
          stiff, _RUN_FACTORS),
         ("two rotors: damping", "damping ratio of the coupling [1]", DAMPING_RATIOS,

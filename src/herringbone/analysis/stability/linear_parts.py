@@ -5,7 +5,7 @@ one tangent stiffness of a mesh period. Then everything is affine while meshes s
 limit of a motor acts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 
 import numpy as np
@@ -26,7 +26,8 @@ class MeshStiffness(StrEnum):
 
     def of(self, values: np.ndarray) -> float:
         """The minimum, mean or maximum of stiffnesses over a mesh period."""
-        return float({"minimum": np.min, "mean": np.mean, "maximum": np.max}[self](values))
+        kinds: dict[str, Callable] = {"minimum": np.min, "mean": np.mean, "maximum": np.max}
+        return float(kinds[self](values))
 
 
 def linear_network(

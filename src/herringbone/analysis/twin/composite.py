@@ -9,6 +9,7 @@ parts.
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
@@ -256,7 +257,7 @@ def _block_map(
     )
 
 
-def _step_kernel(declaration: Declaration, module: object) -> Callable:
+def _step_kernel(declaration: Declaration, module: ModuleType) -> Callable:
     advance = steppers.body_stepper(module.system_rhs, module.system_out, declaration)
     refresh = module.refresh
     micro_step, degree = declaration.indices(*_OWN)
@@ -276,9 +277,8 @@ def _loader(
     text = 0
     scratch = 1
     for instance in instances:
-        texts = instance.component.declaration.texts
-        if texts:
-            loader = instance.component.load
+        texts, loader = instance.component.declaration.texts, instance.component.load
+        if isinstance(loader, ResourceLoader):
             refusals += [replace(r, text=r.text + text) for r in loader.refusals]
             scratch = max(scratch, loader.scratch)
             text += len(texts)

@@ -5,6 +5,7 @@ The component's table part holds the blocks of all parts, one behind the other, 
 
 from dataclasses import dataclass
 
+from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Instance
 
 
@@ -170,5 +171,6 @@ def _loads(instances: list[Instance], blocks: tuple[int, ...]) -> str:
             "    at += size\n"
         )
         file += len(texts)
-        refusals += len(instance.component.load.refusals)
+        if isinstance(instance.component.load, ResourceLoader):
+            refusals += len(instance.component.load.refusals)
     return "".join(lines)

@@ -13,7 +13,8 @@ from herringbone.gears.files.table_file import table_text
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.methods import Progress, check_method, mesh_stiffness
+from herringbone.gears.stiffness.methods import check_method, mesh_stiffness
+from herringbone.gears.stiffness.point_mesh import Progress
 
 TABLE, PICTURE = "mesh_stiffness.csv", "gear_pair.png"
 _READERS = (".toml", ".rexs", ".xml")

@@ -6,6 +6,7 @@ left,56.306,0.0,8.22e8
 """
 
 import csv
+import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,8 +14,10 @@ import numpy as np
 
 from herringbone.core import ResourceError, reason
 
+TablePath = Path | zipfile.Path
 
-def _units(line: str, file: Path) -> dict[str, str]:
+
+def _units(line: str, file: TablePath) -> dict[str, str]:
     before, _, text = line.partition("# units:")
     if before or not text:
         raise ResourceError(f"{file}: the first line must be '# units: <column> <unit>, ...'")
@@ -22,7 +25,7 @@ def _units(line: str, file: Path) -> dict[str, str]:
 
 
 def check_units(
-    found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: Path
+    found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: TablePath
 ) -> None:
     """Check the units of columns; raises ResourceError."""
     for column, units in wanted.items():
@@ -35,7 +38,11 @@ def check_units(
 
 
 def read_flat_csv(
-    file: Path, texts: tuple[str, ...], numbers: Mapping[str, tuple[str, ...]], *, more: str = ""
+    file: TablePath,
+    texts: tuple[str, ...],
+    numbers: Mapping[str, tuple[str, ...]],
+    *,
+    more: str = "",
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Read a flat CSV file.
 
@@ -80,7 +87,7 @@ def read_flat_csv(
     return {name: np.array(values) for name, values in columns.items()}, units
 
 
-def _number(text: str, column: str, file: Path, line: int) -> float:
+def _number(text: str, column: str, file: TablePath, line: int) -> float:
     try:
         value = float(text)
     except ValueError:

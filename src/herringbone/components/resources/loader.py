@@ -4,13 +4,13 @@ The kernel is the same for Python and native FMUs, so that both have the same ta
 same files with the same words.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.resources.flat_csv import check_units, read_flat_csv
+from herringbone.components.resources.flat_csv import TablePath, check_units, read_flat_csv
 from herringbone.core import Column, ResourceError, Text
 
 REPORT = 6
@@ -31,7 +31,7 @@ class Refusal:
     format: str
     text: int = 0
 
-    def error(self, files: list[Path], report: np.ndarray) -> ResourceError:
+    def error(self, files: Sequence[TablePath], report: np.ndarray) -> ResourceError:
         """The refusal with its numbers."""
         numbers = self.format.replace("%%", "").count("%")
         return ResourceError(f"{files[self.text]}{self.format % tuple(report[:numbers])}")
@@ -67,7 +67,9 @@ class ResourceLoader:
             raise self.refusals[refusal - 1].error(paths, report)
 
 
-def read_numbers(file: Path, columns: tuple[Column, ...]) -> tuple[np.ndarray, tuple[int, int]]:
+def read_numbers(
+    file: TablePath, columns: tuple[Column, ...]
+) -> tuple[np.ndarray, tuple[int, int]]:
     """Read a flat CSV file as numbers.
 
     Returns:
@@ -91,7 +93,7 @@ def read_numbers(file: Path, columns: tuple[Column, ...]) -> tuple[np.ndarray, t
     return np.concatenate([used, rows.ravel()]), rows.shape
 
 
-def _numbered(column: Column, found: np.ndarray, file: Path) -> np.ndarray:
+def _numbered(column: Column, found: np.ndarray, file: TablePath) -> np.ndarray:
     numbers = {word: float(i) for i, word in enumerate(column.words)}
     if not column.other_words and (unknown := [w for w in found if w not in numbers]):
         raise ResourceError(

@@ -4,11 +4,9 @@ Modes: columns mode, kind (normal, residual, rigid), frequency_hz [Hz], damping_
 Shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
 """
 
-from pathlib import Path
-
 import numpy as np
 
-from herringbone.components.resources.flat_csv import check_units, read_flat_csv
+from herringbone.components.resources.flat_csv import TablePath, check_units, read_flat_csv
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column, ResourceError
 from herringbone.kernels.jit import kernel
@@ -134,7 +132,7 @@ def collect(
     return _MISSING + first_missing if missing else 0
 
 
-def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+def read_mode_table(modes: TablePath) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Read and check the table of modes.
 
     Returns:
@@ -151,7 +149,7 @@ def read_mode_table(modes: Path) -> tuple[tuple[str, ...], np.ndarray, np.ndarra
     return tuple(_KINDS[int(kind)] for kind in kinds), frequency_hz, damping_ratio
 
 
-def read_shape_table(shapes: Path) -> tuple[Dofs, np.ndarray]:
+def read_shape_table(shapes: TablePath) -> tuple[Dofs, np.ndarray]:
     """Read and check the table of shapes.
 
     Returns:

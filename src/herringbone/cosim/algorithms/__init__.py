@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import fields, replace
+from typing import Any
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
@@ -46,7 +47,7 @@ def parse_algorithm(text: str) -> Algorithm:
         known = ", ".join([AUTO, *ALGORITHMS])
         raise ParameterError(f"there is no algorithm '{name}'; there are: {known}")
     kind = ALGORITHMS[name]
-    types = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
+    types: dict[str, Any] = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
     values: dict[str, float | str] = {}
     for item in filter(None, options.split(",")):
         key, _, value = item.partition("=")

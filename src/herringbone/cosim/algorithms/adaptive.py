@@ -125,7 +125,7 @@ class PreparedAdaptive(PreparedNodes):
         )
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and steps that could not be made small enough."""
         missed = int(self._adaptive.state[MISSED]) if self._adaptive else 0
         if not missed:
@@ -154,7 +154,9 @@ class PreparedAdaptive(PreparedNodes):
             np.array(RUNGS, dtype=np.int64),
             np.zeros((rungs, size, size)),
             np.full(rungs, NONE, dtype=np.int64),
-            *(np.zeros(rungs, dtype=np.int64) for _ in range(3)),
+            np.zeros(rungs, dtype=np.int64),
+            np.zeros(rungs, dtype=np.int64),
+            np.zeros(rungs, dtype=np.int64),
             np.array([source in held_by for source in sources], dtype=np.int64),
             np.zeros(groups),
             np.zeros((4, max(nodes.unknown.size, groups))),
@@ -174,7 +176,8 @@ class PreparedAdaptive(PreparedNodes):
         if self._buffers is None or self._adaptive is None:
             self._buffers = self._make_buffers(history)
             self._adaptive = self._make_adaptive(self._buffers)
-            if (status := self._make_correction(chunk.start, chunk.h)) != DONE:
+            status = self._correct(self._buffers, self._adaptive, chunk.start, chunk.h)
+            if status != DONE:
                 return status, chunk.start, -1
         done, end = chunk.start, chunk.start + chunk.count
         while True:
@@ -191,20 +194,20 @@ class PreparedAdaptive(PreparedNodes):
             )  # fmt: skip
             self._record.rows = int(self._adaptive.state[ROWS])
             if status == REFRESH:
-                status = self._make_correction(done, chunk.h)
+                status = self._correct(self._buffers, self._adaptive, done, chunk.h)
             if status == STEP_LIMIT:
-                self._explain_limit(done * chunk.h)
+                self._explain_limit(int(self._adaptive.state[CULPRIT]), done * chunk.h)
             if status != DONE or done >= end:
                 return status, done, culprit
 
-    def _make_correction(self, done: int, tick: float) -> int:
+    def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""
-        adaptive, rung = self._adaptive, int(self._adaptive.state[USED])
+        rung = int(adaptive.state[USED])
         t, h = done * tick, RUNGS[rung] * tick
         own = not self._sensitivities or adaptive.ready[rung] == NEEDED
         try:
             if own:
-                self._sensitivities[rung] = self._measured(rung, t, h)
+                self._sensitivities[rung] = self._measured(buffers, adaptive, rung, t, h)
                 adaptive.owed[rung] = 0
             found = self._sensitivities[rung] if own else self._fitted(rung)
             adaptive.corrections[rung] = correction_matrix(found, t, h)
@@ -221,12 +224,13 @@ class PreparedAdaptive(PreparedNodes):
         adaptive.ready[rung] = OWN if own else SCALED
         return DONE
 
-    def _measured(self, rung: int, t: float, h: float) -> np.ndarray:
-        adaptive = self._adaptive
+    def _measured(
+        self, buffers: Buffers, adaptive: Adaptive, rung: int, t: float, h: float
+    ) -> np.ndarray:
         self.jacobians += 1
-        self._buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
+        buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
         size = np.maximum(adaptive.moments[2, self.nodes.group], SMALLEST)
-        return self.jacobian.measure(self._buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
+        return self.jacobian.measure(buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
 
     def _fitted(self, rung: int) -> np.ndarray:
         """S(h) = a h + b h^2 through the nearest rungs with a Jacobian; b h^2 through one."""
@@ -238,8 +242,8 @@ class PreparedAdaptive(PreparedNodes):
         first, second = (self._sensitivities[k] / RUNGS[k] for k in near)
         return h * (first + (h - one) / (two - one) * (second - first))
 
-    def _explain_limit(self, t: float) -> None:
-        p, name = self.jacobian.owners[self.nodes.unknown[self._adaptive.state[CULPRIT]]]
+    def _explain_limit(self, unknown: int, t: float) -> None:
+        p, name = self.jacobian.owners[self.nodes.unknown[unknown]]
         self.culprit = f"{self.network.parts[p].name}.{name}"
         smallest = RUNGS[0] * self._tick
         self.problem = (

@@ -37,7 +37,9 @@ def choose_algorithm(
             "as an adaptive step needs; leave the tolerance out"
         )
     if unable:
-        chosen, why = Jacobi(), f"{', '.join(unable)} cannot save and restore its state"
+        chosen: Algorithm = Jacobi()
+        why = f"{', '.join(unable)} cannot save and restore its state"
     else:
-        chosen, why = LI(), "all parts save and restore their state"
+        chosen = LI()
+        why = "all parts save and restore their state"
     return chosen, f"{AUTO}: {chosen}, because {why}"

@@ -103,7 +103,9 @@ class PreparedNodes(PreparedRun):
             np.array(network.elements, dtype=np.int64),
             np.array(network.sources, dtype=np.int64),
             *node_references(parts, self._outputs, node_degrees),
-            *(state[:, k].copy() for k in range(3)),
+            state[:, 0].copy(),
+            state[:, 1].copy(),
+            state[:, 2].copy(),
             self._groups(unknown),
         )
 
@@ -117,7 +119,7 @@ class PreparedNodes(PreparedRun):
         return np.unique(np.array(units)[unknown], return_inverse=True)[1].astype(np.int64)
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and, after a run, a residual that the corrections did not remove."""
         left = float(self._buffers.worst[0]) if self._buffers else 0.0
         if not self.newton or left <= REST:
@@ -201,7 +203,7 @@ class PreparedNodes(PreparedRun):
             self._buffers.scale[:] = SMALLEST
             grow_scale(self.nodes, self._buffers)
         done, end = chunk.start, chunk.start + chunk.count
-        if self._correction.size == 0 and (status := self._refresh(chunk)) != DONE:
+        if self._correction.size == 0 and (status := self._refresh(self._buffers, chunk)) != DONE:
             return status, done, -1
         while True:
             patient = self.newton and done < self._next_refresh
@@ -216,11 +218,11 @@ class PreparedNodes(PreparedRun):
                 chunk._replace(start=done, count=until - done),
             )
             if status == REFRESH:
-                status = self._refresh(chunk._replace(start=done))
+                status = self._refresh(self._buffers, chunk._replace(start=done))
             if status != DONE or done >= end:
                 return status, done, culprit
 
-    def _refresh(self, chunk: Chunk) -> int:
+    def _refresh(self, buffers: Buffers, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""
         done, h = chunk.start, chunk.h
         t = chunk.t0 + done * h
@@ -230,7 +232,7 @@ class PreparedNodes(PreparedRun):
             self._correction = np.eye(self.nodes.degree * self.nodes.unknown.size)
             return DONE
         try:
-            found = self.jacobian.measure(self._buffers, self._buffers.scale, t, h, done + 1)
+            found = self.jacobian.measure(buffers, buffers.scale, t, h, done + 1)
             self._correction = correction_matrix(found, t, h)
         except CouplingError as error:
             self.problem = str(error)

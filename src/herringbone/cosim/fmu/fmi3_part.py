@@ -86,7 +86,7 @@ class Fmu3Part(FmuPart):
     def _write(self, kind: str, reference: int, value: float | str) -> None:
         if kind == "Float64":
             self._exchange(
-                _set_real, "fmi3SetFloat64", (c_uint32 * 1)(reference), (c_double * 1)(value)
+                _set_real, "fmi3SetFloat64", (c_uint32 * 1)(reference), (c_double * 1)(float(value))
             )
             return
         setter = "setInt64" if kind == "Enumeration" else f"set{kind}"

@@ -5,7 +5,7 @@ import ctypes
 import math
 import shutil
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.part import Addresses
+from herringbone.core.part import Addresses, PartVariable
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.variables import read_variables
@@ -35,7 +35,7 @@ class FmuPart(ABC):
         self.name, self.file = name, file
         self._running = False
         self.model = model or read_fmu(file)
-        self.variables = read_variables(self.model)
+        self.variables: Mapping[str, PartVariable] = read_variables(self.model)
         self._log = FmuLog()
         self._folder = extract_fmu(file)
         try:

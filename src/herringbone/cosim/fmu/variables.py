@@ -65,7 +65,7 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
             reference,
             v.causality or "local",
             unit := v.unit or (v.declaredType.unit if v.declaredType else None),
-            dimension.get(unit),
+            dimension.get(unit or ""),
             dependencies.get(v.name),
             kind,
         )

@@ -68,7 +68,7 @@ class Chunk(NamedTuple):
     t0: float
     h: float
     start: int
-    count: int
+    count: int  # type: ignore[assignment]  # hides tuple.count, which nobody calls
     records: np.ndarray
     every: int
     energy: EnergyMonitor = NOTHING_WATCHED

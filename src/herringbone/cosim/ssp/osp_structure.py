@@ -48,6 +48,6 @@ def osp_structure(
     connections = SubElement(root, "Connections")
     for c in network.connections:
         connection = SubElement(connections, "VariableConnection")
-        for part, variable in ((c.source, c.output), (c.target, c.input)):
-            SubElement(connection, "Variable", simulator=parts[part].label, name=variable)
+        for p, variable in ((c.source, c.output), (c.target, c.input)):
+            SubElement(connection, "Variable", simulator=parts[p].label, name=variable)
     return root

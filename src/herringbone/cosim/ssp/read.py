@@ -5,7 +5,7 @@ annotations of other tools. SSP allows any names; what is no identifier is mappe
 `core.names.identifier_for`), and a note says so.
 """
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, urlparse
@@ -31,7 +31,11 @@ from herringbone.cosim.ssp.format import (
 )
 from herringbone.cosim.structure.system import PartSpec, System
 
-_TYPES = {"Real": float, "Integer": int, "Boolean": lambda text: int(text in {"true", "1"})}
+_TYPES: Mapping[str, Callable[[str], float]] = {
+    "Real": float,
+    "Integer": int,
+    "Boolean": lambda text: int(text in {"true", "1"}),
+}
 
 
 def read_ssp(file: Path) -> System:
@@ -84,7 +88,8 @@ class _Reader:
             raise self.refusal("signal dictionaries are not supported; connect components directly")
         name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
         self.name_components(element)
-        parts, variables = [], {}
+        parts: list[PartSpec] = []
+        variables: dict[str, PartVariable] = {}
         for child in element.iterfind("ssd:Elements/*", NAMESPACES):
             part, part_variables = self.part(child)
             parts.append(part)

@@ -68,8 +68,8 @@ class System:
 
     def __post_init__(self) -> None:
         check_name(self.name, "system")
-        for kind, names in (("port", self.ports), ("channel", self.channels)):
-            for name in names:
+        for kind, keys in (("port", tuple(self.ports)), ("channel", tuple(self.channels))):
+            for name in keys:
                 check_name(name, f"system '{self.name}': {kind}")
         if bad := next((c for c in self.description if not (c.isprintable() or c.isspace())), ""):
             raise StructureError(

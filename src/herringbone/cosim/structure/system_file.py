@@ -33,7 +33,7 @@ _KEYS: dict[str, type] = {
     "name": str, "description": str, "connections": list, "parts": dict, "ports": dict,
     "channels": dict,
 }  # fmt: skip
-_TYPE_NAMES = {str: "a text", list: "a list", dict: "a table"}
+_TYPE_NAMES: dict[type, str] = {str: "a text", list: "a list", dict: "a table"}
 _KINDS = ("component", "fmu", "system")
 
 

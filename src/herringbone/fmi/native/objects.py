@@ -9,6 +9,7 @@ The entry points that a simulation calls all the time are made fast, the others 
 """
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import llvmlite.binding as llvm
 from numba import carray, types
@@ -77,7 +78,8 @@ def entry_points(of: Component) -> dict[str, CFunction]:
         kernels_indicators(carray(b, (block,)), t, carray(z, (count,)))
 
     kernels_step, kernels_rhs, kernels_out = kernels
-    kernels_start, kernels_indicators = of.start, of.indicators
+    kernels_start = of.start
+    kernels_indicators: Any = of.indicators  # not used if it is None
     kernels_longest_step = of.longest_step
     kernels_tangent = tangent_kernel(of)
     found: dict[str, tuple[object, Callable]] = {

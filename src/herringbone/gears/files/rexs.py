@@ -18,7 +18,7 @@ Both gears must have the same module, pressure angle and, but for the hand, heli
 
 import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 from herringbone.core import ResourceError, reason
@@ -69,7 +69,7 @@ def read_rexs(file: Path, *, stage: str | None = None, halves: int = 1) -> GearP
     tips = [_optional(model, gear, "tip_diameter", "length") for gear in gears]
     bores = [_optional(model, gear, "inner_diameter", "length") for gear in gears]
     tool = [_optional(model, g, "addendum_coefficient_reference_profile", "number") for g in gears]
-    optional = {
+    optional: dict[str, Any] = {
         "tip_radius": [None if tip is None else 0.5 * tip for tip in tips],
         "bore_diameter": [bore or 0.0 for bore in bores],
         "dedendum_coefficient": [1.25 if height is None else height for height in tool],
@@ -98,7 +98,7 @@ def _read(file: Path) -> _Model:
         raise ResourceError(f"{file}: root element '{root.tag}' is not the 'model' of a REXS file")
     components = {
         element.get("id", ""): _Component(
-            element.get("name") or element.get("id", ""),
+            element.get("name", "") or element.get("id", ""),
             element.get("type", ""),
             {
                 item.get("id", ""): ((item.text or "").strip(), item.get("unit", ""))

@@ -6,6 +6,7 @@ in axes that turn with the section, all layers have the same matrix.
 
 from dataclasses import dataclass
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -112,7 +113,7 @@ def scikit_fem() -> ModuleType:
     return skfem
 
 
-def _mesh(fem: ModuleType, section: Section, thickness: float, twist: float) -> object:
+def _mesh(fem: ModuleType, section: Section, thickness: float, twist: float) -> Any:  # noqa: ANN401 (skfem's)
     """27-node hexahedra of the layer."""
     used, number = np.unique(section.nodes[:, ::2, ::2], return_inverse=True)
     number = number.reshape(-1, 2, 2)
@@ -128,7 +129,11 @@ def _mesh(fem: ModuleType, section: Section, thickness: float, twist: float) -> 
     return fem.MeshHex2(points, mesh.t)
 
 
-def _places(section: Section, dofs: object, element: object) -> tuple[np.ndarray, ...]:
+def _places(
+    section: Section,
+    dofs: Any,  # noqa: ANN401 (skfem's)
+    element: Any,  # noqa: ANN401 (skfem's)
+) -> tuple[np.ndarray, ...]:
     """Section node, level (0, 1, 2) and direction (0, 1, 2) of each degree of freedom."""
     where = np.round(2 * element.doflocs).astype(int)
     node = np.stack([section.nodes[:, a, b] for a, b, _ in where])

@@ -76,7 +76,7 @@ class FiniteElementMesh(PointMesh):
         )
 
     @cached_property
-    def lines(self) -> ContactSlices:
+    def lines(self) -> ContactSlices:  # type: ignore[override]  # it follows from the fields
         """Contact lines and their points."""
         return ContactSlices(
             self.pair, self.modification, slices=self.slices, corner_contact=self.corner_contact

@@ -17,6 +17,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry import given
@@ -27,12 +28,14 @@ from herringbone.gears.geometry.contact import (
     path_of_contact,
     tooth_forces,
 )
+from herringbone.gears.geometry.given import Pair, as_pair
 from herringbone.gears.geometry.half_body import GapShaft, HalfBody, gap_shaft, half_body
 from herringbone.gears.geometry.tooth_profile import Rack, ToothProfile, generate_tooth
 from herringbone.gears.stiffness import iso6336
 
-Pair = tuple[float, float]
 Given = float | Sequence[float]
+_COMPLETED: Any = None
+"""Default of what follows from the other values; never None in a pair that is made."""
 _HUB_SHARE = 0.4
 
 
@@ -74,28 +77,57 @@ class GearPair:
             the mate's root.
     """
 
-    number_of_teeth: Sequence[int]
+    number_of_teeth: tuple[int, int]
     normal_module: float
     normal_pressure_angle: float = math.radians(20.0)
     helix_angle: float = 0.0
     face_width: float
     halves: int = 2
-    center_distance: float | None = None
-    profile_shift_coefficient: float | Sequence[float | None] | None = (0.0, 0.0)
-    addendum_coefficient: Given = 1.0
-    dedendum_coefficient: Given = 1.25
-    tip_alteration_coefficient: Given = 0.0
-    root_fillet_radius_coefficient: Given | None = None
-    tip_radius: Sequence[float] | None = None
-    tooth_thickness_allowance: Given = 0.0
-    bore_diameter: Given = 0.0
+    center_distance: float = _COMPLETED
+    profile_shift_coefficient: Pair = (0.0, 0.0)
+    addendum_coefficient: Pair = (1.0, 1.0)
+    dedendum_coefficient: Pair = (1.25, 1.25)
+    tip_alteration_coefficient: Pair = (0.0, 0.0)
+    root_fillet_radius_coefficient: Pair = _COMPLETED
+    tip_radius: Pair = _COMPLETED
+    tooth_thickness_allowance: Pair = (0.0, 0.0)
+    bore_diameter: Pair = (0.0, 0.0)
     gap_width: float = 0.0
-    groove_diameter: Given | None = None
-    shaft_diameter: Given = 0.0
-    stub_length: Given = 0.0
+    groove_diameter: Pair = _COMPLETED
+    shaft_diameter: Pair = (0.0, 0.0)
+    stub_length: Pair = (0.0, 0.0)
     youngs_modulus: float = 2.06e11
     poissons_ratio: float = 0.3
     density: float = 7850.0
+
+    if TYPE_CHECKING:  # what may be given is more than what a pair holds
+
+        def __init__(
+            self,
+            *,
+            number_of_teeth: Sequence[int],
+            normal_module: float,
+            normal_pressure_angle: float = ...,
+            helix_angle: float = ...,
+            face_width: float,
+            halves: int = ...,
+            center_distance: float | None = ...,
+            profile_shift_coefficient: float | Sequence[float | None] | None = ...,
+            addendum_coefficient: Given = ...,
+            dedendum_coefficient: Given = ...,
+            tip_alteration_coefficient: Given = ...,
+            root_fillet_radius_coefficient: float | Sequence[float | None] | None = ...,
+            tip_radius: float | Sequence[float | None] | None = ...,
+            tooth_thickness_allowance: Given = ...,
+            bore_diameter: Given = ...,
+            gap_width: float = ...,
+            groove_diameter: float | Sequence[float | None] | None = ...,
+            shaft_diameter: Given = ...,
+            stub_length: Given = ...,
+            youngs_modulus: float = ...,
+            poissons_ratio: float = ...,
+            density: float = ...,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name in (
@@ -110,8 +142,9 @@ class GearPair:
         object.__setattr__(self, "profile_shift_coefficient", given.profile_shifts(self))
         object.__setattr__(self, "root_fillet_radius_coefficient", given.root_fillets(self))
         object.__setattr__(self, "tip_radius", given.tip_radii(self))
-        if self.groove_diameter == (None, None):
-            object.__setattr__(self, "groove_diameter", tuple(2.0 * r for r in self.root_radius))
+        groove: tuple[float | None, float | None] = self.groove_diameter
+        if groove == (None, None):
+            object.__setattr__(self, "groove_diameter", as_pair(2.0 * r for r in self.root_radius))
         check_meshing(self)
 
     # Angles, module and radii
@@ -144,7 +177,7 @@ class GearPair:
     @cached_property
     def reference_radius(self) -> Pair:
         """r [m]."""
-        return tuple(0.5 * z * self.transverse_module for z in self.number_of_teeth)
+        return as_pair(0.5 * z * self.transverse_module for z in self.number_of_teeth)
 
     @cached_property
     def reference_center_distance(self) -> float:
@@ -154,18 +187,20 @@ class GearPair:
     @cached_property
     def base_radius(self) -> Pair:
         """r_b [m]."""
-        return tuple(r * math.cos(self.transverse_pressure_angle) for r in self.reference_radius)
+        return as_pair(r * math.cos(self.transverse_pressure_angle) for r in self.reference_radius)
 
     @cached_property
     def pitch_radius(self) -> Pair:
         """r_w [m], of the working pitch circles."""
-        return tuple(r / math.cos(self.working_transverse_pressure_angle) for r in self.base_radius)
+        return as_pair(
+            r / math.cos(self.working_transverse_pressure_angle) for r in self.base_radius
+        )
 
     @cached_property
     def generating_profile_shift_coefficient(self) -> Pair:
         """x_E: profile shift with which the teeth are cut, the thickness allowance included."""
         thinner = 2.0 * self.normal_module * math.tan(self.normal_pressure_angle)
-        return tuple(
+        return as_pair(
             x + allowance / thinner
             for x, allowance in zip(
                 self.profile_shift_coefficient, self.tooth_thickness_allowance, strict=True
@@ -175,7 +210,7 @@ class GearPair:
     @cached_property
     def root_radius(self) -> Pair:
         """r_f [m]."""
-        return tuple(
+        return as_pair(
             r - self.normal_module * (h - x)
             for r, h, x in zip(
                 self.reference_radius,
@@ -188,12 +223,12 @@ class GearPair:
     @cached_property
     def form_radius(self) -> Pair:
         """r_Ff [m], where the involute begins above the root fillet."""
-        return tuple(self.tooth_profile(gear).form_radius for gear in range(2))
+        return as_pair(self.tooth_profile(gear).form_radius for gear in range(2))
 
     @cached_property
     def tip_clearance(self) -> Pair:
         """c [m], between the gear's root and the mate's tip."""
-        return tuple(
+        return as_pair(
             self.center_distance - self.root_radius[gear] - self.tip_radius[1 - gear]
             for gear in range(2)
         )
@@ -201,7 +236,7 @@ class GearPair:
     @cached_property
     def tip_tooth_thickness(self) -> Pair:
         """s_an [m], normal tooth thickness at the tip; not positive: pointed."""
-        return tuple(
+        return as_pair(
             2.0
             * self.tip_radius[gear]
             * self.tooth_profile(gear).half_angle(self.tip_radius[gear])
@@ -297,7 +332,7 @@ class GearPair:
 
         A solid gear, one with its shaft: 0.4 of the root radius.
         """
-        return tuple(
+        return as_pair(
             0.5 * bore if bore > 0.0 else _HUB_SHARE * root
             for bore, root in zip(self.bore_diameter, self.root_radius, strict=True)
         )
@@ -323,10 +358,10 @@ class GearPair:
         return iso6336.stiffness(self, tangential_force, blank_factor)
 
 
-def _pair(name: str, value: object) -> tuple:
+def _pair(name: str, value: Any) -> tuple[Any, Any]:  # noqa: ANN401 (a user's, not checked yet)
     if value is None or isinstance(value, (int, float)):
         return (value, value)
-    pair = tuple(value)  # type: ignore[arg-type]
+    pair = tuple(value)
     if len(pair) != 2:
         raise ParameterError(f"{name}: {len(pair)} values; give one, or two: (pinion, wheel)")
-    return pair
+    return pair[0], pair[1]

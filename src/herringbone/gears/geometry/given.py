@@ -1,6 +1,7 @@
 """Completes what a gear pair is given: centre distance, profile shifts, fillets, tips."""
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from herringbone.core import ParameterError
@@ -9,7 +10,14 @@ from herringbone.gears.geometry.involute import involute, involute_angle
 if TYPE_CHECKING:
     from herringbone.gears.geometry.gear_pair import GearPair
 
+Pair = tuple[float, float]
 _DEFAULT_ROOT_FILLET = 0.38
+
+
+def as_pair(values: Iterable[float]) -> Pair:
+    """Values of both gears: (pinion, wheel)."""
+    pinion, wheel = values
+    return pinion, wheel
 
 
 def center_distance(pair: "GearPair") -> float:
@@ -39,7 +47,7 @@ def center_distance(pair: "GearPair") -> float:
     return pair.reference_center_distance * cosines
 
 
-def profile_shifts(pair: "GearPair") -> tuple[float, float]:
+def profile_shifts(pair: "GearPair") -> Pair:
     """The profile shift coefficients given; what is None follows from the centre distance."""
     x1, x2 = pair.profile_shift_coefficient
     turned = involute(pair.working_transverse_pressure_angle) - involute(
@@ -53,10 +61,10 @@ def profile_shifts(pair: "GearPair") -> tuple[float, float]:
     return (x1, total - x1) if x2 is None else (x1, x2)
 
 
-def root_fillets(pair: "GearPair") -> tuple[float, float]:
+def root_fillets(pair: "GearPair") -> Pair:
     """Root fillet radius coefficients given, or 0.38, or what the rack has room for."""
     given = pair.root_fillet_radius_coefficient
-    return tuple(
+    return as_pair(
         min(_DEFAULT_ROOT_FILLET, full_root_fillet(pair, gear)) if given[gear] is None
         else given[gear]
         for gear in range(2)
@@ -70,10 +78,10 @@ def full_root_fillet(pair: "GearPair", gear: int) -> float:
     return room * math.cos(alpha) / (1.0 - math.sin(alpha))
 
 
-def tip_radii(pair: "GearPair") -> tuple[float, float]:
+def tip_radii(pair: "GearPair") -> Pair:
     """Tip radii given, or from the addendum [m]."""
     given = pair.tip_radius
-    return tuple(
+    return as_pair(
         pair.reference_radius[gear]
         + pair.normal_module
         * (

@@ -128,7 +128,7 @@ class ContactSlices:
         width = self.pair.face_width / self.slices
         return self.at(path, face, share * width / math.cos(self.pair.base_helix_angle))
 
-    def at(self, path: np.ndarray, face: np.ndarray, length: np.ndarray) -> Slices:
+    def at(self, path: np.ndarray, face: np.ndarray, length: np.ndarray | float) -> Slices:
         """Slices at positions on path and face, of lengths of line; all [m] and of one shape."""
         pair = self.pair
         on_path = np.clip(path, 0.0, pair.length_of_path_of_contact)

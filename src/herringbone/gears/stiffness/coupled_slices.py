@@ -72,13 +72,13 @@ class CoupledSliceMesh(PointMesh):
         return self.coupling * self.pair.normal_module
 
     @cached_property
-    def lines(self) -> ContactSlices:
+    def lines(self) -> ContactSlices:  # type: ignore[override]  # it follows from the fields
         """Contact lines and their slices."""
         return ContactSlices(
             self.pair,
             self.modification,
             calibration=self.calibration,
-            slices=self.slices,
+            slices=self.slices or _FEWEST_SLICES,
             corner_contact=self.corner_contact,
         )
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class MeshStiffness:
         Points taken out of a curve with kinks would turn what lies above half of their number into
         false low harmonics.
         """
-        kept = {
+        kept: dict[str, Any] = {
             name: self._band_limited(getattr(self, name), phases)
             for name in ("deflection", "tangent", "zero_load_secant")
         }

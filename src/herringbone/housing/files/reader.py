@@ -220,7 +220,7 @@ def _optional_compliance(file: Path | zipfile.Path, hashes: Mapping[str, str]) -
 
 def read_compliance(file: Path | zipfile.Path) -> np.ndarray:
     """Read a matrix (12, 12) of static or residual compliance [m/N]; raises ResourceError."""
-    table, units = read_flat_csv(file, ("point", "dof"), {}, more="compliance")  # type: ignore[arg-type]
+    table, units = read_flat_csv(file, ("point", "dof"), {}, more="compliance")
     if units.get("compliance") != "m/N":
         raise ResourceError(f"{file}: unit '{units.get('compliance', 'none')}'; it must be m/N")
     rows = list(zip(table["point"], table["dof"], strict=True))
@@ -232,7 +232,7 @@ def read_compliance(file: Path | zipfile.Path) -> np.ndarray:
 def _read_gram(file: Path | zipfile.Path, hashes: Mapping[str, str]) -> np.ndarray | None:
     if file.name not in hashes:
         return None
-    table, units = read_flat_csv(file, (), {"mode": ("1",)}, more="gram")  # type: ignore[arg-type]
+    table, units = read_flat_csv(file, (), {"mode": ("1",)}, more="gram")
     if units.get("gram") != "kg^-1.m2":
         raise ResourceError(f"{file}: unit '{units.get('gram', 'none')}'; it must be kg^-1.m2")
     return np.column_stack([values for name, values in table.items() if name != "mode"])

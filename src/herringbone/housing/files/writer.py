@@ -132,7 +132,7 @@ def _table(units: str, header: Iterable[str], rows: Iterable[Iterable[Any]]) -> 
     for row in rows:
         cells = (
             v if isinstance(v, str) else repr(v if isinstance(v, int) else float(v)) for v in row
-        )  # type: ignore[arg-type]
+        )
         lines.append(",".join(cells))
     return "\n".join(lines) + "\n"
 

@@ -56,7 +56,8 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
     node = np.empty(0, dtype=int)
     coordinates = np.empty((0, 3))
     header: dict[str, float] = {}
-    frequencies, shapes = [], []
+    frequencies: list[float] = []
+    shapes: list[np.ndarray] = []
     rest = iter(lines)
     for line in rest:
         if line.startswith("    2C"):
@@ -94,7 +95,8 @@ def _frequency(square: float, header: float) -> float:
 
 def _block(lines: Iterator[str], width: int) -> tuple[np.ndarray, np.ndarray]:
     """Labels (k,) and three values each (k, 3), up to the end of a block."""
-    labels, values = [], []
+    labels: list[int] = []
+    values: list[list[float]] = []
     first = 3 + width
     for line in lines:
         if line.startswith(" -3"):

@@ -189,8 +189,8 @@ def _selected_input(
     """(N, 3) forces by unit forces on a selection along the gearbox axes."""
     found = np.zeros((size, 3))
     for node, weight in zip(selection.nodes, selection.weights, strict=True):
-        at = [rows.get((node, axis)) for axis in (1, 2, 3)]
-        if None in at:
+        at = [rows[row] for axis in (1, 2, 3) if (row := (node, axis)) in rows]
+        if len(at) < 3:
             raise ResourceError(
                 f"{seats.path}: {selection.role} {selection.name}: the matrices have no rows for "
                 f"the three directions of node {node}"

@@ -18,7 +18,7 @@ Fundamentals of Structural Dynamics, 2nd ed., section 17.6.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy.linalg as la
@@ -29,7 +29,7 @@ from herringbone.housing.eigenmodes import Factorisation, Modes, eigenmodes
 from herringbone.housing.modal_model import SEAT_DOFS
 from herringbone.housing.reduction.bound import choose_modes, make_certificate
 
-Matrix = sp.sparray | sp.spmatrix
+Matrix: TypeAlias = sp.sparray | sp.spmatrix
 _FIRST_COUNT = 30
 _DENSE = 600
 """Up to this size the whole eigenproblem is solved at once."""
@@ -88,7 +88,10 @@ def reduce_model(
         HerringboneError: sizes differ, not symmetric, singular, or more oscillators are needed
             than allowed.
     """
-    seats = seat_input.toarray() if sp.issparse(seat_input) else np.asarray(seat_input, float)
+    seats = np.asarray(
+        seat_input if isinstance(seat_input, np.ndarray) else sp.csr_array(seat_input).toarray(),
+        float,
+    )
     stiffness, mass = sp.csr_array(stiffness), sp.csr_array(mass)
     check_matrices(stiffness, mass, seats)
     progress("factor the stiffness matrix")

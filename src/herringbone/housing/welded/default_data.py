@@ -107,7 +107,7 @@ def record(
     model, certificate = built.model, built.model.certificate
     options, size = design.modes, f"{1e3 * design.mesh_size:g} mm"
     normal = model.kind.count("normal")
-    stiffness = 1e-6 / np.diag(model.static).reshape(4, 3)
+    stiffness = 1e-6 / np.diag(np.asarray(model.static)).reshape(4, 3)
     sections = [
         "# The default housing",
         "This file is made by `python -m herringbone.housing.welded.default_data`, as are the data "

@@ -76,8 +76,8 @@ class FiniteElements:
         """The four seats and the sensors."""
         positions = sensor_positions(self._dimensions, self._sensors)
         sensors = [
-            Point(name, "sensor", tuple(map(float, position)), coupling="node")
-            for name, position in zip(SENSORS, positions, strict=True)
+            Point(name, "sensor", (x, y, z), coupling="node")
+            for name, (x, y, z) in zip(SENSORS, positions.tolist(), strict=True)
         ]
         return (*(seat.point for seat in self._seats), *sensors)
 
@@ -151,7 +151,8 @@ class FiniteElements:
         d = self._dimensions
         low = np.array([d.box_x[0] + d.end_wall, -d.axis_height, -d.inner_width / 2])
         high = np.array([d.box_x[1] - d.end_wall, d.cover_height, d.inner_width / 2])
-        return ((self._corners > low - _ON_FACE) & (self._corners < high + _ON_FACE)).all(axis=2)
+        inside = (self._corners > low - _ON_FACE) & (self._corners < high + _ON_FACE)
+        return np.all(inside, axis=2)
 
     def _on_cylinder(self, a: int, b: int, at_a: float, at_b: float, diameter: float) -> np.ndarray:
         radius = np.hypot(self._corners[..., a] - at_a, self._corners[..., b] - at_b)
