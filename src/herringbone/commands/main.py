@@ -23,7 +23,7 @@ from herringbone.commands.options import (
     add_start_values,
     start_values,
 )
-from herringbone.commands.output import check_writable, say, show, terminable
+from herringbone.commands.output import check_writable, logged, say, show, terminable
 from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        with terminable():
+        with terminable(), logged():
             return options.command(options)
     except HerringboneError as error:
         say(f"herringbone: {error}")

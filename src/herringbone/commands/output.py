@@ -1,6 +1,7 @@
 """Where the command line writes: lines for people, and folders that are checked beforehand."""
 
 import contextlib
+import logging
 import signal
 import sys
 import tempfile
@@ -19,6 +20,25 @@ def say(text: str) -> None:
 def show(text: str) -> None:
     """What a command was asked for."""
     sys.stdout.write(text + "\n")
+
+
+class _Lines(logging.Handler):
+    """Shows warnings of the library as lines."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """A record as a line."""
+        say(self.format(record))
+
+
+@contextlib.contextmanager
+def logged() -> Iterator[None]:
+    """Context in which warnings of the library are shown."""
+    logger, lines = logging.getLogger("herringbone"), _Lines(logging.WARNING)
+    logger.addHandler(lines)
+    try:
+        yield
+    finally:
+        logger.removeHandler(lines)
 
 
 @contextlib.contextmanager

@@ -1,11 +1,10 @@
 """The command `run`: a system, from its options to the report."""
 
 import argparse
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from tqdm import tqdm
 
 from herringbone.commands.options import (
     add_kind,
@@ -16,6 +15,7 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.running.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
         if (value := getattr(options, name)) is not None
     }
-    with _Bar() as bar:
+    with closing(Bar(always=False)) as bar:
         report = _Report(options, bar)
         result = api.run(
             options.system,
@@ -95,7 +95,7 @@ def _ended(outcome: Outcome) -> str:
 class _Report:
     """The files of a run: written when it ends, before anything more is found out about it."""
 
-    def __init__(self, options: argparse.Namespace, bar: "_Bar") -> None:
+    def __init__(self, options: argparse.Namespace, bar: Bar) -> None:
         self._options, self._bar = options, bar
         self._start = Path.cwd()  # FMUs may change it
         self._shown = Path()
@@ -138,35 +138,3 @@ def _multiples(text: str | None) -> dict[str, int]:
             raise ParameterError(f"--slow {name}={number}: it must be a whole number of steps")
         found[name] = int(number)
     return found
-
-
-class _Bar:
-    """Progress bar of simulated milliseconds, then a line on what goes on; on a terminal only."""
-
-    def __enter__(self) -> "_Bar":
-        self._bar: tqdm | None = None
-        return self
-
-    def show(self, reached: float, t_end: float) -> None:
-        """Move the bar to a simulated time [s]."""
-        if self._bar is None:
-            self._bar = tqdm(
-                total=round(1e3 * t_end, 3),
-                unit="ms",
-                disable=None,
-                bar_format="{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]",
-            )
-        self._bar.update(1e3 * reached - self._bar.n)
-
-    def tell(self, text: str) -> None:
-        """Show a line until the bar is closed."""
-        self.close()
-        self._bar = tqdm(desc=text, disable=None, bar_format="{desc}", leave=False)
-
-    def close(self) -> None:
-        """End the line."""
-        if self._bar is not None:
-            self._bar.close()
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()

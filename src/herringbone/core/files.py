@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 
@@ -13,6 +14,11 @@ def is_file(path: Path) -> bool:
 def is_folder(path: Path) -> bool:
     """True for a folder; False also for what no folder can be called."""
     return os.path.isdir(path)  # noqa: PTH112 (pathlib's raises for such names)
+
+
+def as_texts(values: Mapping[str, float | str | Path] | None) -> dict[str, float | str]:
+    """Values by name, with paths as text; empty for None."""
+    return {k: str(v) if isinstance(v, Path) else v for k, v in (values or {}).items()}
 
 
 def same_folder() -> contextlib.AbstractContextManager[None]:

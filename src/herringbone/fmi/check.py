@@ -16,7 +16,7 @@ _STEPS = 10
 _STEP_SIZE = 1e-3
 
 
-def check_fmu(path: Path) -> list[str]:
+def check_fmu(path: str | Path) -> list[str]:
     """Check an FMU; it is executed, so check only what you would also run.
 
     Args:
@@ -28,6 +28,7 @@ def check_fmu(path: Path) -> list[str]:
     Raises:
         FmuError: there is no such file.
     """
+    path = Path(path)
     require_file(path)
     try:
         description = read_fmu(path)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from herringbone.core.facts import Facts
 from herringbone.core.roles import HALVES
 
 AXES = ("x", "y", "z")
@@ -52,8 +53,8 @@ class Frame:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class ModalHousing:
+@dataclass(frozen=True, eq=False, repr=False)
+class ModalHousing(Facts):
     """A housing as n oscillators; d directions at its points. SI units, gearbox frame.
 
     Attributes:
@@ -123,3 +124,17 @@ class ModalHousing:
         w_mode = 2.0 * math.pi * self.frequency_hz
         stiffness = w_mode**2 - w**2 + 2j * self.damping_ratio * w_mode * w
         return np.einsum("ik,fk,jk->fij", self.seat_shapes, 1.0 / stiffness, self.seat_shapes)
+
+    def _facts(self) -> dict[str, str]:
+        kinds = ", ".join(f"{self.kind.count(kind)} {kind}" for kind in dict.fromkeys(self.kind))
+        elastic = self.frequency_hz[self.frequency_hz > 0.0]
+        sensors = [point.name for point in self.points if point.role == "sensor"]
+        return {
+            "oscillators": kinds,
+            "frequencies": f"{elastic.min():.4g} to {elastic.max():.4g} Hz" if elastic.size else "",
+            "valid to": f"{self.valid_to_hz:.4g} Hz",
+            "seats": ", ".join(self.seats),
+            "sensors": ", ".join(sensors),
+            "held": self.boundary,
+            "source": ", ".join(f"{k} {v}" for k, v in self.source.items()),
+        }

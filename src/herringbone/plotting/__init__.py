@@ -1,6 +1,7 @@
 """Pictures of results; the only package that imports matplotlib.
 
-Every function returns a `matplotlib.figure.Figure`: save it with `figure.savefig(file)`.
+Every function returns a `matplotlib.figure.Figure`, which a notebook shows: save it with
+`figure.savefig(file)`.
 """
 
 from herringbone.plotting.columns import plot_columns

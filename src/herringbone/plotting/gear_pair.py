@@ -10,7 +10,14 @@ from matplotlib.figure import Figure
 
 from herringbone.gears import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, legend_beside, styled
+from herringbone.plotting.style import (
+    COLOURS,
+    MARKER_COLOUR,
+    ShownFigure,
+    legend,
+    legend_beside,
+    styled,
+)
 
 _MM = 1e3
 _PINION, _WHEEL, _PATH = COLOURS[0], COLOURS[1], COLOURS[2]
@@ -26,7 +33,7 @@ def gear_pair_picture(stiffness: MeshStiffness, title: str) -> Figure:
         stiffness: of the pair.
         title: of the figure.
     """
-    figure = Figure(figsize=(14.0, 4.8), layout="constrained")
+    figure = ShownFigure(figsize=(14.0, 4.8), layout="constrained")
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
     teeth, lines, curves = figure.subplots(1, 3, width_ratios=(1.25, 1.0, 1.15))
     _teeth(teeth, stiffness.pair)
@@ -35,7 +42,7 @@ def gear_pair_picture(stiffness: MeshStiffness, title: str) -> Figure:
     return figure
 
 
-def write_gear_pair_picture(stiffness: MeshStiffness, title: str, file: Path) -> None:
+def write_gear_pair_picture(stiffness: MeshStiffness, title: str, file: str | Path) -> None:
     """Write the picture as PNG."""
     FigureCanvasAgg(gear_pair_picture(stiffness, title)).print_png(file)
 

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from herringbone.core.roles import HALVES
-from herringbone.plotting.style import COLOURS, styled
+from herringbone.plotting.style import COLOURS, ShownFigure, styled
 
 _WIDTH, _HEIGHT = 12.0, 7.0
 _AXES = "xyz"
@@ -32,7 +32,7 @@ def reduction_picture(
         bound: certified bound of the errors at the highest frequency [1].
         oscillators: of the full and of the reduced data.
     """
-    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    figure = ShownFigure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     axes = figure.subplots(2, 3)
     panels = [axes[0, 0], axes[0, 1], axes[1, 0], axes[1, 1]]
     for n, (ax, seat) in enumerate(zip(panels, HALVES, strict=True)):

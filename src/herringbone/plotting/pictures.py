@@ -197,7 +197,7 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
 }
 
 
-def write_pictures(result: Result, folder: Path) -> list[Path]:
+def write_pictures(result: Result, folder: str | Path) -> list[Path]:
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
     A run of less than two records has no pictures.
@@ -217,7 +217,7 @@ def write_pictures(result: Result, folder: Path) -> list[Path]:
             figure = draw(result)
         except ParameterError:
             continue
-        file = folder / f"{name}.png"
+        file = Path(folder) / f"{name}.png"
         try:
             FigureCanvasAgg(figure).print_png(file)
         except OSError as error:

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from herringbone.analysis.stability.atlas import Panel
 from herringbone.core import HerringboneError
-from herringbone.plotting.style import COLOURS, MARKER_COLOUR, figure_legend, styled
+from herringbone.plotting.style import COLOURS, MARKER_COLOUR, ShownFigure, figure_legend, styled
 
 _WIDTH, _HEIGHT = 12.6, 4.6
 _MARKERS = "osD^v"
@@ -26,7 +26,7 @@ _KEYS: dict[str, dict[str, Any]] = {
 _SCHEDULE = ",schedule=bodies_first"
 
 
-def write_atlas(panels: Sequence[Panel], file: Path) -> None:
+def write_atlas(panels: Sequence[Panel], file: str | Path) -> None:
     """Write the picture.
 
     Raises:
@@ -47,7 +47,7 @@ def atlas_picture(panels: Sequence[Panel]) -> Figure:
     Args:
         panels: limits, one panel each.
     """
-    figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
+    figure = ShownFigure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
     axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for ax, panel in zip(axes, panels, strict=True):
         for k, (name, limits) in enumerate(panel.predicted.items()):

@@ -8,6 +8,7 @@ Source: M. Okabe and K. Ito, Color Universal Design (2008), for the colours.
 
 from collections.abc import Callable
 from functools import wraps
+from io import BytesIO
 from typing import Any, ParamSpec
 
 import matplotlib as mpl
@@ -66,6 +67,15 @@ _LARGEST = 1e30  # a diverged run is drawn up to here
 P = ParamSpec("P")
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows as it is, without pyplot and without a magic command."""
+
+    def _repr_png_(self) -> bytes:
+        picture = BytesIO()
+        self.savefig(picture, format="png")
+        return picture.getvalue()
+
+
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     """Draw with this module's style, without touching the caller's matplotlib settings."""
 
@@ -88,7 +98,7 @@ def new_figure(
 ) -> Figure:
     """An empty figure with a title for so many panels, `gap` [inch] apart; the caller adds them."""
     height = 1.2 + (2.5 if rows > 1 else 3.5) * rows + 0.7 * (rows - 1)
-    figure = Figure(figsize=(width, height))
+    figure = ShownFigure(figsize=(width, height))
     figure.suptitle(title, x=0.01, y=1.0 - 0.1 / height, ha="left", va="top", fontweight="bold")
     panel = (width - 1.1 - gap * (columns - 1)) / columns
     figure.subplots_adjust(

@@ -49,7 +49,7 @@ def _looks(algorithms: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def write_chart(found: WorkPrecision, file: Path) -> None:
+def write_chart(found: WorkPrecision, file: str | Path) -> None:
     """Write the picture as PNG with few colours, a third of the usual size."""
     buffer = BytesIO()
     chart_picture(found).savefig(buffer, format="png")

@@ -4,6 +4,7 @@ import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from scipy.interpolate import CubicSpline
 from herringbone.core import HerringboneError, Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
+from herringbone.core.facts import Facts
 from herringbone.core.names import matches, matches_any, shown
 from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
@@ -67,13 +69,13 @@ class RunInfo:
     energy: EnergyReport | None = None
     why: Diagnosis | None = None
     slow: Mapping[str, int] = field(default_factory=dict)
-    parameters: Mapping[str, float] = field(default_factory=dict)
-    resources: Mapping[str, str] = field(default_factory=dict)
-    anatomy: Anatomy = field(default_factory=Anatomy)
+    parameters: Mapping[str, float] = field(default_factory=dict, repr=False)
+    resources: Mapping[str, str] = field(default_factory=dict, repr=False)
+    anatomy: Anatomy = field(default_factory=Anatomy, repr=False)
 
 
-@dataclass(frozen=True)
-class Result:
+@dataclass(frozen=True, repr=False)
+class Result(Facts):
     """Recorded outputs of a run.
 
     Attributes:
@@ -120,12 +122,20 @@ class Result:
         if len(found) > 1:
             raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
         if not found:
-            raise ParameterError(f"there is no column {shown(name)}; see result.data.columns")
+            near = get_close_matches(name, self.data.columns, 3)
+            hint = f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
+            raise ParameterError(f"there is no column {shown(name)}; {hint}")
         return found[0]
 
     def __getitem__(self, name: str) -> pd.Series:
         """Recorded values of a column (n,), SI unit; see `column`."""
         return self.data[self.column(name)]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.data.columns
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.data.columns)
 
     def channel(self, group: str) -> list[str]:
         """Columns of a channel group.
@@ -162,9 +172,9 @@ class Result:
 
         return plot_columns(self, *patterns) if patterns else overview(self)
 
-    def to_csv(self, file: Path) -> None:
+    def to_csv(self, file: str | Path) -> None:
         """Write the table: a `#` line with units, a header row, rows that read back bit by bit."""
-        with file.open("w", encoding="utf-8", newline="") as stream:
+        with Path(file).open("w", encoding="utf-8", newline="") as stream:
             units = ", ".join(f"{name} {self.units[name] or '1'}" for name in self.data.columns)
             stream.write(f"# units: {units}\n")
             csv.writer(stream, lineterminator="\n").writerow(self.data.columns)
@@ -172,7 +182,7 @@ class Result:
                 rows = self.data.iloc[first : first + _CSV_ROWS].to_numpy(dtype=float).tolist()
                 stream.write("".join([",".join(map(repr, row)) + "\n" for row in rows]))
 
-    def to_parquet(self, file: Path) -> None:
+    def to_parquet(self, file: str | Path) -> None:
         """Write the table as Parquet; needs the extra `tables`.
 
         Raises:
@@ -210,3 +220,20 @@ class Result:
     def to_json(self) -> str:
         """`summary` as one line of JSON."""
         return json.dumps(self.summary())
+
+    def _facts(self) -> dict[str, str]:
+        info, outcome = self.info, self.outcome
+        slower = f" of {info.t_end:g} s" if not outcome.reached_end else ""
+        return {
+            "system": info.system,
+            "scene": info.scene,
+            "outcome": f"{outcome.kind.value} at {outcome.time:g} s{slower}",
+            "message": outcome.message,
+            "algorithm": f"{info.algorithm}, step {info.communication_step:g} s",
+            "FMUs": info.fmu,
+            "table": f"{len(self.data)} records of {len(self.data.columns) - 1} columns",
+            "channels": ", ".join(self.channels),
+            "errors": ", ".join(f"{k} {v:.2g}" for k, v in (self.error or {}).items()),
+            "loop": f"{info.wall_s:.3g} s",
+            "notes": str(len(info.notes) or ""),
+        }

@@ -20,7 +20,6 @@ from herringbone.cosim.algorithms import (
 from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
-from herringbone.cosim.run import Progress
 from herringbone.cosim.simulation import check_grid, make_grid, simulate
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
@@ -33,6 +32,7 @@ from herringbone.running.loading import (
     with_options,
     with_replacements,
 )
+from herringbone.running.progress import Progress, told
 from herringbone.running.run_result import decimated, make_result, twin_error
 from herringbone.running.start import started
 from herringbone.scenes import Scene
@@ -43,7 +43,7 @@ _SAME = 1.0 - 1e-6
 def run(
     system: str | Path | System,
     *,
-    scene: str | Scene | None = None,
+    scene: str | Path | Scene | None = None,
     algorithm: str | Algorithm | None = None,
     step: float | None = None,
     tolerance: float | None = None,
@@ -53,9 +53,9 @@ def run(
     start: str | None = None,
     fmu: str = AUTO_FMU,
     replace_parts: Mapping[str, str | Path] | None = None,
-    values: Mapping[str, float | str] | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
     reference: bool = False,
-    progress: Progress | None = None,
+    progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
 ) -> Result:
     """Run a system.
@@ -80,7 +80,7 @@ def run(
             housings first, and what it breaks becomes a note.
         values: variables to set, by `instance.variable`.
         reference: also solve the monolithic twin, and report the errors against it.
-        progress: called with the simulated time reached and its end [s].
+        progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and
             why a run is unstable, are found after that, and are in the result that is returned.
@@ -110,9 +110,10 @@ def run(
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
         lines += _record_notes(record_step, coupling, grid)
         bond = fastest_bond(structure)
-        recording = simulate(
-            structure, parts, coupling, grid, progress, bond_frequency=bond, slow=slow
-        )
+        with told(progress) as tell:
+            recording = simulate(
+                structure, parts, coupling, grid, tell, bond_frequency=bond, slow=slow
+            )
         lines += _step_notes(asked, coupling, recording)
         every = make_result(structure, chosen, coupling, fmu, recording, lines)
         result = decimated(every, chosen.record_step) if reference else every

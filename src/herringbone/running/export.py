@@ -9,6 +9,7 @@ from pathlib import Path
 
 from herringbone.components.registry import component
 from herringbone.core import ParameterError, ResourceError
+from herringbone.core.files import as_texts
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
@@ -31,12 +32,12 @@ def fmu_file_name(model: str, fmi: int) -> str:
 
 def build_fmus(
     components: Iterable[str] = (),
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     *,
     native: bool = False,
     platforms: Sequence[str] = (),
     fmi: int = 2,
-    files: Mapping[str, Path] | None = None,
+    files: Mapping[str, str | Path] | None = None,
 ) -> list[Path]:
     """Build FMUs.
 
@@ -59,12 +60,18 @@ def build_fmus(
     """
     names = list(components) or None
     built = (
-        build_native_fmus(names, platforms=platforms, fmi=fmi, files=files)
+        build_native_fmus(
+            names,
+            platforms=platforms,
+            fmi=fmi,
+            files={name: Path(file) for name, file in (files or {}).items()},
+        )
         if native
         else build_python_fmus(names)
     )
     if folder is None:
         return list(built.values())
+    folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         return [
@@ -78,7 +85,9 @@ def build_fmus(
 
 
 def prepared(
-    system: str | Path, scene: str | Scene | None, values: Mapping[str, float | str] | None
+    system: str | Path,
+    scene: str | Path | Scene | None,
+    values: Mapping[str, float | str | Path] | None,
 ) -> tuple[System, Scene]:
     """A system with all values that are to be exported, and the scene that gives them.
 
@@ -87,7 +96,7 @@ def prepared(
     """
     structure, folder = load_system(system)
     chosen = load_scene(folder, scene)
-    chosen = replace(chosen, values={**chosen.values, **(values or {})})
+    chosen = replace(chosen, values={**chosen.values, **as_texts(values)})
     structure, notes = started(structure, chosen)
     for note in notes:
         _log.warning(note)
@@ -110,9 +119,9 @@ def export_ssp(
     system: str | Path,
     file: str | Path,
     *,
-    scene: str | Scene | None = None,
+    scene: str | Path | Scene | None = None,
     step: float = PARALLEL_STEP,
-    values: Mapping[str, float | str] | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
     native: bool = False,
     platforms: Sequence[str] = (),
 ) -> Path:

@@ -9,7 +9,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
-from herringbone.core.files import is_file
+from herringbone.core.files import as_texts, is_file
 from herringbone.core.part import Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
@@ -39,7 +39,7 @@ def load_system(reference: str | Path) -> tuple[System, Path]:
     return read_system(reference), find_system(reference)
 
 
-def load_scene(folder: Path, scene: str | Scene | None) -> Scene:
+def load_scene(folder: str | Path, scene: str | Path | Scene | None) -> Scene:
     """A scene by name or file; the system's default scene, or plain defaults if it has none.
 
     An .ssp file has start values and a stop time in place of scenes.
@@ -47,6 +47,7 @@ def load_scene(folder: Path, scene: str | Scene | None) -> Scene:
     Raises:
         ParameterError: there is no such scene.
     """
+    folder = Path(folder)
     if isinstance(scene, Scene):
         return scene
     if scene is None and is_ssp(folder):
@@ -61,7 +62,7 @@ def with_options(
     t_end: float | None,
     record_step: float | None,
     start: str | None,
-    values: Mapping[str, float | str] | None,
+    values: Mapping[str, float | str | Path] | None,
 ) -> Scene:
     """The scene with what the caller overrides.
 
@@ -75,7 +76,7 @@ def with_options(
         t_end=scene.t_end if t_end is None else t_end,
         record_step=scene.record_step if record_step is None else record_step,
         start=scene.start if start is None else Start(start),
-        values={**scene.values, **(values or {})},
+        values={**scene.values, **as_texts(values)},
     )
 
 

@@ -12,7 +12,11 @@ _TEXT, _SUMMARY = "summary.txt", "summary.json"
 
 
 def write_report(
-    result: Result, folder: Path, *, parquet: bool = False, shown: Path | None = None
+    result: Result,
+    folder: str | Path,
+    *,
+    parquet: bool = False,
+    shown: str | Path | None = None,
 ) -> Result:
     """Write results.csv, pictures, summary.txt and summary.json into a folder, made if needed.
 
@@ -33,6 +37,7 @@ def write_report(
     """
     from herringbone.plotting import PICTURES, write_pictures  # noqa: PLC0415 (matplotlib: lazy)
 
+    folder, shown = Path(folder), Path(folder if shown is None else shown)
     names = ["results.csv", *(["results.parquet"] if parquet else []), _TEXT, _SUMMARY]
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -41,23 +46,24 @@ def write_report(
         result.to_csv(folder / names[0])
         if parquet:
             result.to_parquet(folder / names[1])
-        result = replace(result, files=tuple(str((shown or folder) / name) for name in names))
+        result = replace(result, files=tuple(str(shown / name) for name in names))
         write_summary(result, folder)
         pictures = write_pictures(result, folder)
     except OSError as error:
         raise _refused(error, folder) from error
-    drawn = (str((shown or folder) / picture.name) for picture in pictures)
+    drawn = (str(shown / picture.name) for picture in pictures)
     result = replace(result, files=(*result.files, *drawn))
     write_summary(result, folder)
     return result
 
 
-def write_summary(result: Result, folder: Path) -> None:
+def write_summary(result: Result, folder: str | Path) -> None:
     """Write summary.txt and summary.json into a folder.
 
     Raises:
         HerringboneError: a file cannot be written.
     """
+    folder = Path(folder)
     content = result.summary() | {
         "parameters": dict(result.info.parameters),
         "resources": dict(result.info.resources),

@@ -11,7 +11,7 @@ from herringbone.fmi.model_description import model_description
 from herringbone.scenes import Scene, Start
 
 
-def load_ssp(file: Path) -> System:
+def load_ssp(file: str | Path) -> System:
     """The system of an .ssp file or unpacked folder.
 
     An FMU whose GUID is that of a component of these sources becomes that component, so that
@@ -24,13 +24,13 @@ def load_ssp(file: Path) -> System:
     return replace(system, parts=tuple(_recognised(part) for part in system.parts))
 
 
-def ssp_scene(file: Path) -> Scene:
+def ssp_scene(file: str | Path) -> Scene:
     """What an .ssp file asks for: its start values, and the stop time of its default experiment.
 
     Raises:
         StructureError: the file cannot be read.
     """
-    scene = Scene(file.stem, start=Start.REST)
+    scene = Scene(Path(file).stem, start=Start.REST)
     stop_time = read_stop_time(file)
     return scene if stop_time is None else replace(scene, t_end=stop_time)
 

@@ -17,8 +17,8 @@ def export_fmu(
     file: str | Path,
     *,
     outside: Sequence[str] = (),
-    scene: str | Scene | None = None,
-    values: Mapping[str, float | str] | None = None,
+    scene: str | Path | Scene | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
     platforms: Sequence[str] = (),
     fmi: int = 2,
 ) -> Path:

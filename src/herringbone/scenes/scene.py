@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError
+from herringbone.core.facts import Facts
 from herringbone.core.files import is_file
 from herringbone.core.names import shown
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, read_toml
@@ -28,8 +29,8 @@ class Start(StrEnum):
     """Declared start values."""
 
 
-@dataclass(frozen=True)
-class Scene:
+@dataclass(frozen=True, repr=False)
+class Scene(Facts):
     """What is run on a system.
 
     Attributes:
@@ -49,28 +50,41 @@ class Scene:
     values: Mapping[str, float | str] = field(default_factory=dict)
     start_offset: Mapping[str, float] = field(default_factory=dict)
 
+    def _facts(self) -> dict[str, str]:
+        return {
+            "name": self.name,
+            "description": self.description,
+            "duration": f"{self.t_end:g} s",
+            "records": f"every {self.record_step:g} s",
+            "start": self.start,
+            "values": ", ".join(f"{k} = {v}" for k, v in self.values.items()),
+            "start offset": ", ".join(f"{k} {v:+g}" for k, v in self.start_offset.items()),
+        }
 
-def find_scene(system_folder: Path, name: str) -> Path:
+
+def find_scene(system_folder: str | Path, name: str | Path) -> Path:
     """File of a scene, by name beside the system or by path.
 
     Raises:
         ParameterError: there is none.
     """
-    folder = system_folder / "scenes"
+    folder = Path(system_folder) / "scenes"
     for file in (folder / f"{name}.toml", Path(name)):
         if is_file(file):
             return file
     known = ", ".join(sorted(f.stem for f in folder.glob("*.toml"))) or "none"
-    raise ParameterError(f"there is no scene {shown(name, 300)}; {folder.parent.name} has: {known}")
+    asked = shown(str(name), 300)
+    raise ParameterError(f"there is no scene {asked}; {folder.parent.name} has: {known}")
 
 
-def read_scene(file: Path) -> Scene:
+def read_scene(file: str | Path) -> Scene:
     """Read a scene.
 
     Raises:
         ParameterError: unknown key, or a value of the wrong type or out of range.
         StructureError: the file cannot be read.
     """
+    file = Path(file)
     data = read_toml(file)
     known = {"description", "start", *_NUMBERS, *_TABLES}
     if unknown := set(data) - known:

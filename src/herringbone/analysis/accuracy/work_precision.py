@@ -174,12 +174,12 @@ class WorkPrecision:
             "notes": list(self.notes),
         }
 
-    def to_csv(self, file: Path) -> None:
+    def to_csv(self, file: str | Path) -> None:
         """Write the points: a `#` line with units, a header row, one row per run."""
         rows = [_flat(row) for row in self.rows()]
         units = {"micro_step": "s", "step": "s", "passes_per_ms": "1/ms", "wall_s": "s"}
         units |= {"t_reached": "s"} | {name: "1" for name in rows[0] if name.startswith("error_")}
-        with file.open("w", encoding="utf-8", newline="") as stream:
+        with Path(file).open("w", encoding="utf-8", newline="") as stream:
             stream.write("# units: " + ", ".join(f"{n} {u}" for n, u in units.items()) + "\n")
             writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
             writer.writeheader()

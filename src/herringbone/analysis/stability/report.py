@@ -193,12 +193,13 @@ def stability_summary(found: Stability) -> dict[str, Any]:
     }
 
 
-def write_stability(found: Stability, folder: Path) -> list[Path]:
+def write_stability(found: Stability, folder: str | Path) -> list[Path]:
     """Write stability.txt and stability.json to a folder, made if needed; what was written.
 
     Raises:
         HerringboneError: a file cannot be written.
     """
+    folder = Path(folder)
     contents = {
         folder / "stability.txt": stability_text(found),
         folder / "stability.json": json.dumps(stability_summary(found)),

@@ -26,13 +26,14 @@ def require_file(file: Path) -> None:
         raise FmuError(f"there is no file {file}")
 
 
-def read_fmu(file: Path) -> ModelDescription:
+def read_fmu(file: str | Path) -> ModelDescription:
     """Model description of an FMU 2.0 or 3.0 for co-simulation that runs on this platform.
 
     Raises:
         FmuError: no file, no zip, unsafe names or XML, another FMI version or kind, no binary for
             this platform.
     """
+    file = Path(file)
     require_file(file)
     try:
         with zipfile.ZipFile(file) as archive:

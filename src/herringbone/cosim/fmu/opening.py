@@ -8,7 +8,7 @@ from herringbone.cosim.fmu.fmi3_part import Fmu3Part
 from herringbone.cosim.fmu.part import FmuPart
 
 
-def open_fmu(name: str, file: Path) -> FmuPart:
+def open_fmu(name: str, file: str | Path) -> FmuPart:
     """Instantiate an FMU 2.0 or 3.0 for co-simulation.
 
     Args:
@@ -18,5 +18,6 @@ def open_fmu(name: str, file: Path) -> FmuPart:
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
+    file = Path(file)
     model = read_fmu(file)
     return (Fmu3Part if is_fmi3(model) else Fmu2Part)(name, file, model)

@@ -38,7 +38,7 @@ _TYPES: Mapping[str, Callable[[str], float]] = {
 }
 
 
-def read_ssp(file: Path) -> System:
+def read_ssp(file: str | Path) -> System:
     """The system of an .ssp file, or of a folder into which one was unpacked.
 
     The FMUs lie in a temporary folder that is removed when the process ends.
@@ -47,15 +47,17 @@ def read_ssp(file: Path) -> System:
         StructureError: the file cannot be read or uses what this master does not know.
         FmuError: an FMU is not for co-simulation with FMI 2.0, or unusable.
     """
+    file = Path(file)
     return _Reader(file, unpack(file)).system(read_structure(file))
 
 
-def read_stop_time(file: Path) -> float | None:
+def read_stop_time(file: str | Path) -> float | None:
     """Stop time of the default experiment [s], if there is one.
 
     Raises:
         StructureError: the file cannot be read.
     """
+    file = Path(file)
     experiment = read_structure(file).find("ssd:DefaultExperiment", NAMESPACES)
     text = None if experiment is None else experiment.get("stopTime")
     try:

@@ -34,7 +34,7 @@ _PERMISSIONS = 0o644 << 16
 
 
 def write_ssp(
-    system: System, fmus: Mapping[str, Path], file: Path, *, step: float, t_end: float
+    system: System, fmus: Mapping[str, Path], file: str | Path, *, step: float, t_end: float
 ) -> None:
     """Write a system with its FMUs and start values; the same input gives the same bytes.
 
@@ -60,7 +60,7 @@ def write_ssp(
     entries |= {part.values_file: _text(_parameter_set(part)) for part in parts if part.values}
     entries[OSP_FILE] = _text(osp_structure(parts, network, sources, step))
     entries[STRUCTURE_FILE] = _text(structure(system, parts, network, sources, step, t_end))
-    _write_zip(entries, file)
+    _write_zip(entries, Path(file))
 
 
 def _resource_names(parts: Sequence[DescribedPart]) -> dict[Path, str]:

@@ -5,14 +5,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from herringbone.core import StructureError
+from herringbone.core.facts import Facts
+from herringbone.core.files import as_texts
 from herringbone.core.names import check_name, shown
 from herringbone.core.part_path import PartPath, find_part, split_variable
 
 Values = Mapping[str, float | str]
 
 
-@dataclass(frozen=True)
-class PartSpec:
+@dataclass(frozen=True, repr=False)
+class PartSpec(Facts):
     """One participant of a system.
 
     Attributes:
@@ -40,9 +42,17 @@ class PartSpec:
         """True if the part is an FMU of which only the FMI interface is known."""
         return self.component is None
 
+    def _facts(self) -> dict[str, str]:
+        return {
+            "name": self.name,
+            "component": self.component or "",
+            "fmu": str(self.fmu or ""),
+            "values": str(len(self.values) or ""),
+        }
 
-@dataclass(frozen=True)
-class System:
+
+@dataclass(frozen=True, repr=False)
+class System(Facts):
     """Parts and how they are wired.
 
     Attributes:
@@ -119,7 +129,7 @@ class System:
             channels={name: tuple(map(inside, p)) for name, p in self.channels.items()},
         )
 
-    def with_values(self, values: Values) -> "System":
+    def with_values(self, values: Mapping[str, float | str | Path]) -> "System":
         """The same system with values set, by `instance.variable`.
 
         Raises:
@@ -127,14 +137,14 @@ class System:
             StructureError: there is no such instance.
         """
         parts = {part.name: dict(part.values) for part in self.parts}
-        for path, value in values.items():
+        for path, value in as_texts(values).items():
             instance, variable = self.split(path)
             parts[instance][variable] = value
         return replace(
             self, parts=tuple(replace(part, values=parts[part.name]) for part in self.parts)
         )
 
-    def with_fmu(self, instance: str, fmu: Path) -> "System":
+    def with_fmu(self, instance: str, fmu: str | Path) -> "System":
         """The same system with one part replaced by an FMU file; its own start values hold.
 
         Raises:
@@ -145,7 +155,9 @@ class System:
             self,
             parts=tuple(
                 PartSpec(
-                    part.name, fmu=fmu.absolute(), stands_for=part.component or part.stands_for
+                    part.name,
+                    fmu=Path(fmu).absolute(),
+                    stands_for=part.component or part.stands_for,
                 )
                 if part.name == replaced
                 else part
@@ -178,3 +190,14 @@ class System:
     def foreign_parts(self) -> tuple[str, ...]:
         """Names of parts of which only the FMI interface is known."""
         return tuple(part.name for part in self.parts if part.foreign)
+
+    def _facts(self) -> dict[str, str]:
+        return {
+            "name": self.name,
+            "description": self.description,
+            "parts": f"{len(self.parts)}: {', '.join(part.name for part in self.parts)}",
+            "connections": str(len(self.connections)),
+            "ports": ", ".join(self.ports),
+            "channels": ", ".join(self.channels),
+            "notes": str(len(self.notes) or ""),
+        }

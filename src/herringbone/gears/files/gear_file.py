@@ -45,13 +45,14 @@ _TABLE_KEYS = {field.name for field in fields(GearJob)} - {"pair", "modification
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
 
-def read_gear_file(file: Path) -> GearJob:
+def read_gear_file(file: str | Path) -> GearJob:
     """Read a gear file.
 
     Raises:
         ResourceError: not readable, unknown or missing key, or another unit.
         ParameterError: a value that is not possible.
     """
+    file = Path(file)
     try:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

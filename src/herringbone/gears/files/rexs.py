@@ -42,7 +42,7 @@ class _Model(NamedTuple):
     relations: list[list[tuple[str, str]]]
 
 
-def read_rexs(file: Path, *, stage: str | None = None, halves: int = 1) -> GearPair:
+def read_rexs(file: str | Path, *, stage: str | None = None, halves: int = 1) -> GearPair:
     """Read a stage of a REXS file.
 
     Args:
@@ -54,6 +54,7 @@ def read_rexs(file: Path, *, stage: str | None = None, halves: int = 1) -> GearP
         ResourceError: not readable, no such stage, a missing attribute, or another unit.
         ParameterError: the gears cannot mesh.
     """
+    file = Path(file)
     model = _read(file)
     found = _stage(model, stage)
     gears = _gears(model, found)

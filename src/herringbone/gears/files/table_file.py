@@ -44,13 +44,13 @@ def origin(stiffness: MeshStiffness) -> list[str]:
     ]
 
 
-def write_table(stiffness: MeshStiffness, file: Path) -> None:
+def write_table(stiffness: MeshStiffness, file: str | Path) -> None:
     """Write the table.
 
     Raises:
         HerringboneError: the file cannot be written.
     """
     try:
-        file.write_text(table_text(stiffness), encoding="utf-8", newline="\n")
+        Path(file).write_text(table_text(stiffness), encoding="utf-8", newline="\n")
     except OSError as error:
         raise HerringboneError(f"cannot write {file}: {error.strerror}") from error

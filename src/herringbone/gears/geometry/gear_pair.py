@@ -20,6 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from herringbone.core import ParameterError
+from herringbone.core.facts import Facts
 from herringbone.gears.geometry import given
 from herringbone.gears.geometry.checks import check_given, check_meshing
 from herringbone.gears.geometry.contact import (
@@ -39,8 +40,8 @@ _COMPLETED: Any = None
 _HUB_SHARE = 0.4
 
 
-@dataclass(frozen=True, kw_only=True)
-class GearPair:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class GearPair(Facts):
     """A cylindrical gear pair by ISO 21771.
 
     What is given for both gears is a pair (pinion, wheel), or one value for both.
@@ -356,6 +357,21 @@ class GearPair:
     ) -> iso6336.Stiffness:
         """Tooth stiffness by ISO 6336-1, method B; see `iso6336.stiffness`."""
         return iso6336.stiffness(self, tangential_force, blank_factor)
+
+    def _facts(self) -> dict[str, str]:
+        z1, z2 = self.number_of_teeth
+        x1, x2 = self.profile_shift_coefficient
+        return {
+            "z": f"{z1}/{z2}",
+            "m_n": f"{1e3 * self.normal_module:g} mm",
+            "alpha_n": f"{math.degrees(self.normal_pressure_angle):.4g} deg",
+            "beta": f"{math.degrees(self.helix_angle):.4g} deg",
+            "b": f"{self.halves} x {1e3 * self.face_width:g} mm",
+            "a": f"{1e3 * self.center_distance:.4f} mm",
+            "x": f"{x1:.4g}/{x2:.4g}",
+            "epsilon_alpha": f"{self.transverse_contact_ratio:.4g}",
+            "epsilon_beta": f"{self.overlap_ratio:.4g}",
+        }
 
 
 def _pair(name: str, value: Any) -> tuple[Any, Any]:  # noqa: ANN401 (a user's, not checked yet)

@@ -120,12 +120,13 @@ class HousingDesign:
 Table = TypeVar("Table", Dimensions, Material, ModeOptions, Sensors)
 
 
-def read_design(file: Path) -> HousingDesign:
+def read_design(file: str | Path) -> HousingDesign:
     """Read dimensions, material and options.
 
     Raises:
         ParameterError: not readable, a key is missing or unknown, or a value is impossible.
     """
+    file = Path(file)
     try:
         data = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

@@ -1,0 +1,54 @@
+"""Progress of a run: told to the caller, or shown as a bar."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from tqdm import tqdm
+
+Progress = Callable[[float, float], None]
+"""Called with the simulated time reached and its end [s]."""
+_FORMAT = "{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]"
+
+
+class Bar:
+    """A bar of simulated milliseconds on the standard error stream.
+
+    Args:
+        always: also where that is no terminal, as in a notebook.
+    """
+
+    def __init__(self, *, always: bool) -> None:
+        self._disable = False if always else None
+        self._bar: tqdm | None = None
+
+    def show(self, reached: float, t_end: float) -> None:
+        """Move the bar to a simulated time [s]."""
+        if self._bar is None:
+            self._bar = tqdm(
+                total=round(1e3 * t_end, 3), unit="ms", disable=self._disable, bar_format=_FORMAT
+            )
+        self._bar.update(1e3 * reached - self._bar.n)
+
+    def tell(self, text: str) -> None:
+        """Show a line until the bar is closed."""
+        self.close()
+        self._bar = tqdm(desc=text, disable=self._disable, bar_format="{desc}", leave=False)
+
+    def close(self) -> None:
+        """End the line."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+
+@contextmanager
+def told(progress: bool | Progress) -> Iterator[Progress | None]:
+    """What a run calls inside: a bar for True, None for False."""
+    if not isinstance(progress, bool):
+        yield progress
+        return
+    bar = Bar(always=True)
+    try:
+        yield bar.show if progress else None
+    finally:
+        bar.close()
