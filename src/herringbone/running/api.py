@@ -1,5 +1,6 @@
 """Running a system: from names and options to a result."""
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -37,6 +38,7 @@ from herringbone.running.run_result import decimated, make_result, twin_error
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
+_log = logging.getLogger(__name__)
 _SAME = 1.0 - 1e-6
 
 
@@ -108,6 +110,7 @@ def run(
         asked, step = step, coupling.start_step if step is None else step
         lines += _stability_notes(structure, coupling, step, slow)
         grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
+        _log.info("%s, scene %s: %s, %s FMUs", structure.name, chosen.name, coupling, fmu)
         lines += _record_notes(record_step, coupling, grid)
         bond = fastest_bond(structure)
         with told(progress) as tell:
@@ -116,6 +119,7 @@ def run(
             )
         lines += _step_notes(asked, coupling, recording)
         every = make_result(structure, chosen, coupling, fmu, recording, lines)
+        _log_end(recording)
         result = decimated(every, chosen.record_step) if reference else every
         if recorded:
             recorded(result)
@@ -169,6 +173,13 @@ def _step_notes(asked: float | None, algorithm: Algorithm, recording: Recording)
         return []
     return [f"step = {asked:g} s: shortened to {used:g} s, of which a whole number makes the end "
             "of the run"]  # fmt: skip
+
+
+def _log_end(recording: Recording) -> None:
+    outcome = recording.outcome
+    _log.info("%s at %g s, after %.3g s", outcome.kind.value, outcome.time, recording.wall_seconds)
+    for line in filter(None, (outcome.message, *recording.notes)):
+        _log.info(line)
 
 
 def _unstable(recording: Recording) -> bool:
