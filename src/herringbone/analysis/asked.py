@@ -99,8 +99,8 @@ def shaft_side(result: Result, place: str, gear: str = "") -> Side:
     coupling = rotor = None
     for name in gears:
         coupling = anatomy.neighbour(name, PortKind.FLANGE, Role.COUPLING, place)
-    for role in (Role.DRIVE, Role.LOAD) if coupling else ():
-        rotor = rotor or anatomy.neighbour(coupling, PortKind.FLANGE, role)
+    for role in (Role.DRIVE, Role.LOAD):
+        rotor = rotor or (coupling and anatomy.neighbour(coupling, PortKind.FLANGE, role))
     return Side(coupling or "", rotor or "")
 
 

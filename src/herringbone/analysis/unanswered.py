@@ -36,8 +36,8 @@ def unanswered(result: Result) -> dict[str, list[str]]:
     if not any(map(result.parts_with, Role)):
         return {"what the parts are for is not known": list(reasons)}
     found: dict[str, list[str]] = {}
-    for what, why in reasons.items():
-        found.setdefault("; ".join(why), []).append(what)
+    for what, all_reasons in reasons.items():
+        found.setdefault("; ".join(all_reasons), []).append(what)
     return found
 
 

@@ -19,6 +19,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
 from herringbone.core.anatomy import Anatomy
+from herringbone.core.part_path import PartPath
 from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
@@ -121,7 +122,7 @@ def _cheapest_coupled(scene: Scene, parameter: str) -> tuple[Callable[[], Result
 
 def _cheapest_twin(system: System, box: Path) -> tuple[Callable[[], Result], float, float]:
     """How to run it, its error, its micro step [s]; the FMU splits a step into equal ones."""
-    one = System(_BOX, "the rig as one FMU", (PartSpec(_BOX, fmu=box),), ())
+    one = System(_BOX, "the rig as one FMU", (PartSpec(PartPath(_BOX), fmu=box),), ())
     for micro_step in _TWIN_STEPS:
         scene = Scene(
             "twin", "", T_END, RECORD_STEP, Start.REST, {f"{_BOX}.micro_step": micro_step}

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from herringbone.core.declaration import Declaration
 from herringbone.core.roles import Port, PortKind, Quantity, Role
+from herringbone.core.variable import Text, Variable
 
 
 class Answer(NamedTuple):
@@ -101,7 +102,7 @@ class Anatomy:
 
 def part_info(declaration: Declaration, resources: Path | None = None) -> PartInfo:
     """What a declaration tells of a part."""
-    offered = (*declaration.variables, *declaration.texts)
+    offered: tuple[Variable | Text, ...] = (*declaration.variables, *declaration.texts)
     return PartInfo(
         declaration.roles,
         declaration.ports,

@@ -122,5 +122,5 @@ class KernelCache(FunctionCache):
 
 def cached(compiled: D, function: Callable) -> D:
     """Let a dispatcher or C callback of numba cache what it compiles of a function."""
-    compiled._cache = KernelCache(function)
+    compiled._cache = KernelCache(function)  # type: ignore[attr-defined]  # of both kinds
     return compiled

@@ -157,7 +157,8 @@ class _PieceCompiler(_FunctionCompiler):
 
     def _compile_core(self, args: tuple, return_type: types.Type | None) -> CompileResult:
         found = super()._compile_core(args, return_type)
-        name = [].count  # a built-in function of its own, by which callers find the code
+        own: list[None] = []
+        name = own.count  # a built-in function of its own, by which callers find the code
         self.targetdescr.target_context.insert_user_function(name, found.fndesc, [found.library])
         return found._replace(entry_point=name)
 

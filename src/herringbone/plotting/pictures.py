@@ -1,7 +1,7 @@
 """The standard pictures of a run: bearing forces, seat velocities, spectra, torques and speeds."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -133,10 +133,12 @@ def _shaft(result: Result, gear: str) -> tuple[dict[str, str], dict[str, str]]:
     if side.rotor:
         torques[side.rotor] = anatomy.column(side.rotor, Quantity.TORQUE)
         speeds[side.rotor] = anatomy.column(side.rotor, Quantity.SPEED)
-    return tuple(
-        {name.replace("_", " "): c for name, c in found.items() if c in result.data}
-        for found in (torques, speeds)
-    )
+    return _recorded(result, torques), _recorded(result, speeds)
+
+
+def _recorded(result: Result, columns: Mapping[str, str | None]) -> dict[str, str]:
+    """Those that are recorded, by names as legends show them."""
+    return {name.replace("_", " "): c for name, c in columns.items() if c and c in result.data}
 
 
 @styled

@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from herringbone.analysis.twin.composite import make_composite
@@ -48,7 +49,7 @@ def export_fmu(
         composite.component,
         (make_composite.__module__,),
         composite.resources,
-        identity=repr((structure, tuple(outside))),
+        identity=repr((asdict(structure), tuple(outside))),
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):

@@ -105,8 +105,9 @@ def radiated_power(
     """
     result = result.uniform()
     housing, forces, steady = power_inputs(result, housing, part=part)
+    gram = np.asarray(housing.gram)  # it is there: see above
     velocity = modal_velocity(housing, forces, steady.sample_step)[steady.rows]
-    squares, directions = np.linalg.eigh(housing.gram)
+    squares, directions = np.linalg.eigh(gram)
     surface = velocity @ (directions * np.sqrt(np.maximum(squares, 0.0)))
     spectrum = amplitude_spectrum(surface, steady.sample_step)
     power = 0.5 * AIR_DENSITY * SPEED_OF_SOUND * np.square(spectrum.amplitude).sum(axis=1)

@@ -22,6 +22,7 @@ from herringbone.analysis.stability.perturbed_run import perturbation_growth
 from herringbone.analysis.stability.simulated_limit import Bands, first_unstable, run_steps
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.components.registry import component, component_for
+from herringbone.core.part_path import PartPath
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
@@ -146,7 +147,7 @@ def _part(name: str, role: Role, values: Mapping[Quantity, float]) -> PartSpec:
     """A part of the component that is taken for a role."""
     declaration = component_for(role).declaration
     own = {v.name: value for q, value in values.items() for v in declaration.offered(q)}
-    return PartSpec(name, component=declaration.name, values=own)
+    return PartSpec(PartPath(name), component=declaration.name, values=own)
 
 
 def _flanges(part: PartSpec) -> list[str]:

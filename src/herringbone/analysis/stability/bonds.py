@@ -24,7 +24,7 @@ from scipy.sparse.csgraph import connected_components
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.rates import motion_of_force
+from herringbone.cosim.structure.rates import motion_at, motion_of_force
 
 TWO_MASS_RULES: dict[str, Callable[[float], float]] = {
     "jacobi:order=0": lambda zeta: 4.0 * zeta,
@@ -171,7 +171,7 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
     kept = block.copy()
     matrix = np.zeros((len(forces), len(forces)))
     for column, c in enumerate(forces):
-        name = motion_of_force(c.output)[kind]
+        name = motion_at(c.output)[kind]
         change = _CHANGE.get(units[name], 1e-6)
         values = []
         for sign in (1.0, -1.0):
@@ -205,7 +205,7 @@ def _response(
             block[declaration.index[name]] += value
         kernels.rhs(block, 0.0, dx[k])
     block[:] = kept
-    velocities = [(motion_of_force(name)[1], x) for name, x in along]
+    velocities = [(motion_at(name)[1], x) for name, x in along]
     rows = [declaration.index[name] for name, _ in velocities if name in read]
     kernels.out(block, 0.0)
     before = block[rows].copy()

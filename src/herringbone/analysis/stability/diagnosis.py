@@ -20,7 +20,7 @@ from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import LI, Algorithm
 from herringbone.cosim.layouts.layout import connected_outputs
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.rates import motion_of_force
+from herringbone.cosim.structure.rates import motion_at
 from herringbone.cosim.structure.system import System
 
 _BELOW, _ABOVE = 20.0, 4.0
@@ -86,7 +86,7 @@ def _shares(
         force = velocity = 0.0
         size = sum(d * d for _, d in direction.forces)
         for c, d in direction.forces:
-            back = feeding[c.source, motion_of_force(c.output)[1]]
+            back = feeding[c.source, motion_at(c.output)[1]]
             force += d * outputs[c.source][names[c.source].index(c.output)] / size
             velocity += d * outputs[back.source][names[back.source].index(back.output)]
         found.append(abs(force) * abs(velocity))

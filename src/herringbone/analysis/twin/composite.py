@@ -148,9 +148,9 @@ def _declaration(
             name = _full_name(instance, v.name)
             kept = v.causality is Causality.PARAMETER or v.state or name in open_inputs
             if v.causality is Causality.OUTPUT:
-                own = {"name": name, "feedthrough": depends(instance.name, v.name)}
-                own["rate"] = v.rate and _full_name(instance, v.rate)
-                variables.append(replace(v, **own))
+                through = depends(instance.name, v.name)
+                rate = v.rate and _full_name(instance, v.rate)
+                variables.append(replace(v, name=name, feedthrough=through, rate=rate))
             elif kept and v.name not in _OWN:
                 start = float(instance.block[declaration.index[v.name]])
                 variables.append(replace(v, name=name, start=start, at_rest=""))

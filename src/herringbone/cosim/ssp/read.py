@@ -15,6 +15,7 @@ from herringbone.core import FmuError, StructureError
 from herringbone.core.files import is_file
 from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
+from herringbone.core.part_path import PartPath
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.ssp.format import (
@@ -162,7 +163,7 @@ class _Reader:
         except FmuError as error:
             raise FmuError(f"{self.file}: component '{name}': {error}") from error
         values = self.values(element, f"component '{name}'", variables)
-        return PartSpec(self.names[name], fmu=fmu, values=values), variables
+        return PartSpec(PartPath(self.names[name]), fmu=fmu, values=values), variables
 
     def path(self, source: str, where: str) -> Path:
         """File of a source, which must lie in the .ssp."""

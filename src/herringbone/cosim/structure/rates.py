@@ -6,6 +6,7 @@ Components declare which output is the rate of which. Of foreign FMUs only names
 
 from collections.abc import Collection
 
+from herringbone.core import StructureError
 from herringbone.core.part import Part
 
 _RATES = {"s": "v", "v": "a", "phi": "w", "w": "a"}
@@ -46,4 +47,12 @@ def rates(part: Part, names: list[str]) -> list[str]:
         for candidate in (first, rate_of(part, first) if first else None):
             if candidate and candidate not in found:
                 found.append(candidate)
+    return found
+
+
+def motion_at(force: str) -> tuple[str, str]:
+    """As `motion_of_force`, for what is known to be one; raises StructureError."""
+    found = motion_of_force(force)
+    if found is None:
+        raise StructureError(f"'{force}' is the name of no force: it must be port.f_x or port.tau")
     return found

@@ -24,6 +24,7 @@ from typing import Any
 from herringbone.core import StructureError, reason
 from herringbone.core.files import is_file
 from herringbone.core.names import check_name, identifier_for, shown
+from herringbone.core.part_path import PartPath
 from herringbone.core.paths import systems_folder
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -143,8 +144,8 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
     if kinds[0] == "system":
         return None
     if kinds[0] == "fmu":
-        return PartSpec(name, fmu=(folder / table["fmu"]).resolve(), values=values)
-    return PartSpec(name, component=table["component"], values=values)
+        return PartSpec(PartPath(name), fmu=(folder / table["fmu"]).resolve(), values=values)
+    return PartSpec(PartPath(name), component=table["component"], values=values)
 
 
 def _nested_reference(reference: str, folder: Path) -> str | Path:
