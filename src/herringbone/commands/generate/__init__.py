@@ -1,0 +1,1 @@
+"""All that is generated and committed: `python -m herringbone.commands.generate`."""
