@@ -141,7 +141,7 @@ def test_nodes_are_the_results_of_shorter_steps(name, degree, started):
 
     def ramp(host, start, end, nodes):
         for v in declaration.inputs:
-            a, b = (golden.inputs(COMPONENTS[name], 0.0)[v.name] * f for f in (start, end))
+            a, b = (golden.inputs(COMPONENTS[name], h)[v.name] * f for f in (start, end))
             host.set_values({v.name: a})
             host.set_values(
                 {f"{v.name}.node{k}": a + (b - a) * k / nodes for k in range(1, nodes + 1)}
