@@ -1,0 +1,147 @@
+"""The guides: what they link to exists, and their code is taken out of the pages and run."""
+
+import importlib.util
+import re
+import runpy
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import algorithms as conformance
+
+import herringbone as hb
+from herringbone.components import registry
+from herringbone.core import Instance
+from herringbone.cosim.algorithms import ALGORITHMS
+from herringbone.housing import importers
+
+ROOT = Path(__file__).parents[1]
+PAGES = [
+    *sorted((ROOT / "docs").glob("*.md")),
+    *(ROOT / f"{n}.md" for n in ("CONTRIBUTING", "SECURITY")),
+]
+LINKS = [
+    (page, link)
+    for page in PAGES
+    for link in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
+    if "://" not in link
+]
+
+
+def blocks(page: str, kind: str) -> list[str]:
+    """The code of one kind on a page of the guides."""
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    return re.findall(rf"^```{kind}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def module(folder: Path, page: str, name: str):
+    """The first Python block of a page, as a module of that name."""
+    file = folder / f"{name}.py"
+    file.write_text(blocks(page, "python")[0], encoding="utf-8")
+    spec = importlib.util.spec_from_file_location(name, file)
+    found = importlib.util.module_from_spec(spec)
+    sys.modules[name] = found
+    spec.loader.exec_module(found)
+    return found
+
+
+@pytest.mark.parametrize(("page", "link"), LINKS, ids=lambda x: getattr(x, "stem", x))
+def test_link(page, link):
+    assert (page.parent / link).exists()
+
+
+def test_every_page_is_in_the_index():
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    (tree,) = re.findall(r"^```{toctree}\n:hidden:\n\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
+    assert {*tree.split(), "index"} == {page.stem for page in (ROOT / "docs").glob("*.md")}
+    assert all(f"]({name}.md)" in index for name in tree.split())
+
+
+def test_files_and_modules_in_text_exist():
+    """What is written as code and looks like a file of this repository, the examples aside."""
+    examples = {"flywheel", "reverse_seidel", "npz"}
+    for page in PAGES:
+        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+        for name in re.findall(
+            r"`((?:src|tests|fmus|system_models|examples|docs)/[^\s`*]*)`", text
+        ):
+            assert Path(name).stem in examples or (ROOT / name).exists(), (page.name, name)
+
+
+def test_component(tmp_path, monkeypatch):
+    """w = tau / f (1 - exp(-f t / J)) under constant torque; the guide's system holds 10 N m."""
+    flywheel = module(tmp_path, "new_component", "flywheel").FLYWHEEL
+    monkeypatch.setitem(registry.COMPONENTS, "flywheel", flywheel)
+    wheel = Instance(flywheel, "wheel")
+    wheel.set("viscous_friction", 4.0)
+    wheel.initialise()
+    wheel.set("flange.tau", 30.0)
+    assert wheel.step(0.0, 0.1) == 0
+    assert wheel["flange.w"] == pytest.approx(7.5 * -np.expm1(-0.2), rel=1e-12)
+    system, scene = blocks("new_component", "toml")
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "system.toml").write_text(system)
+    (tmp_path / "scenes" / "loaded.toml").write_text(scene)
+    result = hb.run(tmp_path, t_end=0.002, fmu="in-process")
+    assert result.data["coupling.torque"].to_numpy() == pytest.approx(10.0, rel=1e-6)
+
+
+def test_algorithm(tmp_path, monkeypatch):
+    kind = module(tmp_path, "new_algorithm", "reverse_seidel").ReverseSeidel
+    monkeypatch.setitem(ALGORITHMS, kind.name, kind)
+    for algorithm in kind.variants():
+        for check in (conformance.check_order, conformance.check_end, conformance.check_cost,
+                      conformance.check_needs, conformance.check_slow_bodies):  # fmt: skip
+            check(algorithm)
+    assert kind(order=1) in conformance.variants()
+
+
+def test_importer(tmp_path, monkeypatch):
+    """Springs of 2e8 N/m in series and masses of 10 kg; the guide says what follows."""
+    monkeypatch.chdir(tmp_path)
+    npz = module(tmp_path, "new_importer", "npz")
+    monkeypatch.setitem(importers._MATRICES, ".npz", npz.read_npz)
+    (tmp_path / "box.py").write_text(blocks("new_importer", "python")[1])
+    runpy.run_path("box.py")
+    (tmp_path / "seats.toml").write_text(blocks("new_importer", "toml")[0])
+    options = {"band_hz": 3000.0, "tolerance": 0.05, "most_modes": 64}
+    housing = importers.import_housing(["box.npz"], "seats.toml", **options)
+    assert np.diag(housing.static_compliance()) == pytest.approx(1e-8, rel=1e-9)
+    lowest = np.sqrt((3.0 - np.sqrt(5.0)) * 2e8 / 2.0 / 10.0) / (2.0 * np.pi)
+    assert housing.frequency_hz[0] == pytest.approx(lowest, rel=1e-9)
+    assert f"{lowest:.1f} Hz" in (ROOT / "docs" / "new_importer.md").read_text(encoding="utf-8")
+
+
+def test_scene(tmp_path):
+    """Its values are those of parts that exist, and it runs."""
+    (text,) = blocks("new_scene", "toml")
+    (tmp_path / "deviation.toml").write_text(text)
+    result = hb.run("test_rig", scene=tmp_path / "deviation.toml", t_end=4e-4, fmu="in-process")
+    assert result.outcome.completed
+    assert result.data["time"].iloc[-1] == pytest.approx(4e-4)
+
+
+def test_commands_are_those_of_the_command_line():
+    """Each `herringbone` line of a page parses, up to what it would do."""
+    from herringbone.commands.main import _parser
+
+    lines = [
+        line.split("herringbone ", 1)[1]
+        for page in PAGES
+        for fence in re.findall(r"^```sh\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+        for line in fence.replace("\\\n", " ").splitlines()
+        if "bin/herringbone " in line
+    ]
+    assert len(lines) > 8
+    for line in lines:
+        _parser().parse_args(line.split())
+
+
+def test_citation_agrees_with_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {project['version']}" in lines
+    assert f"license: {project['license']}" in lines
+    assert f"## {project['version']}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
