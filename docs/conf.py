@@ -1,10 +1,10 @@
 """How the guides become a site: `python -m sphinx -W docs build/docs`."""
 
-from importlib.metadata import version
+from importlib import metadata
 
 project = "herringbone"
 author = "herringbone developers"
-release = version("herringbone")
+release = metadata.version("herringbone")
 extensions = ["myst_parser"]
 exclude_patterns = ["conf.py"]
 myst_heading_anchors = 3

@@ -1,15 +1,28 @@
 """Fixtures that several test files share."""
 
+import fcntl
+from contextlib import contextmanager
+
 import pytest
 
+from herringbone.core.paths import cache_folder
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
+
+
+@contextmanager
+def alone(what):
+    """Context for one process at a time: what one test process builds, the others find built."""
+    with (cache_folder("locks") / what).open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # given back when the file is closed
+        yield
 
 
 @pytest.fixture(scope="session")
 def python_fmus():
     """Path of the Python FMU by component."""
-    return build_python_fmus()
+    with alone("python_fmus"):
+        return build_python_fmus()
 
 
 @pytest.fixture(scope="session")
@@ -18,10 +31,12 @@ def native_fmus():
     platform = own_platform()
     if platform is None or find_compiler(platform) is None:
         pytest.skip("no C compiler for native FMUs was found")
-    return build_native_fmus()
+    with alone("native_fmus"):
+        return build_native_fmus()
 
 
 @pytest.fixture(scope="session")
 def fmi3_fmus(native_fmus):
     """Path of the native FMU 3.0 of this platform by component."""
-    return build_native_fmus(native_fmus, fmi=3)
+    with alone("native_fmus"):
+        return build_native_fmus(native_fmus, fmi=3)

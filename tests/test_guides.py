@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import runpy
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -50,6 +51,18 @@ def module(folder: Path, page: str, name: str):
 @pytest.mark.parametrize(("page", "link"), LINKS, ids=lambda x: getattr(x, "stem", x))
 def test_link(page, link):
     assert (page.parent / link).exists()
+
+
+def test_site(tmp_path):
+    """The guides become a site without a warning."""
+    pytest.importorskip("myst_parser", reason="the extra docs is not installed")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-d", str(tmp_path / "trees")]
+    built = subprocess.run(
+        [*command, str(ROOT / "docs"), str(tmp_path / "site")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (built.returncode, built.stderr) == (0, "")
+    assert (tmp_path / "site" / "new_component.html").is_file()
 
 
 def test_every_page_is_in_the_index():

@@ -31,7 +31,7 @@ class Modes(NamedTuple):
 class Factorisation:
     """A symmetric sparse matrix, factored once.
 
-    PARDISO is taken if `pypardiso` is installed, which is some four times as fast; else SuperLU.
+    PARDISO is taken if it is installed (extra `pardiso`), some four times as fast; else SuperLU.
 
     Attributes:
         solver: "PARDISO" or "SuperLU".

@@ -27,7 +27,7 @@ from numba.core.compiler import CompileResult
 from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
 
-from herringbone.core.cache_keys import module_key
+from herringbone.core.cache_keys import digest_of, module_key
 from herringbone.core.paths import cache_folder
 
 D = TypeVar("D")
@@ -71,6 +71,18 @@ class _Files(CompileResultCacheImpl):
 
 class _CheckedData(IndexDataCacheFile):
     """numba's files, with a digest in front of the machine code."""
+
+    def save(self, key: tuple, data: tuple) -> None:
+        """Save the code of a signature in a file of its own.
+
+        numba counts files: of two processes that save at the same time, each would take the same
+        number, and the index could name the code of another signature.
+        """
+        name = self._data_name(int(digest_of(repr(key)), 16))
+        overloads = self._load_index()
+        overloads[key] = name
+        self._save_data(name, data)
+        self._save_index(overloads)
 
     def _save_data(self, name: str, data: tuple) -> None:
         content = self._dump(data)

@@ -4,7 +4,6 @@ import math
 import os
 import signal
 import threading
-import time
 from functools import partial
 from types import SimpleNamespace
 
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from support.algorithms import variants
 from support.parts import (
+    OK,
     TWO_MASS_SYSTEM,
     TwoMass,
     columns,
@@ -22,6 +22,7 @@ from support.parts import (
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.core.part import closing_all
+from herringbone.cosim import run
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.simulation import make_grid, simulate
@@ -185,30 +186,33 @@ def handler():
     signal.signal(signal.SIGINT, before)
 
 
-def interrupted_after(seconds):
-    """SIGINT to this process from a timer thread; the list then holds the time it was sent."""
-    sent = []
-
-    def send():
-        sent.append(time.perf_counter())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    threading.Timer(seconds, send).start()
-    return sent
+def interrupt():
+    """SIGINT to this process, whose main thread this is."""
+    os.kill(os.getpid(), signal.SIGINT)
 
 
 STEP_TIME = 0.02
 
 
-def test_interrupt_ends_the_run_in_time(handler):
+def test_interrupt_ends_the_run_within_a_chunk(handler, monkeypatch):
+    """By a clock of its own, each step takes STEP_TIME; a chunk takes CHUNK_SECONDS."""
     mine, calls = handler
-    sent = interrupted_after(0.2)
-    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1000.0, misbehave=dawdle(STEP_TIME))
-    assert time.perf_counter() - sent[0] < 0.5 + STEP_TIME
+    now, sent = [0.0], []
+
+    def dawdle_and_interrupt(part, t):
+        now[0] += STEP_TIME
+        if t > 5.0 and not sent:
+            sent.append(t)
+            interrupt()
+        return OK
+
+    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=lambda: now[0]))
+    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1000.0, misbehave=dawdle_and_interrupt)
     outcome = recording.outcome
     assert outcome.kind is OutcomeKind.INTERRUPTED
     assert outcome.message == f"stopped at {outcome.time:g} s; results so far are kept"
-    assert 0 < recording.macro_steps < 100
+    assert sent[0] - 1e-9 <= outcome.time < sent[0] + 0.1 * run.CHUNK_SECONDS / STEP_TIME
+    assert recording.wall_seconds <= now[0]
     assert recording.time[-1] == pytest.approx(outcome.time)
     assert np.isfinite(recording.values).all()
     assert calls == []
@@ -216,12 +220,30 @@ def test_interrupt_ends_the_run_in_time(handler):
 
 
 def test_interrupt_of_quick_parts(handler):
-    sent = interrupted_after(0.2)
-    recording = PROBLEM.run(Jacobi(order=2), 0.1, 1e5)
-    assert time.perf_counter() - sent[0] < 0.5
+    """Nothing is stepped after the chunk in which the signal came."""
+    reached = []
+
+    def interrupt_the_third(time, end):
+        reached.append(time)
+        if len(reached) == 3:
+            interrupt()
+
+    grid = make_grid(1e5, 0.1, 0.1)
+    parts = PROBLEM.parts()
+    recording = simulate(TWO_MASS_SYSTEM, parts, Jacobi(order=2), grid, interrupt_the_third)
     assert recording.outcome.kind is OutcomeKind.INTERRUPTED
+    assert recording.outcome.time == reached[2] == reached[-1]
     assert recording.time.size == recording.macro_steps + 1
     assert np.isfinite(recording.values).all()
+
+
+def test_chunks_grow_no_more_than_fourfold(monkeypatch):
+    """A clock that stands still promises any rate: 1, 4, 16, ... steps."""
+    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=lambda: 0.0))
+    reached = []
+    simulate(TWO_MASS_SYSTEM, PROBLEM.parts(), Jacobi(order=2), make_grid(8.5, 0.1, 0.1),
+             lambda time, end: reached.append(time))  # fmt: skip
+    assert np.diff([0.0, *reached]) == pytest.approx([0.1, 0.4, 1.6, 6.4], abs=1e-12)
 
 
 def test_handler_is_restored_after_an_error(handler):

@@ -17,7 +17,7 @@ def solver(request, monkeypatch):
     if request.param == "SuperLU":
         monkeypatch.setitem(sys.modules, "pypardiso", None)
     else:
-        pytest.importorskip("pypardiso", reason="pypardiso is optional")
+        pytest.importorskip("pypardiso", reason="the extra pardiso is not installed")
     return request.param
 
 

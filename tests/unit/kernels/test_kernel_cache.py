@@ -13,6 +13,7 @@ import pytest
 from herringbone.core import cache_keys
 from herringbone.core.cached_file import is_stored, store
 from herringbone.core.syntax import syntax_of
+from herringbone.kernels.cache import _CheckedData
 from herringbone.kernels.linking import Piece, Whole
 
 SOURCE = """
@@ -181,3 +182,20 @@ def test_a_stored_file_is_known_by_its_digest(tmp_path, caplog):
         file.write_bytes(damaged)
         assert not is_stored(file)
     assert "thing.bin is damaged; it is made anew" in caplog.text
+
+
+def test_two_processes_that_save_at_once_do_not_take_each_others_code(tmp_path, monkeypatch):
+    """Both have read an empty index; one saves while the other one does."""
+    one, other = (_CheckedData(str(tmp_path), "kernel", "stamp") for _ in range(2))
+    save_data = one._save_data
+
+    def save_data_late(name, data):
+        other.save(("float64",), ("code for float64",))
+        save_data(name, data)
+
+    monkeypatch.setattr(one, "_save_data", save_data_late)
+    monkeypatch.setattr(other, "_load_index", dict)
+    one.save(("int64",), ("code for int64",))
+    reader = _CheckedData(str(tmp_path), "kernel", "stamp")
+    assert reader.load(("int64",)) in {("code for int64",), None}
+    assert reader.load(("float64",)) in {("code for float64",), None}
