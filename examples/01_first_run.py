@@ -6,7 +6,7 @@ import herringbone as hb
 def main(t_end: float = 0.2) -> float:
     """Run the rig; returns the rms of the alternating bearing force [N]."""
     result = hb.run("test_rig", t_end=t_end)
-    force = result.data["bearing_supports.shaft.pinion_left.f_y"]
+    force = result["bearing_supports.shaft.pinion_left.f_y"]
     rms = float(force.std())
     print(f"pinion left: mean {force.mean():.1f} N, alternating {rms:.2f} N rms")
     result.plot().savefig("test_rig.png")

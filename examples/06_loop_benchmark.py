@@ -10,7 +10,8 @@ from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
-BEARINGS, FORCES = "bearing_supports", ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
+BEARINGS = "gearbox.bearing_supports"
+FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 
 
 def compiled_loop(system: System, parts: list[Part], steps: int) -> float:

@@ -54,7 +54,7 @@ def write_plan(system, fmus, platform, drive, names, grid, folder):
     for c in network.connections:
         lines.append(f"connect {place(c.source, c.output)} {place(c.target, c.input)}")
     for name in names:
-        instance, _, variable = name.partition(".")
+        instance, variable = system.split(name)
         lines.append(f"record {place(index[instance], variable)}")
     step, count, every = grid
     lines.append(f"run {to_bits(step)} {count} {every}")

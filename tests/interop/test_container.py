@@ -56,7 +56,7 @@ def make_container(system, files, described, outputs, fmi, folder):
     for c in network.connections:
         node.add_link(names[c.source], c.output, names[c.target], c.input)
     for output in outputs:
-        instance, _, variable = output.partition(".")
+        instance, variable = system.split(output)
         node.add_output(f"{instance}.fmu", variable, PREFIX + output)
     node.make_fmu(folder, fmi_version=fmi)
     return folder / node.name

@@ -51,7 +51,7 @@ def recorded(native_fmus):
         parts = [
             DescribedPart(p.name, native_fmus[str(p.component)], p.values) for p in system.parts
         ]
-        place = [part.name for part in parts].index(name)
+        place = system.paths.index(system.part(name).name)
         connected = build_network(system, parts).inputs(place)
         columns = [f"{parts[c.source].name}.{c.output}" for c in connected]
         names = [c.input for c in connected]

@@ -20,6 +20,7 @@ from fmpy.ssp.ssd import read_ssd
 
 from herringbone.benchmarks.other_masters import environment
 from herringbone.core import ParameterError
+from herringbone.core.part_path import flat_name
 from herringbone.core.paths import component_folder
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.ssp.read import read_ssp
@@ -69,11 +70,17 @@ def unpacked(exported):
     return folder
 
 
+def name_in_file(column):
+    """`gearbox.gear_mesh.pinion.w` is `gearbox__gear_mesh.pinion.w` there."""
+    part, variable = load_system("test_rig")[0].split(column)
+    return f"{flat_name(part)}.{variable}"
+
+
 def run_in(master, package, file, names, folder):
     if importlib.util.find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
     request, answer = folder / "request.json", folder / "answer.json"
-    wanted = {"step": STEP, "count": COUNT, "every": EVERY, "names": names}
+    wanted = {"step": STEP, "count": COUNT, "every": EVERY, "names": list(map(name_in_file, names))}
     request.write_text(json.dumps({**wanted, "parameter_set": PARAMETER_SET}), encoding="utf-8")
     script = Path(__file__).with_name("run_master.py")
     done = subprocess.run(
@@ -168,7 +175,9 @@ def test_export_of_an_exported_file_is_the_same_file(exported, native, tmp_path)
 
 def test_fmpy_reads_the_structure(exported):
     found = read_ssd(str(exported))
-    assert [c.name for c in found.system.elements] == [p.name for p in read_ssp(exported).parts]
+    assert [c.name for c in found.system.elements] == [
+        flat_name(p.name) for p in read_ssp(exported).parts
+    ]
 
 
 def test_resource_outside_the_fmus_is_refused(tmp_path):

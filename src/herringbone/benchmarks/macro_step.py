@@ -16,6 +16,7 @@ from pathlib import Path
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.benchmarks.other_masters import PACKAGES, macro_step
 from herringbone.core.part import Part
+from herringbone.core.part_path import flat_name
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 from herringbone.cosim.layouts.layout import connected_outputs, record_names
@@ -85,7 +86,8 @@ def _others(system: System, file: Path, steps: int) -> dict[str, Callable[[], fl
     """Other masters, with the outputs that this one records, and with none."""
     parts = open_parts(system, "in-process")
     outputs = record_names(build_network(system, parts))
-    names = [f"{p.name}.{n}" for p, ns in zip(parts, outputs, strict=True) for n in ns]
+    labels = map(flat_name, system.paths)
+    names = [f"{label}.{n}" for label, ns in zip(labels, outputs, strict=True) for n in ns]
     return {
         name + ("" if recorded else ", nothing recorded"): partial(
             macro_step, name, file, STEP, steps, recorded

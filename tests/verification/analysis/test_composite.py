@@ -12,6 +12,7 @@ from herringbone.fmi.used_states import used_states
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 
+GEAR = "gearbox.gear_mesh"
 SEATS_OUTSIDE = ("modal_housing",)
 
 
@@ -54,12 +55,12 @@ def test_it_moves_as_the_twin_does(rig, tmp_path):
 def test_changed_parameters_reach_the_parts(rig, tmp_path):
     system = _instance(make_composite(rig), tmp_path)
     system.step(0.0, 1e-4)
-    before = system["bearing_supports.shaft.pinion_left.f_y"]
-    system.set("bearing_supports.pinion.radial_stiffness", 0.0)
-    system.set("bearing_supports.pinion.radial_damping", 0.0)
+    before = system["gearbox.bearing_supports.shaft.pinion_left.f_y"]
+    system.set("gearbox.bearing_supports.pinion.radial_stiffness", 0.0)
+    system.set("gearbox.bearing_supports.pinion.radial_damping", 0.0)
     system.step(1e-4, 0.0)
     assert abs(before) > 100.0
-    assert system["bearing_supports.shaft.pinion_left.f_y"] == 0.0
+    assert system["gearbox.bearing_supports.shaft.pinion_left.f_y"] == 0.0
 
 
 @pytest.mark.parametrize("outside", [(), SEATS_OUTSIDE])
@@ -87,8 +88,8 @@ def test_state_vectors_are_those_of_the_parts_in_use(rig, tmp_path):
     composite = make_composite(rig)
     d, system = composite.component.declaration, _instance(composite, tmp_path)
     vectors = {v.name: v for v in d.vectors}
-    assert list(vectors) == ["modal_housing.q", "der(modal_housing.q)"]
-    assert {v.text for v in d.vectors} == {"modal_housing.modes"}
+    assert list(vectors) == ["gearbox.modal_housing.q", "der(gearbox.modal_housing.q)"]
+    assert {v.text for v in d.vectors} == {"gearbox.modal_housing.modes"}
     used = used_states(composite.component, composite.resources).vectors
     count = {int(system.block[d.first_table + v.length]) for v in d.vectors}
     assert count == {len(u.nominals) for u in used} == {60}
@@ -110,16 +111,17 @@ def test_event_indicators_follow_the_states(rig, tmp_path):
     mesh, system = COMPONENTS["gear_mesh"], _instance(composite, tmp_path)
     d, part = composite.component.declaration, Instance(mesh, "gear_mesh")
     for v in mesh.declaration.parameters:
-        if (path := f"gear_mesh.{v.name}") in d.index:
+        if (path := f"{GEAR}.{v.name}") in d.index:
             part.set(v.name, system[path])
     assert composite.component.indicator_count == mesh.indicator_count
     found, expected = np.zeros((2, mesh.indicator_count))
-    places = [
-        d.index[f"der(gear_mesh.{v.name[4:]}" if v.name[:4] == "der(" else f"gear_mesh.{v.name}"]
+    names = [
+        f"der({GEAR}.{v.name[4:]}" if v.name[:4] == "der(" else f"{GEAR}.{v.name}"
         for v in mesh.declaration.states
     ]
+    places = [d.index[name] for name in names]
     for approach in (1e-3, -5e-6, -1e-3):  # drive contact, open, coast contact
-        system.set("gear_mesh.approach", approach)
+        system.set(f"{GEAR}.approach", approach)
         part.block[: len(places)] = system.block[places]
         mesh.indicators(part.block, 0.0, expected)
         composite.component.indicators(system.block, 0.0, found)

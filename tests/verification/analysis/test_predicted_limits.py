@@ -24,7 +24,7 @@ from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started
 from herringbone.scenes import find_scene, read_scene
 
-SEATS = "modal_housing."
+SEATS = "gearbox.modal_housing."
 MARGIN = 0.02
 TRIED = np.linspace(0.25 * MARGIN, MARGIN, 4)
 FAST = 1e-3
@@ -57,7 +57,7 @@ def variant(number, system):
 
 def start(system, path):
     """Value of a parameter in a system."""
-    instance, _, name = path.partition(".")
+    instance, name = system.split(path)
     part = system.part(instance)
     declared = COMPONENTS[part.component].declaration.variable(name).start
     return float(part.values.get(name, declared))
@@ -85,7 +85,7 @@ def predicted(number, algorithm):
 def measured(number, algorithm, step, expected, frequency):
     """Growth per macro step of a linear run at a frequency, between its middle and its end."""
     _, instances = linear_network(rig(number))
-    gear = next(i for i in instances if i.name == "gear_mesh")
+    gear = next(i for i in instances if i.name == "gearbox.gear_mesh")
     start_velocity = LARGEST * np.exp(-max(np.sign(expected), 0.0) * FOLDS)
     for name, part in KICKED.items():
         gear.set(f"der({name})", gear[f"der({name})"] + part * start_velocity)

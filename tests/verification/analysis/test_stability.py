@@ -124,7 +124,7 @@ def test_map_is_affine():
 def test_mapped_step_is_the_part_s_own_step(degree):
     """Far away from where the map was measured, to the rounding of its differences."""
     _, instances = linear_network(rig())
-    gear = next(i for i in instances if i.name == "gear_mesh")
+    gear = next(i for i in instances if i.name == "gearbox.gear_mesh")
     part, random = MappedPart(gear), np.random.default_rng(0)
     part.prepare(1e-4, degree)
     size, outputs = part.values.size, part._results(degree)
@@ -149,7 +149,7 @@ def test_stiffer_mesh_has_a_higher_tangent():
     tangents = []
     for stiffness in MeshStiffness:
         _, instances = linear_network(rig(), stiffness)
-        gear = next(i for i in instances if i.name == "gear_mesh")
+        gear = next(i for i in instances if i.name == "gearbox.gear_mesh")
         kernels, start = gear.component.kernels, gear["mesh_left.force"]
         gear.set("approach", gear["approach"] + 1e-8)
         kernels.out(gear.block, 0.0)

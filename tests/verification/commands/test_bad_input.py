@@ -299,7 +299,7 @@ def test_unstable_to_the_end(tmp_path, capsys):
     summary = json.loads((tmp_path / "summary.json").read_text())
     bond, time = summary["culprit"], summary["energy"]["time"]
     assert (summary["outcome"], summary["t_reached"]) == ("unstable", 0.005)
-    assert bond.startswith("bearing_supports.")
+    assert bond.startswith("gearbox.bearing_supports.")
     assert err.startswith(
         f"herringbone: unstable: ran to the end, but the coupling is unstable from {time:.4g} s, "
         f"most of all at {bond}: use a step below 0.0001 s or an algorithm with a higher limit"
@@ -359,13 +359,13 @@ def test_foreign_housing_runs(tmp_path, capsys, stranger):
     arguments = ["run", "test_rig", "--t-end", "0.001", "--json", "-o", str(tmp_path)]
     assert main([*arguments, "--replace", f"modal_housing={file}"]) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert summary["model"]["modal_housing"] == str(file)
-    notes = [note for note in summary["notes"] if "modal_housing" in note]
+    assert summary["model"]["gearbox.modal_housing"] == str(file)
+    notes = [note for note in summary["notes"] if "gearbox.modal_housing" in note]
     assert any("the load rises from zero over 0.02 s" in note for note in notes)
     assert any("and 35 more between these parts: a unit is not declared" in note for note in notes)
     assert any("declares no output dependencies; taken as a body" in note for note in notes)
     table = pd.read_csv(tmp_path / "results.csv", comment="#")
-    assert table["modal_housing.pinion_left.v_y"].abs().max() > 0.0
+    assert table["gearbox.modal_housing.pinion_left.v_y"].abs().max() > 0.0
 
 
 def test_foreign_housing_is_tested(tmp_path, capsys, stranger):
@@ -385,13 +385,13 @@ def test_foreign_housing_is_tested(tmp_path, capsys, stranger):
 
 def test_foreign_housing_without_state_has_no_adaptive_step(refused, stranger):
     line = refused("--tolerance=1e-3", f"--replace=modal_housing={stranger('NoState')}")
-    assert "tolerance = 0.001: modal_housing cannot save and restore its state" in line
+    assert "tolerance = 0.001: gearbox.modal_housing cannot save and restore its state" in line
     assert "jacobi" not in line
 
 
 def test_foreign_housing_has_no_reference(refused, stranger):
     line = refused("--reference", f"--replace=modal_housing={stranger('NoReference')}")
-    assert "modal_housing is a foreign FMU" in line
+    assert "gearbox.modal_housing is a foreign FMU" in line
     assert "no monolithic reference" in line
 
 
@@ -399,7 +399,7 @@ def test_foreign_housing_with_a_missing_seat(refused, stranger):
     seats = '("pinion_left", "pinion_right", "wheel_left", "wheel_right")'
     file = stranger("ThreeSeats", (seats, '("pinion_left", "pinion_right", "wheel_left")'))
     line = refused(f"--replace=modal_housing={file}")
-    assert "modal_housing has no variable or port 'wheel_right'; it has the ports" in line
+    assert "gearbox.modal_housing has no variable or port 'wheel_right'; it has the ports" in line
 
 
 FAILURES = {
@@ -418,8 +418,8 @@ def test_foreign_housing_fails_during_the_run(tmp_path, capsys, stranger, name):
     line, table, summary = ended_early(
         tmp_path, capsys, f"--replace=modal_housing={file}", outcome=outcome, fmu="in-process"
     )
-    assert summary["culprit"].startswith("modal_housing")
-    assert "modal_housing" in line
+    assert summary["culprit"].startswith("gearbox.modal_housing")
+    assert "gearbox.modal_housing" in line
     assert "at 0.0004" in line
     if name == "Raises":
         assert "too far" in line

@@ -24,7 +24,7 @@ WHOLE_RIG = 310_000
 def test_the_plain_loop_ends_where_the_compiled_loop_ends():
     structure, folder = load_system("test_rig")
     system, _ = started(structure, load_scene(folder, "loaded"))
-    bearing = [p.name for p in system.parts].index("bearing_supports")
+    bearing = [p.name for p in system.parts].index("gearbox.bearing_supports")
     steps, ends = 40, []
     for plain in (True, False):
         parts = open_parts(system, "native")

@@ -55,7 +55,7 @@ def test_default_algorithm(tmp_path, capsys):
     assert found["macro_steps"] == 125
     jacobian = 1 + 3 * 24  # one pass per unknown: 24 forces at 3 nodes
     first = 1  # the first step, predicted from one point, is corrected twice
-    assert found["passes"]["gear_mesh"] == 2 * 125 + jacobian + first
+    assert found["passes"]["gearbox.gear_mesh"] == 2 * 125 + jacobian + first
     assert found["rollbacks"] == 125 + jacobian + first
     assert found["notes"][0].startswith("auto: li:degree=3")
 
@@ -98,7 +98,7 @@ def test_results_csv(tmp_path, capsys):
     units = dict(item.rsplit(" ", 1) for item in comments[0].removeprefix("# units: ").split(", "))
     assert list(units) == header
     assert units["time"] == "s"
-    assert units["gear_mesh.pinion_left.s_y"] == "m"
+    assert units["gearbox.gear_mesh.pinion_left.s_y"] == "m"
     rows = list(csv.reader(lines[2:]))
     assert len(rows) == 251
     assert all(len(row) == len(header) for row in rows)

@@ -55,7 +55,7 @@ def test_text_says_the_same(printed, folder):
     text = (folder / "stability.txt").read_text(encoding="utf-8")
     assert f"from {1e6 * printed['algorithms'][0]['unstable_bands'][-1][0]:.1f}" in text
     assert f"--step {printed['recommended']['step']:.3g}" in text
-    assert "bearing_supports.shaft.pinion_left.f_y" in text
+    assert "gearbox.bearing_supports.shaft.pinion_left.f_y" in text
 
 
 @pytest.mark.slow
@@ -68,7 +68,7 @@ def test_one_step_is_judged_and_explained(capsys):
     (unstable,) = json.loads(capsys.readouterr().out)
     assert not unstable["stable"]
     assert unstable["growth"] >= unstable["why"]["growth"] > 0.01
-    assert unstable["why"]["bonds"][0][0].startswith("bearing_supports.shaft.pinion")
+    assert unstable["why"]["bonds"][0][0].startswith("gearbox.bearing_supports.shaft.pinion")
     assert sum(share for _, share in unstable["why"]["bonds"]) == pytest.approx(1.0)
     assert unstable["why"]["remedies"][0].startswith("a step below")
 
@@ -90,7 +90,8 @@ def made_up():
         )
         for algorithm in default_algorithms()
     ]
-    name, bodies = "bearing_supports.shaft.pinion_right.f_y", ("gear_mesh", "modal_housing")
+    name = "gearbox.bearing_supports.shaft.pinion_right.f_y"
+    bodies = ("gearbox.gear_mesh", "gearbox.modal_housing")
     bond = Bond(name, bodies, (6.5, 6.284), 6.34e8, 2.5e3, 14087.0, 0.029)
     recommended = Recommendation(str(Jacobi(2)), 1e-5, 4.4e-8, 5e-5, "micro steps")
     ranking = Ranking((recommended, replace(recommended, algorithm=str(LI(3)), step=2e-5)))
@@ -107,7 +108,7 @@ def test_text_fits_in_100_columns_and_says_everything():
     for low in range(700, 760, 10):
         assert text.count(f"{low}.0-{low + 5}.0") == len(default_algorithms())
     assert text.count("from 1100.0") == len(default_algorithms())
-    assert "gear_mesh 6.5 kg, modal_housing 6.284 kg" in text
+    assert "gearbox.gear_mesh 6.5 kg, gearbox.modal_housing 6.284 kg" in text
     assert text.count("word") == 40
 
 

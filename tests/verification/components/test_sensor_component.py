@@ -261,7 +261,7 @@ def test_on_the_rig_it_shows_what_post_processing_shows(options, tmp_path):
         tmp_path, scene=scene, t_end=0.03, step=1e-5, record_step=1e-5, fmu="in-process",
         values=values,
     )  # fmt: skip
-    recorded = result.data[OBSERVED].to_numpy()
+    recorded = result[OBSERVED].to_numpy()
     wanted = VelocitySensor(bits=0, **options).measure(recorded, 1e-5).velocity[1:]
     found = result.data["sensor.velocity_sampled"].to_numpy()[50::50]
     assert np.abs(wanted).max() > 1e-5

@@ -190,7 +190,7 @@ def run_with_housing(folder, capsys, gain, *arguments):
 def test_a_strangers_housing_beyond_one(tmp_path, capsys):
     code, summary, err = run_with_housing(tmp_path, capsys, 1.05)
     assert code == 1
-    assert "modal_housing." in err
+    assert "gearbox.modal_housing." in err
     assert "gain of 1.05" in err
     assert "no step helps" in err
     assert summary["outcome"] == "coupling_failed"

@@ -165,6 +165,7 @@ def test_refusal_in_the_run_is_an_outcome():
 
 # -- FMUs ---------------------------------------------------------------------------------------
 
+HOUSING = "gearbox.modal_housing"
 DECLARES_NOTHING = {"canInterpolateInputs": "false", "maxOutputDerivativeOrder": "0"}
 
 
@@ -193,8 +194,8 @@ class Rig:
     def run(self, transport, algorithm, h):
         """Errors of bearing forces and seat velocities, and the housing's notes."""
         parts = open_in_process(self.system)
-        at = [p.name for p in parts].index("modal_housing")
-        parts[at] = housing = open_fmu("modal_housing", self.housings[transport])
+        at = [p.name for p in parts].index(HOUSING)
+        parts[at] = housing = open_fmu(HOUSING, self.housings[transport])
         try:
             for name, value in self.system.parts[at].values.items():
                 housing.set(name, value)
@@ -207,7 +208,7 @@ class Rig:
             relative_error(columns(recording, BEARING), twin[:, : len(BEARING)]),
             relative_error(columns(recording, SEAT), twin[:, len(BEARING) :]),
         ]
-        return np.array(error), [n for n in recording.notes if n.startswith("modal_housing")]
+        return np.array(error), [n for n in recording.notes if n.startswith(HOUSING)]
 
 
 @pytest.fixture(scope="module")
@@ -238,7 +239,7 @@ def test_jacobi_on_the_rig(loaded, q):
 def test_the_housing_s_transport_is_reported(loaded):
     notes = {t: loaded.run(t, LI(degree=3), 40e-6)[1] for t in ("derivatives", "hold")}
     assert notes["derivatives"] == [
-        "modal_housing has no signal nodes; its inputs go as FMI derivatives up to order 3; its "
+        f"{HOUSING} has no signal nodes; its inputs go as FMI derivatives up to order 3; its "
         "outputs are cubics through values and FMI derivatives; the coupling keeps order 4 in the "
         "step"
     ]

@@ -120,7 +120,9 @@ def accurate():
     """Bearing forces of the rig in an accurate run: names, means, alternating part."""
     network, instances = linear_network(rig())
     found = run(rig(), LI(3), 4e-5, 0.05, highest_frequency(network, instances))
-    columns = [n for n in found.names if n.startswith("bearing_supports.shaft.") and ".f_" in n]
+    columns = [
+        n for n in found.names if n.startswith("gearbox.bearing_supports.shaft.") and ".f_" in n
+    ]
     force = found.values[:, [found.names.index(name) for name in columns]]
     return columns, force.mean(axis=0), force.std(axis=0).max()
 
@@ -279,7 +281,7 @@ def test_why_names_the_bond_and_remedies_that_hold():
     found = diagnose(rig(), Jacobi(1), 5e-5)
     assert sum(share for _, share in found.bonds) == pytest.approx(1.0)
     assert {name for name, _ in found.bonds[:2]} == {
-        f"bearing_supports.shaft.pinion_{side}.f_y" for side in ("left", "right")
+        f"gearbox.bearing_supports.shaft.pinion_{side}.f_y" for side in ("left", "right")
     }
     assert found.bonds[0][1] + found.bonds[1][1] > 0.9
     step = float(found.remedies[0].split("below ")[1].split(" s")[0])

@@ -38,5 +38,5 @@ def test_nodes_and_rollback(algorithm, native_fmus):
 def test_open_teeth_and_coast(native_fmus):
     """A kick of the pinion opens the mesh, so that all branches of the force law are met."""
     results = runs("separation", algorithm="jacobi:order=0", step=MICRO_STEP, t_end=5e-3)
-    assert (results[0].data["gear_mesh.mesh_left.force"] == 0.0).any()
+    assert (results[0]["gear_mesh.mesh_left.force"] == 0.0).any()
     assert_equal(results)

@@ -25,8 +25,8 @@ from herringbone.scenes import find_scene, read_scene
 T_END = 0.02
 FINE = 10e-6
 """Grid of the twin; all steps are whole numbers of it."""
-BEARING = [f"bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
-SEAT = [f"modal_housing.{half}.v_{axis}" for half in HALVES for axis in "xyz"]
+BEARING = [f"gearbox.bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
+SEAT = [f"gearbox.modal_housing.{half}.v_{axis}" for half in HALVES for axis in "xyz"]
 PROMISE = 1e-3
 FLOOR = 5e-5
 """Error that contact events inside micro steps of 2.5 us leave in the scene separation."""

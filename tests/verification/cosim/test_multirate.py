@@ -30,7 +30,7 @@ from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started
 from herringbone.scenes import find_scene, read_scene
 
-BEARING = [f"bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
+BEARING = [f"gearbox.bearing_supports.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz"]
 MOTORS = ("drive_motor", "load_motor")
 RIG_END = 0.02
 TABLE = {2: 3.9e-5, 5: 2.5e-4, 10: 1.3e-3, 20: 7.8e-3}
@@ -69,15 +69,15 @@ def test_error_of_slow_motors_is_the_known_one(rig, multiple):
     recording, error = rig.run(LI(degree=3), 2e-5, multiple)
     assert 0.5 <= error / TABLE[multiple] <= 2.0
     assert recording.passes["drive_motor"] == recording.passes["load_motor"] == 1000 // multiple
-    assert recording.passes["gear_mesh"] > 2000
+    assert recording.passes["gearbox.gear_mesh"] > 2000
 
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_slow_motors_cost_jacobi_no_accuracy(rig, order):
     (plain, error), (slow, slow_error) = (rig.run(Jacobi(order), 1e-5, m) for m in (1, 5))
     assert slow_error < 1.1 * error
-    assert plain.passes["drive_motor"] == plain.passes["gear_mesh"] == 2000
-    assert (slow.passes["drive_motor"], slow.passes["gear_mesh"]) == (400, 2000)
+    assert plain.passes["drive_motor"] == plain.passes["gearbox.gear_mesh"] == 2000
+    assert (slow.passes["drive_motor"], slow.passes["gearbox.gear_mesh"]) == (400, 2000)
 
 
 def test_python_fmus_give_the_same_bits(rig, python_fmus):

@@ -18,6 +18,8 @@ from herringbone.running.system_fmu import export_fmu
 MICRO_STEP, INTERVAL, DURATION = 1e-7, 1e-5, 5e-3
 MESH, SHIPPED_MODES = "gear_mesh", 60
 BUILT = [("gearbox", 2), ("gearbox", 3), ("test_rig", 2)]
+SCOPE = {"gearbox": "", "test_rig": "gearbox."}
+"""Where the parts of the gearbox are."""
 EPS = np.finfo(float).eps
 
 pytestmark = [
@@ -78,7 +80,7 @@ def test_model_exchange_agrees_with_co_simulation(name, fmi, exported):
         for kind in ("ModelExchange", "CoSimulation")
     )
     np.testing.assert_allclose(exchange["time"], steps["time"], rtol=1e-12)
-    assert np.ptp(steps[f"{MESH}.mesh_left.force"]) > 10.0
+    assert np.ptp(steps[f"{SCOPE[name]}{MESH}.mesh_left.force"]) > 10.0
     moving = 0
     for output in outputs:
         scale = np.abs(steps[output]).max()
@@ -103,8 +105,8 @@ def test_states_are_those_of_the_parts(name, fmi, opened):
     host = opened(name, fmi)
     modes = [n for n in host.states if "modal_housing.q[" in n]
     assert len(modes) == 2 * SHIPPED_MODES
-    assert modes[0] == "modal_housing.q[1]"
-    assert modes[-1] == f"der(modal_housing.q[{SHIPPED_MODES}])"
+    assert modes[0] == f"{SCOPE[name]}modal_housing.q[1]"
+    assert modes[-1] == f"der({SCOPE[name]}modal_housing.q[{SHIPPED_MODES}])"
     mesh = [v.name for v in COMPONENTS[MESH].declaration.states]
     motors = 7 * (name == "test_rig")
     assert len(host.states) == len(modes) + len(mesh) + motors
@@ -113,16 +115,16 @@ def test_states_are_those_of_the_parts(name, fmi, opened):
 @pytest.mark.parametrize(("name", "fmi"), BUILT)
 def test_event_indicators_are_those_of_the_mesh(name, fmi, opened):
     host = opened(name, fmi)
-    mesh = COMPONENTS[MESH]
+    mesh, path = COMPONENTS[MESH], SCOPE[name] + MESH
     index, count = mesh.declaration.index, mesh.declaration.state_count
     block = Instance(mesh, MESH).block
     for v in mesh.declaration.parameters:
-        if (reference := host.reference.get(f"{MESH}.{v.name}")) is not None:
+        if (reference := host.reference.get(f"{path}.{v.name}")) is not None:
             getter = host.fmu.getFloat64 if host.third else host.fmu.getReal
             block[index[v.name]] = getter([reference])[0]
     places = [
         host.states.index(
-            f"der({MESH}.{v.name[4:]}" if v.name[:4] == "der(" else f"{MESH}.{v.name}"
+            f"der({path}.{v.name[4:]}" if v.name[:4] == "der(" else f"{path}.{v.name}"
         )
         for v in mesh.declaration.states
     ]

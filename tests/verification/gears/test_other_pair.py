@@ -26,7 +26,7 @@ def test_stage_of_a_rexs_file_in_the_gearbox(tmp_path):
     assert result.outcome.completed
     normal = TORQUE / (2.0 * pair.base_radius[0] * math.cos(pair.base_helix_angle))
     for side in ("left", "right"):
-        force = result.data[f"gear_mesh.mesh_{side}.force"]
+        force = result[f"gear_mesh.mesh_{side}.force"]
         assert force.mean() == pytest.approx(normal, rel=2e-3)
         assert 1e-3 < force.std() / normal < 0.1
-    assert result.data["gear_mesh.mesh_left.deflection"].min() > 0.0
+    assert result["gear_mesh.mesh_left.deflection"].min() > 0.0
