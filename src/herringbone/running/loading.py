@@ -9,7 +9,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
-from herringbone.core.files import as_texts, is_file
+from herringbone.core.files import as_texts, is_file, same_folder
 from herringbone.core.part import Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
@@ -87,12 +87,14 @@ def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[
         HerringboneError: there is no such instance, or an FMU cannot be used.
     """
     notes: list[str] = []
-    for instance, file in files.items():
-        with _named(instance):
+    for asked, file in files.items():
+        name = system.part(asked).name
+        with _named(name):
             require_file(Path(file))
-        if Role.HOUSING in anatomy(system).parts[system.part(instance).name].roles:
-            notes += replacement_notes(Path(file))
-        system = system.with_fmu(instance, Path(file))
+        if Role.HOUSING in anatomy(system).parts[name].roles:
+            with same_folder():
+                notes += replacement_notes(Path(file))
+        system = system.with_fmu(name, Path(file))
     return system, notes
 
 

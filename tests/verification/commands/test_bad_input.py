@@ -137,7 +137,7 @@ control = {{ component = "bench_controller" }}
             "input 'motor.flange.tau' has two sources: 'coupling.flange_a.tau' and "
             "'other.flange_a.tau'",
         ),
-        ('["motor.flange", "load.flange"]', "(body to body); insert a shaft_coupling"),
+        ('["motor.flange", "load.flange"]', "(body to body); insert a shaft coupling"),
         ('["coupling.flange_a", "other.flange_a"]', "(element to element); put a body"),
     ],
 )
@@ -187,8 +187,10 @@ def test_system_file(refused, tmp_path, text, said):
         ("--tolerance=0", "it must lie between 1e-08 and 1; leave it out for a fixed step"),
         (
             "--slow=nope=2",
-            "slow: nope=2: there is no instance 'nope'; drive_motor, load_motor, gear_mesh, "
-            "modal_housing can be slow",
+            "slow: nope=2: the system has no part 'nope'; it has: bench_controller, drive_motor, "
+            "drive_coupling, load_coupling, load_motor, gearbox.gear_mesh, "
+            "gearbox.bearing_supports, gearbox.modal_housing; drive_motor, load_motor, "
+            "gearbox.gear_mesh, gearbox.modal_housing can be slow",
         ),
         ("--slow=drive_motor", "--slow drive_motor: it must be INSTANCE=N,..."),
         ("--slow=drive_motor=2.5", "--slow drive_motor=2.5: it must be a whole number of steps"),

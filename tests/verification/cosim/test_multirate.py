@@ -203,7 +203,11 @@ def test_a_slow_body_that_fails_ends_the_run_with_results_so_far():
 @pytest.mark.parametrize(
     ("slow", "message"),
     [
-        ({"middle": 2}, "slow: middle=2: there is no instance 'middle'; left, right can be slow"),
+        (
+            {"middle": 2},
+            "slow: middle=2: the system has no part 'middle'; it has: left, right, spring; "
+            "left, right can be slow",
+        ),
         ({"spring": 2}, "slow: spring=2: spring has direct feedthrough; only bodies can be slow"),
         ({"left": 0}, "slow: left=0: it must be a whole number, 1 to 100"),
         ({"left": 101}, "slow: left=101: it must be a whole number, 1 to 100"),

@@ -68,7 +68,7 @@ class Network:
         for asked, multiple in multiples.items():
             what = f"slow: {asked}={multiple}"
             try:
-                name = find_part(index, asked, "it")
+                name = find_part(index, asked, "the system")
             except StructureError as error:
                 raise ParameterError(f"{what}: {error}; {self._that_can_be_slow}") from error
             if index[name] not in self.bodies or index[name] in self.feedthrough:
