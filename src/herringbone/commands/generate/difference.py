@@ -53,7 +53,8 @@ def _numbers_differ(old: str, new: str) -> str:
     rows = [[line.split(",") for line in text.splitlines()] for text in (old, new)]
     if [*map(len, rows[0])] != [*map(len, rows[1])]:
         return "another table"
-    words, numbers = [[], []], [[], []]
+    words: list[list[str]] = [[], []]
+    numbers: list[list[float]] = [[], []]
     for k in range(2):
         for row in rows[k]:
             for at, cell in enumerate(row):
