@@ -54,7 +54,7 @@ def _numbers_differ(old: str, new: str) -> str:
     if [*map(len, rows[0])] != [*map(len, rows[1])]:
         return "another table"
     words: list[list[str]] = [[], []]
-    numbers: list[list[float]] = [[], []]
+    numbers: list[list[tuple[int, float]]] = [[], []]
     for k in range(2):
         for row in rows[k]:
             for at, cell in enumerate(row):
