@@ -1,6 +1,6 @@
 """What the parts of a system are for, and what is joined to what."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -63,6 +63,12 @@ class Anatomy:
     def with_role(self, role: Role) -> tuple[str, ...]:
         """Names of the parts that have a role."""
         return tuple(name for name, info in self.parts.items() if role in info.roles)
+
+    def without(self, dropped: Iterable[str]) -> "Anatomy":
+        """The other parts, and how they are joined to each other."""
+        parts = {name: info for name, info in self.parts.items() if name not in set(dropped)}
+        ends = (({one[0], other[0]}, Joint(one, other)) for one, other in self.joints)
+        return Anatomy(parts, tuple(joint for names, joint in ends if names <= parts.keys()))
 
     def column(self, part: str, quantity: Quantity, place: str | None = None) -> str | None:
         """`part.variable` of a quantity, the first one if no place is given; None without."""

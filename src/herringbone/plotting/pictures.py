@@ -12,6 +12,7 @@ from herringbone.analysis.asked import by_half, column_of, shaft_side
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
+from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.plotting.overview import overview
@@ -202,7 +203,8 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
 def write_pictures(result: Result, folder: str | Path) -> list[Path]:
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
-    A run of less than two records has no pictures.
+    Several gearboxes have pictures of their own, such as `overview.first.png`. A run of less than
+    two records has no pictures.
 
     Args:
         result: of a run.
@@ -214,15 +216,16 @@ def write_pictures(result: Result, folder: str | Path) -> list[Path]:
     files: list[Path] = []
     if len(result.data) < 2:
         return files
-    for name, draw in {"overview": overview, **PICTURES}.items():
-        try:
-            figure = draw(result)
-        except ParameterError:
-            continue
-        file = Path(folder) / f"{name}.png"
-        try:
-            FigureCanvasAgg(figure).print_png(file)
-        except OSError as error:
-            raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
-        files.append(file)
+    for box, seen in by_gearbox(result).items():
+        for name, draw in {"overview": overview, **PICTURES}.items():
+            try:
+                figure = draw(seen)
+            except ParameterError:
+                continue
+            file = Path(folder) / f"{name}{box and f'.{box}'}.png"
+            try:
+                FigureCanvasAgg(figure).print_png(file)
+            except OSError as error:
+                raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
+            files.append(file)
     return files

@@ -41,8 +41,10 @@ def write_report(
     names = ["results.csv", *(["results.parquet"] if parquet else []), _TEXT, _SUMMARY]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name in ("results.parquet", *(f"{picture}.png" for picture in PICTURES)):
-            (folder / name).unlink(missing_ok=True)
+        (folder / "results.parquet").unlink(missing_ok=True)
+        for picture in ("overview", *PICTURES):
+            for file in (folder / f"{picture}.png", *folder.glob(f"{picture}.*.png")):
+                file.unlink(missing_ok=True)
         result.to_csv(folder / names[0])
         if parquet:
             result.to_parquet(folder / names[1])

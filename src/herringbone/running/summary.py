@@ -6,7 +6,7 @@ the parts of the system cannot answer stands in lines of its own, with the reaso
 
 import math
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
@@ -17,6 +17,7 @@ from herringbone.analysis.figures.operating_point import (
     steady_part,
 )
 from herringbone.analysis.figures.radiated_power import LABEL, radiated_power
+from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.analysis.unanswered import unanswered
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import EnergyReport
@@ -36,15 +37,11 @@ def summary_text(result: Result) -> str:
     """A summary of a run for people: how it was computed, operating point, forces, spectra."""
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
-    sections: tuple[Callable[[Result], Iterator[str]], ...] = (
-        _operating_point, _power, _seats, _spectral_lines, _radiation, _unknown, _signals, _errors,
-    )  # fmt: skip
     if len(result.data) < 2 or result.outcome.unstable:
         lines += ["", "No figures: the run left nothing that can be evaluated."]
-        sections = ()
-    for section in sections:
-        found = list(section(result))
-        lines += ["", *found] if found else []
+    else:
+        for found in map(list, _figures(result)):
+            lines += ["", *found] if found else []
     notes = [_line("Note", note) for note in result.info.notes]
     files = [_line("Files", ", ".join(Path(f).name for f in result.files))] if result.files else []
     tail = notes + files
@@ -120,10 +117,30 @@ def _cost(result: Result) -> Iterator[str]:
         yield _line("" if k else "Why unstable", line)
 
 
-def _operating_point(result: Result) -> Iterator[str]:
+def _figures(result: Result) -> Iterator[Iterable[str]]:
+    """The figures of a run by section; of several gearboxes one after another."""
+    boxes = by_gearbox(result)
+    if len(boxes) == 1:
+        yield [*_steady(result), *_gear_pairs(result)]
+        yield _power(result)
+        yield from (section(result) for section in (_seats, _spectral_lines, _radiation))
+    else:
+        yield _steady(result)
+        yield _power(result)
+        for name, box in boxes.items():
+            title = f"Gearbox {name}".rstrip()
+            yield [title, "-" * len(title), *_gear_pairs(box)]
+            yield from (section(box) for section in (_seats, _spectral_lines, _radiation))
+    yield from (section(result) for section in (_unknown, _signals, _errors))
+
+
+def _steady(result: Result) -> Iterator[str]:
     part = steady_part(result)
     steady = "" if part.steady else "; the speed is not steady there: no spectral lines"
     yield _line("Means taken over", f"{part.begin:.4g} to {part.end:.4g} s{steady}")
+
+
+def _gear_pairs(result: Result) -> Iterator[str]:
     gears = result.parts_with(Role.GEAR_PAIR)
     for gear in gears:
         of = f"{gear}: " if len(gears) > 1 else ""
