@@ -31,9 +31,9 @@ def load_generated(kind: str, source: str) -> ModuleType:
     if not _is_written(file, source):
         write_file(file, source.encode())
     spec = importlib.util.spec_from_file_location(name, file)
-    module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]
+    module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]  # a .py file has one
     sys.modules[name] = module
-    spec.loader.exec_module(module)  # type: ignore[union-attr]
+    spec.loader.exec_module(module)  # type: ignore[union-attr]  # as above
     return module
 
 

@@ -208,7 +208,7 @@ class DualExpressions:
 def definition_of(kernel: Dispatcher) -> ast.FunctionDef:
     """The source of a kernel as a tree."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(kernel.py_func)))
-    return tree.body[0]  # type: ignore[return-value]
+    return next(s for s in tree.body if isinstance(s, ast.FunctionDef))
 
 
 def mangled(function: Callable) -> str:
@@ -237,7 +237,7 @@ def dotted(e: ast.expr) -> ast.expr:
     """The tangent of a name, or of an entry of an array."""
     if isinstance(e, ast.Subscript):
         return ast.Subscript(dotted(e.value), e.slice)
-    return ast.Name(e.id + SUFFIX)  # type: ignore[attr-defined]
+    return ast.Name(e.id + SUFFIX)  # type: ignore[attr-defined]  # a name, in this language
 
 
 def _expression(source: str) -> ast.expr:
@@ -256,7 +256,7 @@ def _product(p: ast.expr, q: ast.expr) -> ast.expr:
 def _sum(p: ast.expr | None, q: ast.expr | None) -> ast.expr:
     """Sum of two tangents, one of which may be zero."""
     if p is None or q is None:
-        return p or q  # type: ignore[return-value]
+        return p or q or zero()
     return ast.BinOp(p, ast.Add(), q)
 
 

@@ -122,7 +122,7 @@ class Result(Facts):
         if len(found) > 1:
             raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
         if not found:
-            near = get_close_matches(name, self.data.columns, 3)
+            near = get_close_matches(str(name), self.data.columns, 3)
             hint = f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
             raise ParameterError(f"there is no column {shown(name)}; {hint}")
         return found[0]
@@ -235,5 +235,5 @@ class Result(Facts):
             "channels": ", ".join(self.channels),
             "errors": ", ".join(f"{k} {v:.2g}" for k, v in (self.error or {}).items()),
             "loop": f"{info.wall_s:.3g} s",
-            "notes": str(len(info.notes) or ""),
+            "notes": "; ".join(info.notes),
         }

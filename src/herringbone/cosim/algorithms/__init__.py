@@ -47,7 +47,7 @@ def parse_algorithm(text: str) -> Algorithm:
         known = ", ".join([AUTO, *ALGORITHMS])
         raise ParameterError(f"there is no algorithm '{name}'; there are: {known}")
     kind = ALGORITHMS[name]
-    types: dict[str, Any] = {f.name: type(f.default) for f in fields(kind)}  # type: ignore[arg-type]
+    types: dict[str, Any] = {f.name: type(f.default) for f in fields(kind)}
     values: dict[str, float | str] = {}
     for item in filter(None, options.split(",")):
         key, _, value = item.partition("=")
@@ -83,12 +83,12 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
     said = f"{algorithm.name}: tolerance={{:g}};"
     check_tolerance(tolerance, said, "; leave it out for a fixed step")
-    return replace(algorithm, **{_TOLERANCE: tolerance})  # type: ignore[type-var]
+    return replace(algorithm, **{_TOLERANCE: tolerance})
 
 
 def adapts(kind: type[Algorithm]) -> bool:
     """True if an algorithm can adapt its step: `tolerance` is one of its options."""
-    return any(f.name == _TOLERANCE for f in fields(kind))  # type: ignore[arg-type]
+    return any(f.name == _TOLERANCE for f in fields(kind))
 
 
 def refuse_adaptive(algorithms: Iterable[Algorithm], what: str) -> None:

@@ -9,7 +9,7 @@ The tests hold it to what it declares: order, passes, rollback, slow bodies, an 
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import field, fields
+from dataclasses import dataclass, field, fields
 from itertools import product
 from typing import Any, ClassVar, NoReturn, Self
 
@@ -37,6 +37,7 @@ def option(default: float | str, allowed: str = "", choices: Sequence[int | str]
     return field(default=default, metadata={"allowed": allowed or listed, "choices": choices})
 
 
+@dataclass(frozen=True)
 class Algorithm(ABC):
     """A coupling algorithm; its options are the fields of a frozen dataclass.
 
@@ -51,7 +52,7 @@ class Algorithm(ABC):
     default_step: ClassVar[float] = 1e-5
 
     def __post_init__(self) -> None:
-        for f in fields(self):  # type: ignore[arg-type]
+        for f in fields(self):
             choices = f.metadata["choices"]
             if choices and getattr(self, f.name) not in choices:
                 self.refuse(f.name)
@@ -97,7 +98,7 @@ class Algorithm(ABC):
     @classmethod
     def variants(cls) -> tuple[Self, ...]:
         """What there is to examine: all choices of the options, other options at their defaults."""
-        choices = {f.name: f.metadata["choices"] for f in fields(cls)}  # type: ignore[arg-type]
+        choices = {f.name: f.metadata["choices"] for f in fields(cls)}
         chosen = {name: values for name, values in choices.items() if values}
         return tuple(cls(**dict(zip(chosen, v, strict=True))) for v in product(*chosen.values()))
 
@@ -109,7 +110,7 @@ class Algorithm(ABC):
     @classmethod
     def allowed(cls, name: str) -> str:
         """In words, which values an option may have."""
-        return next(f for f in fields(cls) if f.name == name).metadata["allowed"]  # type: ignore[arg-type]
+        return next(f for f in fields(cls) if f.name == name).metadata["allowed"]
 
     def refuse(self, name: str) -> NoReturn:
         """Say that an option has a value that it may not have.
@@ -121,7 +122,7 @@ class Algorithm(ABC):
         raise ParameterError(f"{self.name}: {name}={value}; it must be {self.allowed(name)}")
 
     def __str__(self) -> str:
-        options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))  # type: ignore[arg-type]
+        options = ",".join(f"{f.name}={getattr(self, f.name)}" for f in fields(self))
         return f"{self.name}:{options}" if options else self.name
 
 

@@ -93,7 +93,7 @@ class Fmu2Part(FmuPart):
         _logs.pop(self._key, None)
 
 
-_finalizers: dict[str, object] = {}
+_finalizers: dict[str, ctypes.CDLL] = {}
 
 
 def _finalize_at_exit(dll: ctypes.CDLL) -> None:
@@ -103,4 +103,4 @@ def _finalize_at_exit(dll: ctypes.CDLL) -> None:
     """
     if hasattr(dll, "finalizePythonInterpreter") and not _finalizers:
         _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
-        atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)  # type: ignore[attr-defined]
+        atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)

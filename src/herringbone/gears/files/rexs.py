@@ -183,7 +183,7 @@ def _value(model: _Model, gear: str, name: str, kind: str) -> float:
 
 def _teeth(model: _Model, gear: str) -> int:
     value = _value(model, gear, "number_of_teeth", "number")
-    return int(value) if value == int(value) else value  # type: ignore[return-value]
+    return int(value) if value == int(value) else value  # type: ignore[return-value]  # GearPair refuses it
 
 
 def _shared(model: _Model, gears: list[str], name: str, kind: str) -> float:

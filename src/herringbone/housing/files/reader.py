@@ -148,7 +148,7 @@ def _point(item: object) -> Point:
     if not isinstance(item, dict):
         raise ResourceError(f"point {item!r} must be an object")
     try:
-        position = tuple(float(x) for x in item.get("position", (0.0, 0.0, 0.0)))
+        position: Any = tuple(float(x) for x in item.get("position", (0.0, 0.0, 0.0)))
         dofs = tuple(map(str, _field(item, "dofs", list)))
         area = float(item.get("area", 0.0))
     except (TypeError, ValueError):
@@ -158,7 +158,7 @@ def _point(item: object) -> Point:
     return Point(
         str(_field(item, "name", str)),
         str(_field(item, "role", str)),
-        position,  # type: ignore[arg-type]
+        position,
         dofs,
         str(item.get("coupling", "rbe3")),
         area,
@@ -168,13 +168,10 @@ def _point(item: object) -> Point:
 def _frame(item: Mapping[str, Any]) -> Frame:
     default = Frame()
     try:
-        return Frame(
-            tuple(float(x) for x in item.get("origin", default.origin)),  # type: ignore[arg-type]
-            tuple(
-                tuple(float(x) for x in row)  # type: ignore[misc]
-                for row in item.get("rotation", default.rotation)
-            ),
-        )
+        origin: Any = tuple(float(x) for x in item.get("origin", default.origin))
+        rows = item.get("rotation", default.rotation)
+        rotation: Any = tuple(tuple(float(x) for x in row) for row in rows)
+        return Frame(origin, rotation)
     except (AttributeError, TypeError, ValueError):
         raise ResourceError("'frame' needs origin (3 numbers) and rotation (3 x 3)") from None
 
