@@ -41,13 +41,13 @@ def _chart(scene: str) -> str:
 _SCENES = ("loaded", "separation")
 ITEMS: dict[str, Item] = {
     "gear-table": Item(
-        "fmus/gear_mesh/resources",
+        "stiffness table of the gear pair, in its resources in fmus",
         "seconds",
         ("-m herringbone.gears.files.shipped_table",),
         usual=True,
     ),
     "housing": Item(
-        "fmus/modal_housing/resources and HOUSING.md",
+        "modal data of the housing, in its resources in fmus, and HOUSING.md",
         "five minutes and 4 GB; extra 'fe'",
         ("-m herringbone.housing.welded.default_data",),
     ),
