@@ -50,23 +50,27 @@ def difference(there: Path, made: Path) -> str:
 
 def _numbers_differ(old: str, new: str) -> str:
     """How two tables differ, rounding aside; numbers are told from words."""
-    rows = [[line.split(",") for line in text.splitlines()] for text in (old, new)]
-    if [*map(len, rows[0])] != [*map(len, rows[1])]:
+    commas, other = ([line.count(",") for line in text.splitlines()] for text in (old, new))
+    if commas != other:
         return "another table"
-    words: list[list[str]] = [[], []]
-    numbers: list[list[tuple[int, float]]] = [[], []]
-    for k in range(2):
-        for row in rows[k]:
-            for at, cell in enumerate(row):
-                try:
-                    numbers[k].append((at, float(cell)))
-                except ValueError:
-                    words[k].append(cell)
-    if words[0] != words[1]:
+    words, column, before = _cells(old)
+    other_words, _, after = _cells(new)
+    if words != other_words:
         return "other words"
-    before, after = (np.array(found).reshape(-1, 2) for found in numbers)
-    size = np.zeros(int(before[:, 0].max(initial=0.0)) + 1)
-    column = before[:, 0].astype(int)
-    np.maximum.at(size, column, np.abs(before[:, 1]))
-    off = np.abs(after[:, 1] - before[:, 1]) > _ROUNDING * size[column]
+    size = np.zeros(column.max(initial=0) + 1)
+    np.maximum.at(size, column, np.abs(before))
+    off = np.abs(after - before) > _ROUNDING * size[column]
     return f"{off.sum()} numbers differ by more than rounding" if off.any() else ""
+
+
+def _cells(text: str) -> tuple[list[tuple[int, str]], np.ndarray, np.ndarray]:
+    """Words with their columns, and columns and values (n,) of the numbers."""
+    words, column, values = [], [], []
+    for line in text.splitlines():
+        for at, cell in enumerate(line.split(",")):
+            try:
+                values.append(float(cell))
+                column.append(at)
+            except ValueError:
+                words.append((at, cell))
+    return words, np.array(column, dtype=int), np.array(values)
