@@ -149,7 +149,7 @@ def test_times_at_and_around_a_kink_are_all_filled():
 
 
 def test_unknown_part_of_a_column():
-    with pytest.raises(StructureError, match="the twin has no part 'gears'"):
+    with pytest.raises(StructureError, match="system 'rotor_pair' has no part 'gears'"):
         Twin(rotor_pair()).index("gears.w")
 
 
