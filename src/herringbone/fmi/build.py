@@ -8,7 +8,9 @@ from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import FmuError
+from herringbone.core.activity import activity
 from herringbone.core.cache_keys import packed_key
+from herringbone.core.cached_file import is_stored, store
 from herringbone.core.paths import cache_folder
 
 
@@ -28,12 +30,13 @@ def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
     folder = cache_folder(f"fmus/{packed_key()}")
     names = list(COMPONENTS if names is None else names)
     fmus = {component(name).name: folder / f"{name}.fmu" for name in names}
-    missing = [name for name, fmu in fmus.items() if not fmu.is_file()]
+    missing = [name for name, fmu in fmus.items() if not is_stored(fmu)]
     if missing:
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+        said = activity("building Python FMUs", "only when their code has changed")
+        with said, tempfile.TemporaryDirectory() as scratch:
             _pack(missing, Path(scratch))
             for name in missing:
-                (Path(scratch) / f"{name}.fmu").replace(fmus[name])
+                store(fmus[name], (Path(scratch) / f"{name}.fmu").read_bytes())
     return fmus
 
 

@@ -27,6 +27,8 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
 from numba.core.typing import Signature
 
+from herringbone.core.activity import COMPILING
+
 _SHARED = llvm.Linkage.linkonce_odr
 
 
@@ -173,12 +175,23 @@ class _PieceDispatcher(CPUDispatcher):
         )
 
 
+class _WholeCompiler(_FunctionCompiler):
+    """numba's, which says that it compiles if this takes long."""
+
+    def compile(self, args: tuple, return_type: types.Type | None) -> tuple:
+        with COMPILING.piece():
+            return super().compile(args, return_type)
+
+
 class KernelDispatcher(CPUDispatcher):
     """Compiles a whole when it is called from Python, and gives pieces to other kernels."""
 
     def __init__(self, py_func, targetoptions, pipeline_class=WHOLE) -> None:  # noqa: ANN001
         super().__init__(py_func, {}, {**targetoptions, "no_cfunc_wrapper": True}, pipeline_class)
         self.piece = _PieceDispatcher(py_func, {}, targetoptions)
+        self._compiler = _WholeCompiler(
+            py_func, self.targetdescr, self.targetoptions, self.locals, pipeline_class
+        )
 
     def compile(self, sig: Signature | tuple) -> Callable:
         """Compile for a signature, unless it is compiled or cached."""
@@ -201,6 +214,12 @@ class CFunction(CFunc):
         """Compile it, unless it is cached."""
         with _no_collection():
             super().compile()
+
+    def _compile_uncached(self) -> CompileResult:
+        if self._compiler.pipeline_class is LINKED:  # whoever builds something of it says so
+            return super()._compile_uncached()
+        with COMPILING.piece():
+            return super()._compile_uncached()
 
     @property
     def address(self) -> int:

@@ -8,6 +8,7 @@ from pathlib import Path
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
+from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
 from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
@@ -126,7 +127,8 @@ def run(
     if reference:
         result = replace(result, error=twin_error(every, structure))
     if _unstable(recording):
-        why_unstable = diagnose(structure, coupling, recording.step)
+        with activity(f"looking for what grows in {structure.name}, and for remedies"):
+            why_unstable = diagnose(structure, coupling, recording.step)
         result = replace(result, info=replace(result.info, why=why_unstable))
     return result
 
@@ -154,7 +156,8 @@ def _stability_notes(
     """
     if system.foreign_parts or algorithm.adaptive or slow:
         return []
-    warning = warn_if_unstable(system, algorithm, step)
+    with activity(f"predicting whether {system.name} is stable"):
+        warning = warn_if_unstable(system, algorithm, step)
     return [warning] if warning else []
 
 

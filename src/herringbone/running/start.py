@@ -5,6 +5,7 @@ from dataclasses import replace
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
+from herringbone.core.activity import activity
 from herringbone.core.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
 from herringbone.scenes import Scene, Start
@@ -69,7 +70,8 @@ def _equilibrium_values(system: System) -> Values:
             if not foreign & {system.split(path)[0] for path in pair}
         ),
     )
-    return equilibrium(known).values
+    with activity(f"looking for the steady rotation of {system.name}"):
+        return equilibrium(known).values
 
 
 def _offsets(system: System, offsets: Values) -> Values:

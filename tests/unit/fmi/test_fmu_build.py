@@ -23,6 +23,18 @@ def test_a_build_is_used_again(python_fmus, monkeypatch):
     assert build_python_fmus(["drive_motor"]) == {"drive_motor": python_fmus["drive_motor"]}
 
 
+@pytest.mark.parametrize("left", [0, 1000])
+def test_a_damaged_fmu_is_built_again(left, monkeypatch, tmp_path, caplog):
+    monkeypatch.setenv("HERRINGBONE_CACHE", str(tmp_path))
+    fmu = build_python_fmus(["drive_motor"])["drive_motor"]
+    whole = zipfile.ZipFile(fmu).namelist()
+    assert "damaged" not in caplog.text
+    fmu.write_bytes(fmu.read_bytes()[:left])
+    assert build_python_fmus(["drive_motor"]) == {"drive_motor": fmu}
+    assert "drive_motor.fmu is damaged; it is made anew" in caplog.text
+    assert zipfile.ZipFile(fmu).namelist() == whole
+
+
 def test_unknown_component():
     with pytest.raises(StructureError, match="there is no component 'gearbox'"):
         build_python_fmus(["gearbox"])

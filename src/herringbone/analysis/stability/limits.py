@@ -23,6 +23,7 @@ from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.step_scan import GrowthOf, first_unstable_near, unstable_bands
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core.activity import activity
 from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
@@ -123,12 +124,14 @@ def stability(
     bonds = bond_table(network, instances)
     highest = highest_frequency(network, instances)
     limits, chosen, notes = [], [], []
+    what = f"predicting the stable steps of {system.name}"
     for algorithm in algorithms or default_algorithms():
         try:
-            limit = step_limits(system, algorithm, progress)
-            if simulate:
-                seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands)
-                limit = replace(limit, simulated_limit=seen)
+            with activity(f"{what} with {algorithm}", shown=progress is not None):
+                limit = step_limits(system, algorithm, progress)
+                if simulate:
+                    seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands)
+                    limit = replace(limit, simulated_limit=seen)
             limits.append(limit)
             chosen.append(algorithm)
         except ParameterError as error:

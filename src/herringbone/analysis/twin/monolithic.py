@@ -14,6 +14,7 @@ from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_sourc
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
+from herringbone.core.activity import activity
 from herringbone.core.generated import load_generated
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
@@ -127,13 +128,15 @@ class Twin:
         t_end = float(times[-1])
         states = np.empty((self.state.size, times.size))
         x, t0 = self.state, 0.0
-        for t1 in [*self.breakpoints(t_end), t_end]:
-            last = t1 == t_end
-            inside = (times >= t0) & ((times <= t1) if last else (times < t1))
-            x = self._solve_piece(
-                t0, t1, x, times, np.flatnonzero(inside), states, tolerance, progress
-            )
-            t0 = t1
+        what = f"solving {self.system.name} as one system"
+        with activity(what, shown=progress is not None):
+            for t1 in [*self.breakpoints(t_end), t_end]:
+                last = t1 == t_end
+                inside = (times >= t0) & ((times <= t1) if last else (times < t1))
+                x = self._solve_piece(
+                    t0, t1, x, times, np.flatnonzero(inside), states, tolerance, progress
+                )
+                t0 = t1
         return self.observe(times, states, columns)
 
     def _solve_piece(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
+from herringbone.core.activity import activity
 from herringbone.core.cache_keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.cached_file import is_stored, store
 from herringbone.core.paths import cache_folder
@@ -72,12 +73,18 @@ def build_models(
     }
     missing = [model for model in models if not is_stored(fmus[model.name])]
     for model in missing:
-        _make_libraries(model, chosen, fmi)
-        with tempfile.TemporaryDirectory() as scratch:
-            libraries = {platform: _library(model, platform, fmi) for platform in chosen}
-            packed = pack_native(model, libraries, fmi, Path(scratch) / f"{model.name}.fmu")
-            store(fmus[model.name], packed.read_bytes())
+        with activity(f"building the native FMU of {model.name}", "only when its code has changed"):
+            store(fmus[model.name], _built(model, chosen, fmi))
     return fmus
+
+
+def _built(model: Model, platforms: list[Platform], fmi: int) -> bytes:
+    """The FMU of a model for platforms."""
+    _make_libraries(model, platforms, fmi)
+    with tempfile.TemporaryDirectory() as scratch:
+        libraries = {platform: _library(model, platform, fmi) for platform in platforms}
+        packed = pack_native(model, libraries, fmi, Path(scratch) / f"{model.name}.fmu")
+        return packed.read_bytes()
 
 
 def _library(model: Model, platform: Platform, fmi: int) -> Path:

@@ -1,0 +1,205 @@
+"""What takes long says so: one line on what it is, and on how long it usually takes.
+
+The lines go to the logger `herringbone.activity`. A program that has set up logging gets them
+there; otherwise they stand on stderr, in a terminal as in a notebook, above progress bars.
+"""
+
+import contextlib
+import json
+import logging
+import math
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+
+from herringbone.core.cached_file import write_file
+from herringbone.core.paths import cache_root
+
+_PATIENCE = 2.0
+"""Seconds for which nothing need be said."""
+_AGAIN = 4.0
+"""What is done in many pieces says how far it is whenever its time is so many times longer."""
+
+
+def _is_set_up() -> bool:
+    """True if the program has set up logging."""
+    return bool(logging.getLogger().handlers)
+
+
+class _Shown(logging.Handler):
+    """Writes to stderr, as it is at the moment, unless the program has set up logging."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line."""
+        if _is_set_up():
+            return
+        bars = sys.modules.get("tqdm")
+        if bars is not None:
+            bars.tqdm.write(self.format(record), file=sys.stderr)
+        else:
+            sys.stderr.write(self.format(record) + "\n")
+
+
+_LOG = logging.getLogger("herringbone.activity")
+_LOG.setLevel(logging.INFO)
+_LOG.addHandler(_Shown())
+_open = threading.local()
+
+
+def _memory() -> Path:
+    return cache_root() / "durations.json"
+
+
+def _durations() -> dict[str, float]:
+    """How long things took [s]; what cannot be read is not known."""
+    try:
+        found = json.loads(_memory().read_text(encoding="utf-8"))
+        known = {what: float(seconds) for what, seconds in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return {}
+    return {what: seconds for what, seconds in known.items() if 0.0 < seconds < math.inf}
+
+
+def _remember(what: str, seconds: float) -> None:
+    known = _durations()
+    if max(seconds, known.get(what, 0.0)) < _PATIENCE:
+        return
+    with contextlib.suppress(OSError):  # it is only said
+        write_file(_memory(), json.dumps({**known, what: round(seconds, 2)}).encode())
+
+
+class _Alarm:
+    """Calls a function after some seconds, unless it is stopped before.
+
+    The function returns after how many seconds it wants to be called again; None: not at all.
+    """
+
+    def __init__(self, seconds: float, ring: Callable[[], float | None]) -> None:
+        self._stopped = threading.Event()
+        self._ring = ring
+        threading.Thread(target=self._wait, args=(seconds,), daemon=True).start()
+
+    def _wait(self, seconds: float | None) -> None:
+        while seconds is not None and not self._stopped.wait(seconds):
+            seconds = self._ring()
+
+    def stop(self) -> None:
+        """It is over."""
+        self._stopped.set()
+
+
+class Pieces:
+    """Something that is done in many short pieces, of which nobody knows how many will come.
+
+    Args:
+        what: such as "compiling kernels".
+        note: how often it is done, such as "once".
+    """
+
+    def __init__(self, what: str, note: str) -> None:
+        self._what, self._note = what, note
+        self._done, self._spent, self._mark = 0, 0.0, _PATIENCE
+        self._started: float | None = None
+        self._most: float | None = None
+
+    def spent(self) -> float:
+        """Time of all pieces of this process [s]."""
+        started = self._started
+        return self._spent + (0.0 if started is None else monotonic() - started)
+
+    @contextmanager
+    def piece(self) -> Iterator[None]:
+        """Do a piece; one inside of another is a part of it."""
+        if self._started is not None:
+            yield
+            return
+        self._started = monotonic()
+        alarm = _Alarm(max(self._mark - self._spent, 0.0), self._say)
+        try:
+            yield
+        finally:
+            alarm.stop()
+            self._spent, self._started = self.spent(), None
+            self._done += 1
+            self._keep()
+
+    def _say(self) -> float | None:
+        if self._most is None:
+            self._most = _durations().get(self._what, 0.0)
+        spent = self.spent()
+        if spent >= self._mark:
+            self._mark *= _AGAIN
+            most = f"up to {self._most:.0f} s in all; " if self._most > spent else ""
+            so_far = f"{self._done} in {spent:.0f} s so far"
+            _LOG.info("%s: %s (%s%s)", self._what, so_far, most, self._note)
+        return self._mark - spent
+
+    def _keep(self) -> None:
+        if self._spent > max(_PATIENCE, self._most or 0.0, _durations().get(self._what, 0.0)):
+            _remember(self._what, self._spent)
+
+
+COMPILING = Pieces("compiling kernels", "only the first time, and when their code has changed")
+
+
+class _Activity:
+    """One thing that is going on."""
+
+    def __init__(self, what: str, note: str, around: "_Activity | None") -> None:
+        self._what, self._note, self._around = what, note, around
+        self._usual = _durations().get(what)
+        self._started, self._compiled = monotonic(), COMPILING.spent()
+        self._said = False
+        at_once = self._usual is not None and self._usual >= _PATIENCE
+        self._wanted = 0.0 if at_once else _PATIENCE
+        self._alarm = _Alarm(self._wanted, self._tell)
+
+    def own(self) -> float:
+        """How long it has been going on [s], without kernels that were compiled for it."""
+        return monotonic() - self._started - (COMPILING.spent() - self._compiled)
+
+    def told(self) -> bool:
+        """True if it, or what it is a part of, has been said."""
+        return self._said or (self._around is not None and self._around.told())
+
+    def _tell(self) -> float | None:
+        if (rest := self._wanted - self.own()) > 0.0:
+            return rest
+        if not self.told():
+            self._said = True
+            usual = f"usually {self._usual:.0f} s" if self._usual else "this may take a while"
+            _LOG.info("%s ... (%s%s)", self._what, usual, f"; {self._note}" if self._note else "")
+        return None
+
+    def end(self) -> None:
+        """It is over."""
+        self._alarm.stop()
+
+
+@contextmanager
+def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None]:
+    """Do something that may take more than two seconds; if so, a line says it.
+
+    The line comes at once if it took long the last time. What is inside of something that has been
+    said is not said as well.
+
+    Args:
+        what: such as "building the native FMU of gear_mesh"; its duration is remembered by it.
+        note: how often it is done, such as "once".
+        shown: something else shows that it goes on, and nothing is said.
+    """
+    if shown:
+        yield
+        return
+    around = getattr(_open, "activity", None)
+    this = _Activity(what, note, around)
+    _open.activity = this
+    try:
+        yield
+        _remember(what, this.own())
+    finally:
+        _open.activity = around
+        this.end()
