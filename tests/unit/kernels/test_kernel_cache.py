@@ -30,7 +30,12 @@ def inner_part(x: float) -> float:
 def whole(x: float) -> float:
     return inner_part(x) + 1.0
 """
-FACTORY = """
+LONG = "".join(
+    f"        value = max(value, math.sqrt(abs(value) * x + {i}.0) * 1e-9) + min(x, 0.0)\n"
+    for i in range(100)
+)
+"""Lines of a function that no compiler puts into three callers."""
+FACTORY = f"""
 import math
 
 import numpy as np
@@ -41,11 +46,7 @@ def factory(factor: float):
     @inner("same")
     def scaled(x: float) -> float:
         value = factor * x + np.floor(x)
-        for i in range(200):  # too long to become a part of its caller
-            value = max(value, math.sqrt(abs(value) * i) * 1e-9) + min(x, 0.0)
-            value = max(value, math.sqrt(abs(value) * x) * 1e-9) + min(x, 0.0)
-            value = max(value, math.sqrt(abs(value) + i) * 1e-9) + min(x, 0.0)
-        return value
+{LONG}        return value
 
     return scaled
 """
@@ -143,17 +144,20 @@ def test_damaged_kernels_are_compiled_again(cache, tmp_path, caplog, suffix, lef
     assert not compiled_again(tmp_path, SOURCE)
 
 
-def test_pieces_have_no_machine_code_and_are_inside_of_their_whole(cache, tmp_path):
-    module = load(tmp_path / "edited.py", SOURCE)
+def test_pieces_have_no_machine_code_and_are_their_wholes_own(cache, tmp_path, monkeypatch):
+    (tmp_path / "closures.py").write_text(FACTORY)
+    monkeypatch.syspath_prepend(tmp_path)
+    module = load(tmp_path / "caller.py", CALLER.format(factor=2.0, name="whole"))
     module.whole(0.5)
     (whole,) = module.whole.overloads.values()
-    (piece,) = module.inner_part.piece.overloads.values()
+    (piece,) = module.part.piece.overloads.values()
     assert isinstance(whole.library, Whole)
     assert isinstance(piece.library, Piece)
     assert piece.library.get_pointer_to_function(piece.fndesc.mangled_name) == 0
-    assert not module.inner_part.overloads
+    assert not module.part.overloads
     defined = [f for f in whole.library._final_module.functions if not f.is_declaration]
-    assert [f for f in defined if "inner_part" in f.name and f.linkage.name != "internal"] == []
+    found = [f.linkage.name for f in defined if "scaled" in f.name]
+    assert found == ["internal"]  # it is there, as it is too long to become a part of its caller
 
 
 def test_caches_of_two_processes_agree_in_a_third(tmp_path):
