@@ -4,10 +4,18 @@ import fcntl
 from contextlib import contextmanager
 
 import pytest
+from threadpoolctl import threadpool_limits
 
 from herringbone.core.paths import cache_folder
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_blas_thread():
+    """Threads of two test processes would wait for each other: ten times the time."""
+    with threadpool_limits(limits=1, user_api="blas"):
+        yield
 
 
 @contextmanager

@@ -223,7 +223,9 @@ def test_failure_of_the_compiler_is_one_line(tmp_path):
     description = tmp_path / "part.c"
     description.write_text("#error this part is wrong\n")
     with pytest.raises(FmuError, match=r"failed: .*this part is wrong") as error:
-        compiler.compile_library(found, OWN, description, tmp_path / "none.o", tmp_path / "part.so")
+        compiler.compile_library(
+            found, OWN, description, [tmp_path / "none.o"], tmp_path / "part.so"
+        )
     assert "\n" not in str(error.value)
 
 
