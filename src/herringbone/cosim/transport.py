@@ -5,7 +5,8 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.layouts.derivatives import input_fit
+from herringbone.cosim.layouts.derivatives import Derivatives, input_fit
+from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.cosim.loops.derivatives import get_rates, set_derivatives
 from herringbone.cosim.structure.network import Network
@@ -27,27 +28,30 @@ def settle_derivatives(network: Network, prepared: PreparedRun) -> list[str]:
     """
     layout, notes = prepared.layout, []
     signals = layout.derivatives
+    if signals is None:
+        return []
     for p, part in enumerate(network.parts):
         asked, rated = int(signals.order[p]), bool(signals.rated[p])
         if not asked and not rated:
             continue
-        refused = _settle_inputs(prepared, part, p)
+        refused = _settle_inputs(signals, layout, part, p)
         taken = int(signals.order[p])
         signals.fit[p] = input_fit(signals.samples.size - 1, taken, at_end=bool(layout.at_end[p]))
         if asked and not taken:
             signals.rated[p] = 0
         elif rated:
-            refused += _settle_outputs(prepared, part, p)
-        notes.append(_note(prepared, part, p, asked, refused))
+            refused += _settle_outputs(signals, layout, part, p)
+        notes.append(
+            _note(prepared, signals, p, asked, [f"{part.name} has no signal nodes", *refused])
+        )
     return notes
 
 
-def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
+def _settle_inputs(signals: Derivatives, layout: Layout, part: Part, p: int) -> list[str]:
     """Lower the order of a part's input derivatives until it takes them; what it refused."""
-    signals = prepared.layout.derivatives
     refused: list[str] = []
     for order in range(int(signals.order[p]), 0, -1):
-        status = set_derivatives(prepared.layout, p, order)
+        status = set_derivatives(signals, layout, p)
         if status <= LAST_GOOD:
             break
         said = _refusal(part, status, f"input derivatives of order {order}")
@@ -56,12 +60,12 @@ def _settle_inputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
     return refused
 
 
-def _settle_outputs(prepared: PreparedRun, part: Part, p: int) -> list[str]:
+def _settle_outputs(signals: Derivatives, layout: Layout, part: Part, p: int) -> list[str]:
     """Use a part's rates unless it refuses them; what it refused."""
-    status = get_rates(prepared.layout, p, np.zeros(prepared.layout.output_reference.size))
+    status = get_rates(signals, layout, p, np.zeros(layout.output_reference.size))
     if status <= LAST_GOOD:
         return []
-    prepared.layout.derivatives.rated[p] = 0
+    signals.rated[p] = 0
     return [_refusal(part, status, "output derivatives")]
 
 
@@ -72,8 +76,7 @@ def _refusal(part: Part, status: int, what: str) -> str:
     return f"it declares {what} but refuses them ({said or f'FMI status {status}'})"
 
 
-def _note(prepared: PreparedRun, part: Part, p: int, asked: int, refused: list[str]) -> str:
-    signals = prepared.layout.derivatives
+def _note(prepared: PreparedRun, signals: Derivatives, p: int, asked: int, said: list[str]) -> str:
     taken, rated = int(signals.order[p]), bool(signals.rated[p])
     ways = []
     if asked:
@@ -92,4 +95,4 @@ def _note(prepared: PreparedRun, part: Part, p: int, asked: int, refused: list[s
         if kept == prepared.full_order
         else f"the coupling falls from order {prepared.full_order} to {kept} in the step"
     )
-    return "; ".join([f"{part.name} has no signal nodes", *refused, *ways, cost])
+    return "; ".join([*said, *ways, cost])

@@ -144,7 +144,7 @@ class PreparedAdaptive(PreparedNodes):
             (c.source, c.output)
             for c in self.network.connections
             if self.degree[c.target] == 0
-            and self.layout.derivatives.order[c.target] < nodes.degree
+            and self.input_degree(c.target) < nodes.degree
             and not self.layout.at_end[c.target]
         }
         rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size

@@ -156,7 +156,8 @@ class PreparedRun(ABC):
 
     def input_degree(self, part: int) -> int:
         """Degree of the polynomials that a part takes: its nodes, or its FMI derivatives."""
-        return max(self.degree[part], int(self.layout.derivatives.order[part]))
+        signals = self.layout.derivatives
+        return max(self.degree[part], 0 if signals is None else int(signals.order[part]))
 
     @abstractmethod
     def kept_order(self, part: int) -> int:

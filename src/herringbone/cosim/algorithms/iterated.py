@@ -145,9 +145,9 @@ class PreparedNodes(PreparedRun):
         signals = self.layout.derivatives
         found = [self.full_order]
         if self.network.inputs(part) and not self.layout.at_end[part]:
-            found.append(2 * int(signals.order[part]) + 2)
+            found.append(2 * (0 if signals is None else int(signals.order[part])) + 2)
         if self.inner_outputs:
-            found.append(4 if signals.rated[part] else 3)
+            found.append(4 if signals is not None and signals.rated[part] else 3)
         return min(found)
 
     def passes(self, macro_steps: int) -> list[int]:

@@ -35,19 +35,20 @@ def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:
     return all(node_name(name, degree) in part.variables for name in outputs)
 
 
-def fmi_derivatives(network: Network, degree: int, degrees: Sequence[int]) -> Derivatives:
+def fmi_derivatives(network: Network, degree: int, degrees: Sequence[int]) -> Derivatives | None:
     """FMI derivatives for the parts without nodes that declare them.
 
-    A part that holds its inputs has no rates to give.
+    A part that holds its inputs has no rates to give. None: all parts have nodes, and the loops
+    are compiled without all that others need.
     """
     order, rated = [0] * len(network.parts), []
-    for p, part in enumerate(network.parts):
-        if degrees[p] or p in network.slow:
-            continue
-        fed = bool(network.inputs(p))
+    without = [p for p, d in enumerate(degrees) if not d and p not in network.slow]
+    for p in without:
+        part, fed = network.parts[p], bool(network.inputs(p))
         if fed and part.addresses.set_derivatives:
             order[p] = degree
         feeds = any(c.source == p for c in network.connections)
         if degree > 1 and feeds and part.addresses.get_derivatives and (order[p] or not fed):
             rated.append(p)
-    return lay_out_derivatives(network, degree, order, rated)
+    needed = rated or any(network.inputs(p) for p in without)
+    return lay_out_derivatives(network, degree, order, rated) if needed else None

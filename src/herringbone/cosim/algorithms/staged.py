@@ -39,7 +39,8 @@ class Prepared(PreparedRun):
 
     def kept_order(self, part: int) -> int:
         """1 if inputs are held; all of it from order 1 on, by the mean and the first moment."""
-        return self.full_order if self.layout.derivatives.order[part] else 1
+        signals = self.layout.derivatives
+        return self.full_order if signals is not None and signals.order[part] else 1
 
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth by the extrapolation over a step; parallel elements answer a step late."""
@@ -111,6 +112,6 @@ def prepare_stages(
                 )
             wanted = 0
         degree.append(wanted)
-    laid_out = lay_out_derivatives(network, order, derivatives)
+    laid_out = lay_out_derivatives(network, order, derivatives) if any(derivatives) else None
     layout = build_layout(network, stages, degree, parallel, derivatives=laid_out)
     return Prepared(layout, tuple(degree), order, full_order, tuple(notes))

@@ -67,9 +67,9 @@ def input_fit(degree: int, order: int, *, at_end: bool) -> np.ndarray:
 
 
 def lay_out_derivatives(
-    network: Network, degree: int, order: Sequence[int] = (), rated: Sequence[int] = ()
+    network: Network, degree: int, order: Sequence[int], rated: Sequence[int] = ()
 ) -> Derivatives:
-    """Arrays for signals of a degree; without orders no part takes or gives derivatives.
+    """Arrays for signals of a degree.
 
     Args:
         network: parts and connections.
@@ -78,7 +78,6 @@ def lay_out_derivatives(
         rated: indices of the parts that give rates.
     """
     parts = network.parts
-    order = order or [0] * len(parts)
     names = [[c.input for c in network.inputs(p)] for p in range(len(parts))]
     entries = [
         [(part.variables[name].reference, k) for k in range(1, order[p] + 1) for name in names[p]]

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.core.declaration import node_name
 from herringbone.core.part import Part
 from herringbone.cosim.energy.monitor import NOTHING_WATCHED, EnergyMonitor
-from herringbone.cosim.layouts.derivatives import Derivatives, lay_out_derivatives
+from herringbone.cosim.layouts.derivatives import Derivatives
 from herringbone.cosim.layouts.slow import Slow, lay_out_slow
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -49,7 +49,7 @@ class Layout(NamedTuple):
     stage_first: np.ndarray
     stage_part: np.ndarray
     slow: Slow | None
-    derivatives: Derivatives
+    derivatives: Derivatives | None
 
 
 class Chunk(NamedTuple):
@@ -229,5 +229,5 @@ def build_layout(
         stage_first=_offsets([len(stage) for stage in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
         slow=lay_out_slow(network, outputs, degree, per),
-        derivatives=derivatives or lay_out_derivatives(network, 0),
+        derivatives=derivatives,
     )

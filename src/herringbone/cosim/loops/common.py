@@ -11,7 +11,13 @@ import numpy as np
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.slow import Slow
 from herringbone.cosim.loops.calls import do_step, exchange_reals
-from herringbone.cosim.loops.derivatives import set_derivatives, write_input
+from herringbone.cosim.loops.derivatives import (
+    derivative_order,
+    sample,
+    sample_count,
+    set_derivatives,
+    write_input,
+)
 from herringbone.kernels.jit import inlined
 
 DONE, PART_FAILED, NOT_FINITE, COUPLING_FAILED = 0, 1, 2, 4
@@ -83,18 +89,19 @@ def _set_polynomials(
     layout: Layout, history: np.ndarray, p: int, order: int, known: int, h: float
 ) -> int:
     """Set all connected inputs of a part by value and derivatives; FMI status."""
-    first, samples = layout.input_first[p], layout.derivatives.samples
+    signals, first = layout.derivatives, layout.input_first[p]
+    samples = sample_count(signals)
     count, at = layout.input_first[p + 1] - first, layout.set_first[p]
     for i in range(count):
         source, fresh = layout.input_source[first + i], layout.input_fresh[first + i]
-        for node in range(samples.size):
-            c = node / (samples.size - 1)
-            samples[node] = signal(history, source, fresh, order, known, c)
-        write_input(layout, p, i, h)
+        for node in range(samples):
+            c = node / (samples - 1)
+            sample(signals, node, signal(history, source, fresh, order, known, c))
+        write_input(signals, layout, p, i, h)
     status = exchange(
         layout, p, layout.set_real, layout.set_reference, at, count, layout.set_value, at
     )
-    return max(status, set_derivatives(layout, p, layout.derivatives.order[p]))
+    return max(status, set_derivatives(signals, layout, p))
 
 
 @inlined
@@ -105,7 +112,7 @@ def set_inputs(
     first, end = layout.input_first[p], layout.input_first[p + 1]
     if first == end:
         return 0
-    if layout.derivatives.order[p] > 0:
+    if derivative_order(layout.derivatives, p) > 0:
         return _set_polynomials(layout, history, p, order, known, h)
     at, degree = layout.set_first[p], layout.degree[p]
     for node in range(degree + 1):

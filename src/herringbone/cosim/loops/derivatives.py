@@ -1,7 +1,11 @@
-"""Signals as FMI 2 derivatives: what a compiled loop sets before a step and reads after it."""
+"""Signals as FMI 2 derivatives: what a compiled loop sets before a step and reads after it.
+
+Without such signals these functions do nothing, and the loops are compiled without them.
+"""
 
 import numpy as np
 
+from herringbone.cosim.layouts.derivatives import Derivatives
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.loops.calls import exchange_derivatives
 from herringbone.kernels.jit import inlined
@@ -10,9 +14,42 @@ _REAL, _REFERENCE, _ORDER = 8, 4, 4
 
 
 @inlined
-def write_input(layout: Layout, p: int, i: int, h: float) -> None:
+def derivative_order(signal: Derivatives | None, p: int) -> int:
+    """Highest order of input derivatives that a part takes."""
+    if signal is None:
+        return 0
+    return signal.order[p]
+
+
+@inlined
+def gives_rates(signal: Derivatives | None, p: int) -> bool:
+    """True if a part gives the rates of its outputs at the end of a step."""
+    if signal is None:
+        return False
+    return signal.rated[p] > 0
+
+
+@inlined
+def sample_count(signal: Derivatives | None) -> int:
+    """Number of samples of one signal."""
+    if signal is None:
+        return 0
+    return signal.samples.size
+
+
+@inlined
+def sample(signal: Derivatives | None, node: int, value: float) -> None:
+    """Note the value of the present signal at a node."""
+    if signal is None:
+        return
+    signal.samples[node] = value
+
+
+@inlined
+def write_input(signal: Derivatives | None, layout: Layout, p: int, i: int, h: float) -> None:
     """Value and derivatives at the start of the step, of a part's i-th input from its samples."""
-    signal = layout.derivatives
+    if signal is None:
+        return
     count = layout.input_first[p + 1] - layout.input_first[p]
     scale = 1.0
     for k in range(signal.order[p] + 1):
@@ -27,9 +64,13 @@ def write_input(layout: Layout, p: int, i: int, h: float) -> None:
 
 
 @inlined
-def set_derivatives(layout: Layout, p: int, order: int) -> int:
-    """Set the derivatives of a part's inputs up to an order; FMI status."""
-    signal, at = layout.derivatives, layout.derivatives.first[p]
+def set_derivatives(signal: Derivatives | None, layout: Layout, p: int) -> int:
+    """Set the derivatives of a part's inputs, if it takes any; FMI status."""
+    if signal is None:
+        return 0
+    order, at = signal.order[p], signal.first[p]
+    if order == 0:
+        return 0
     return exchange_derivatives(
         signal.set_derivatives[p],
         layout.component[p],
@@ -41,15 +82,17 @@ def set_derivatives(layout: Layout, p: int, order: int) -> int:
 
 
 @inlined
-def get_rates(layout: Layout, p: int, rates: np.ndarray) -> int:
+def get_rates(signal: Derivatives | None, layout: Layout, p: int, rates: np.ndarray) -> int:
     """Get the rates of a part's connected outputs into `rates` (outputs,); FMI status."""
+    if signal is None:
+        return 0
     first = layout.output_first[p]
     return exchange_derivatives(
-        layout.derivatives.get_derivatives[p],
+        signal.get_derivatives[p],
         layout.component[p],
         layout.output_reference.ctypes.data + _REFERENCE * first,
         layout.output_first[p + 1] - first,
-        layout.derivatives.output_order.ctypes.data,
+        signal.output_order.ctypes.data,
         rates.ctypes.data + _REAL * first,
     )
 

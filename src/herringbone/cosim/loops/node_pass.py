@@ -11,7 +11,15 @@ from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.calls import do_step, state_call
 from herringbone.cosim.loops.common import LAST_GOOD, exchange, start_step
-from herringbone.cosim.loops.derivatives import cubic, get_rates, set_derivatives, write_input
+from herringbone.cosim.loops.derivatives import (
+    cubic,
+    get_rates,
+    gives_rates,
+    sample,
+    sample_count,
+    set_derivatives,
+    write_input,
+)
 from herringbone.cosim.loops.slow import predict_slow_nodes
 from herringbone.kernels.jit import inlined
 
@@ -52,21 +60,20 @@ def _set_from_nodes(layout: Layout, buffers: Buffers, p: int, h: float) -> int:
     first, end = layout.input_first[p], layout.input_first[p + 1]
     if first == end:
         return 0
-    start, degree = layout.set_first[p], layout.degree[p]
+    start, degree, signals = layout.set_first[p], layout.degree[p], layout.derivatives
     for i in range(end - first):
         source = layout.input_source[first + i]
         if degree == 0:
-            for node in range(layout.derivatives.samples.size):
-                layout.derivatives.samples[node] = buffers.nodes[node, source]
-            write_input(layout, p, i, h)
+            for node in range(sample_count(signals)):
+                sample(signals, node, buffers.nodes[node, source])
+            write_input(signals, layout, p, i, h)
         for node in range(degree + 1 if degree > 0 else 0):
             layout.set_value[start + node * (end - first) + i] = buffers.nodes[node, source]
     count = (degree + 1) * (end - first)
     status = exchange(
         layout, p, layout.set_real, layout.set_reference, start, count, layout.set_value, start
     )
-    order = layout.derivatives.order[p]
-    return max(status, set_derivatives(layout, p, order)) if order > 0 else status
+    return max(status, set_derivatives(signals, layout, p))
 
 
 @inlined
@@ -93,9 +100,9 @@ def _get_to_nodes(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int, h
     status = exchange(
         layout, p, layout.get_real, layout.output_reference, first, end - first, buffers.values, 0
     )
-    rated = layout.derivatives.rated[p] > 0
+    rated = gives_rates(layout.derivatives, p)
     if rated:
-        status = max(status, get_rates(layout, p, buffers.rates[1]))
+        status = max(status, get_rates(layout.derivatives, layout, p, buffers.rates[1]))
     for i in range(first, end):
         now, past, value = buffers.nodes[0, i], buffers.spacing[0], buffers.values[i - first]
         rise = value - now

@@ -21,7 +21,13 @@ from herringbone.cosim.loops.common import (
     start_step,
     step_stage,
 )
-from herringbone.cosim.loops.derivatives import set_derivatives, write_input
+from herringbone.cosim.loops.derivatives import (
+    derivative_order,
+    sample,
+    sample_count,
+    set_derivatives,
+    write_input,
+)
 from herringbone.kernels.jit import inlined, kernel
 
 NODES = 3
@@ -134,24 +140,25 @@ def _set_body(
 ) -> int:
     """Set a body's inputs, at nodes or by derivatives if it has them; FMI status."""
     first, count = layout.input_first[p], layout.input_first[p + 1] - layout.input_first[p]
-    start, degree, order = layout.set_first[p], layout.degree[p], layout.derivatives.order[p]
-    samples = layout.derivatives.samples
+    start, degree, signals = layout.set_first[p], layout.degree[p], layout.derivatives
+    samples = sample_count(signals) if derivative_order(signals, p) > 0 else 0
     for i in range(count):
         for node in range(degree + 1):
             c = node / degree if degree > 0 else 0.5
             layout.set_value[start + node * count + i] = _body_input(
                 layout, prediction, history, first + i, known, c
             )
-        for node in range(samples.size if order > 0 else 0):
-            c = node / (samples.size - 1)
-            samples[node] = _body_input(layout, prediction, history, first + i, known, c)
-        if order > 0:
-            write_input(layout, p, i, h)
+        for node in range(samples):
+            c = node / (samples - 1)
+            value = _body_input(layout, prediction, history, first + i, known, c)
+            sample(signals, node, value)
+        if samples > 0:
+            write_input(signals, layout, p, i, h)
     status = exchange(
         layout, p, layout.set_real, layout.set_reference, start, (degree + 1) * count,
         layout.set_value, start,
     )  # fmt: skip
-    return max(status, set_derivatives(layout, p, order)) if order > 0 else status
+    return max(status, set_derivatives(signals, layout, p))
 
 
 @inlined
