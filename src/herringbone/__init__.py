@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from herringbone.analysis.figures.radiated_power import radiated_power
     from herringbone.core import HerringboneError, OutcomeKind
+    from herringbone.core.roles import Role
     from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
     from herringbone.cosim.structure.system import System
     from herringbone.result.result import Result
@@ -32,6 +33,7 @@ __all__ = [
     "OutcomeKind",
     "Predict",
     "Result",
+    "Role",
     "Scene",
     "System",
     "radiated_power",
