@@ -14,8 +14,9 @@ What it leans on inside of numba is tested for every minor version that is admit
 """
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from types import MappingProxyType
 
 import llvmlite.binding as llvm
 from numba import types
@@ -76,6 +77,8 @@ class Piece(JITCodeLibrary):
 class Whole(JITCodeLibrary):
     """Machine code of a function that is called from outside, with all pieces that it reaches."""
 
+    _tuning: Mapping[str, object] = MappingProxyType({})
+
     def add_linking_library(self, library: CodeLibrary) -> None:
         """Take in a library, and those that it needs."""
         library._ensure_finalized()
@@ -92,19 +95,16 @@ class Whole(JITCodeLibrary):
                 function.linkage = "internal"
 
     def _optimize_final_module(self) -> None:
+        """Once: numba's round before it serves counted references, and hardly a kernel has any."""
         self._make_own()
-        super()._optimize_final_module()
+        passes, builder = self._codegen._module_pass_manager(**self._tuning)
+        passes.run(self._final_module, builder)
 
 
 class Quick(Whole):
     """As `Whole`, made quickly: for what runs a few times."""
 
-    def _optimize_final_module(self) -> None:
-        self._make_own()
-        passes, builder = self._codegen._module_pass_manager(
-            loop_vectorize=False, slp_vectorize=False, opt=1
-        )
-        passes.run(self._final_module, builder)
+    _tuning = MappingProxyType({"loop_vectorize": False, "slp_vectorize": False, "opt": 1})
 
 
 class Linked(Whole):
