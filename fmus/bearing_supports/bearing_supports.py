@@ -1,6 +1,6 @@
 """pythonfmu script of the component bearing_supports."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class bearing_supports(ComponentSlave):

@@ -1,6 +1,6 @@
 """pythonfmu script of the component bench_controller."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class bench_controller(ComponentSlave):

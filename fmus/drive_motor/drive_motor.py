@@ -1,6 +1,6 @@
 """pythonfmu script of the component drive_motor."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class drive_motor(ComponentSlave):

@@ -1,6 +1,6 @@
 """pythonfmu script of the component gear_mesh."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class gear_mesh(ComponentSlave):

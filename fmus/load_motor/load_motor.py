@@ -1,6 +1,6 @@
 """pythonfmu script of the component load_motor."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class load_motor(ComponentSlave):

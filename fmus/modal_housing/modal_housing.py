@@ -1,6 +1,6 @@
 """pythonfmu script of the component modal_housing."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class modal_housing(ComponentSlave):

@@ -1,6 +1,6 @@
 """pythonfmu script of the component shaft_coupling."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class shaft_coupling(ComponentSlave):

@@ -1,6 +1,6 @@
 """pythonfmu script of the component velocity_sensor."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class velocity_sensor(ComponentSlave):

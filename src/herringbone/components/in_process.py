@@ -9,8 +9,8 @@ import numpy as np
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
+from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaration import Declaration, node_name
-from herringbone.core.generated import load_generated
 from herringbone.core.part import Addresses, PartVariable
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
-from herringbone.core.cached_file import write_file
+from herringbone.core.caching.files import write_file
 from herringbone.core.paths import cache_root
 
 _PATIENCE = 2.0

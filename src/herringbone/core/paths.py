@@ -50,7 +50,7 @@ def cache_root() -> Path:
 
 
 def cache_folder(kind: str) -> Path:
-    """Folder for generated artefacts of a kind, made if needed; see `core.cache_keys`.
+    """Folder for generated artefacts of a kind, made if needed; see `core.caching.keys`.
 
     Raises:
         ResourceError: the folder cannot be made.

@@ -17,7 +17,7 @@ from herringbone.fmi.readme import readme
 
 _SCRIPT = '''"""pythonfmu script of the component {name}."""
 
-from herringbone.fmi.slave import ComponentSlave
+from herringbone.fmi.python.slave import ComponentSlave
 
 
 class {name}(ComponentSlave):

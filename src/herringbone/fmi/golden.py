@@ -14,8 +14,8 @@ import numpy as np
 
 from herringbone.components.registry import component
 from herringbone.core import Component
-from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.host import Host
+from herringbone.fmi.python.build import build_python_fmus
 
 STEP_SIZE: Final = 2e-5
 STEPS: Final = 100

@@ -7,7 +7,7 @@ from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Text, Variable
-from herringbone.core.cache_keys import sources_key
+from herringbone.core.caching.keys import sources_key
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface

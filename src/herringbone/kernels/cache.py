@@ -2,8 +2,8 @@
 
 numba takes a cached kernel as long as the file that holds it is the same, byte by byte: it sees
 neither the files that hold its callees nor that an edit was but a comment. Here kernels are taken
-as long as the syntax of all that they are compiled from is the same (see `core.cache_keys`). Files
-that cannot be read, being cut off or empty, are made anew.
+as long as the syntax of all that they are compiled from is the same (see `core.caching.keys`).
+Files that cannot be read, being cut off or empty, are made anew.
 
 What it leans on inside of numba is tested for every minor version that is admitted.
 """
@@ -27,7 +27,7 @@ from numba.core.compiler import CompileResult
 from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
 
-from herringbone.core.cache_keys import digest_of, module_key
+from herringbone.core.caching.keys import digest_of, module_key
 from herringbone.core.paths import cache_folder
 
 D = TypeVar("D")

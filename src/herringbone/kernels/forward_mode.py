@@ -17,7 +17,7 @@ from collections.abc import Callable
 
 from numba.core.dispatcher import Dispatcher
 
-from herringbone.core.generated import load_generated
+from herringbone.core.caching.generated import load_generated
 from herringbone.kernels.dual_expressions import (
     SUFFIX,
     DualExpressions,

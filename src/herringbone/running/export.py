@@ -13,8 +13,8 @@ from herringbone.core.files import as_texts
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
-from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.native import build_native_fmus
+from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 from herringbone.scenes import Scene

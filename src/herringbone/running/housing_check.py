@@ -6,7 +6,7 @@ from pathlib import Path
 
 from herringbone.analysis.housing.contract import check_housing
 from herringbone.core import HerringboneError
-from herringbone.core.cache_keys import sources_key
+from herringbone.core.caching.keys import sources_key
 from herringbone.core.paths import cache_folder
 from herringbone.cosim.fmu.opening import open_fmu
 

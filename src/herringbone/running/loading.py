@@ -17,9 +17,9 @@ from herringbone.cosim.fmu.opening import open_fmu
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
-from herringbone.fmi.build import build_python_fmus
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
+from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.housing_check import replacement_notes
 from herringbone.running.ssp_import import load_ssp, ssp_scene
 from herringbone.scenes import Scene, Start, find_scene, read_scene

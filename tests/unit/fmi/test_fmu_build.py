@@ -6,10 +6,11 @@ import pytest
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, StructureError
-from herringbone.core.cache_keys import sources_key
+from herringbone.core.caching.keys import sources_key
 from herringbone.core.paths import component_folder
-from herringbone.fmi import build, build_python_fmus, check_fmu
-from herringbone.fmi.state import FmuState, from_bytes, to_bytes
+from herringbone.fmi import build_python_fmus, check_fmu
+from herringbone.fmi.python import build
+from herringbone.fmi.python.state import FmuState, from_bytes, to_bytes
 
 
 def test_two_builds_are_identical(python_fmus, tmp_path):

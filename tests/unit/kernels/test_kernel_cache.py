@@ -10,9 +10,9 @@ from importlib.metadata import requires, version
 
 import pytest
 
-from herringbone.core import cache_keys
-from herringbone.core.cached_file import is_stored, store
-from herringbone.core.syntax import syntax_of
+from herringbone.core.caching import keys as cache_keys
+from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.syntax import syntax_of
 from herringbone.kernels.cache import _CheckedData
 from herringbone.kernels.linking import Piece, Whole
 

@@ -29,8 +29,8 @@ from herringbone.core import (
     Variable,
     parameter,
 )
+from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.generated import load_generated
 from herringbone.core.variable import Causality
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System

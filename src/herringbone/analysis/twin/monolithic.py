@@ -15,7 +15,7 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
 from herringbone.core.activity import activity
-from herringbone.core.generated import load_generated
+from herringbone.core.caching.generated import load_generated
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
-from herringbone.core.cache_keys import digest_of, kernels_key, wrapper_key
-from herringbone.core.cached_file import is_stored, store
+from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.paths import cache_folder
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source

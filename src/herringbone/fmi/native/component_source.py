@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Declaration, Text, Variable
-from herringbone.core.cache_keys import sources_key
+from herringbone.core.caching.keys import sources_key
 from herringbone.core.component import unbounded, unchanged
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.fmi import interface

@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.components.registry import component
 from herringbone.core import Component, ParameterError
-from herringbone.core.cache_keys import digest_of, kernels_key, packed_key, wrapper_key
+from herringbone.core.caching.keys import digest_of, kernels_key, packed_key, wrapper_key
 from herringbone.fmi.native import compiler, objects
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.used_states import UsedStates, used_states

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-from herringbone.core.cache_keys import digest_of
-from herringbone.core.cached_file import write_file
+from herringbone.core.caching.files import write_file
+from herringbone.core.caching.keys import digest_of
 from herringbone.core.paths import cache_folder
 
 _LOG = logging.getLogger("herringbone")

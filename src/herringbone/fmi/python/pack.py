@@ -1,4 +1,4 @@
-"""Pack components into FMUs: `python -m herringbone.fmi.pack FOLDER COMPONENT ...`.
+"""Pack components into FMUs: `python -m herringbone.fmi.python.pack FOLDER COMPONENT ...`.
 
 It runs in a process of its own, because pythonfmu imports the scripts that it packs: in the calling
 process they would shadow the FMU's own ones.
@@ -13,7 +13,7 @@ from pathlib import Path
 from pythonfmu import FmuBuilder
 
 from herringbone.components.registry import component
-from herringbone.core.cache_keys import sources_key
+from herringbone.core.caching.keys import sources_key
 from herringbone.fmi.archive import write_archive
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import FmuError
 from herringbone.core.activity import activity
-from herringbone.core.cache_keys import packed_key
-from herringbone.core.cached_file import is_stored, store
+from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.keys import packed_key
 from herringbone.core.paths import cache_folder
 
 
@@ -41,7 +41,7 @@ def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
 
 
 def _pack(names: list[str], folder: Path) -> None:
-    command = [sys.executable, "-m", "herringbone.fmi.pack", str(folder), *names]
+    command = [sys.executable, "-m", "herringbone.fmi.python.pack", str(folder), *names]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode:
         lines = run.stderr.strip().splitlines() or [f"exit code {run.returncode}"]

@@ -8,9 +8,9 @@
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
 | FMU | `packed_key`, its resources; a native one: its library |
 
-Syntax: without comments, docstrings and layout, see `core.syntax`. All sources are read before the
-modules that they make are imported: what is edited later in this process must not get compiled code
-cached under its name.
+Syntax: without comments, docstrings and layout, see `core.caching.syntax`. All sources are read
+before the modules that they make are imported: what is edited later in this process must not get
+compiled code cached under its name.
 """
 
 import contextlib
@@ -21,9 +21,9 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from herringbone.core.cached_file import write_file
+from herringbone.core.caching.files import write_file
+from herringbone.core.caching.syntax import Syntax, syntax_of
 from herringbone.core.paths import PACKAGE, cache_root, components_folder
-from herringbone.core.syntax import Syntax, syntax_of
 
 _NAME = PACKAGE.name
 _COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
