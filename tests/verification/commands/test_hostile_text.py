@@ -107,19 +107,25 @@ def refused(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.slow
 def test_no_name_becomes_code_or_a_path(refused, tmp_path):
-    """In TOML through all commands, and on the command line."""
-    system, plain = tmp_path / "rig", tmp_path / "plain"
-    for folder in (system, plain):
+    """In TOML and SSP through all commands, and on the command line.
+
+    The FMU of the .ssp is missing, which is found after its names were read.
+    """
+    system, plain, ssp = (tmp_path / name for name in ("rig", "plain", "ssp"))
+    for folder in (system, plain, ssp):
         folder.mkdir()
     (plain / "system.toml").write_text(PARTS)
     for n, name in enumerate(hostile_names()):
-        text = TOML[n // 2 % len(TOML)].replace("{0}", quoted(name))
-        (system / "system.toml").write_text(text, encoding="utf-8")
-        command = COMMANDS[n // 3 % len(COMMANDS)]
-        if n % 2:
+        command, kind = COMMANDS[n // 3 % len(COMMANDS)], n % 3
+        if kind == 0:
+            text = TOML[n // 3 % len(TOML)].replace("{0}", quoted(name))
+            (system / "system.toml").write_text(text, encoding="utf-8")
             refused([word.format(system=system) for word in command])
+        elif kind == 1:
+            write_structure(ssp, name, name)
+            refused([word.format(system=ssp) for word in command])
         elif "--help" not in name and not _legal_on_the_command_line(name):
-            option = OPTIONS[n // 2 % len(OPTIONS)]
+            option = OPTIONS[n // 3 % len(OPTIONS)]
             words = (word.replace("{system}", str(plain)) for word in option)
             refused([word.replace("{name}", name) for word in words])
 
@@ -132,6 +138,10 @@ def _legal_on_the_command_line(name):
 def write_ssp_folder(folder, fmu, system, component):
     (folder / "resources").mkdir(parents=True, exist_ok=True)
     (folder / "resources" / "part.fmu").write_bytes(fmu.read_bytes())
+    write_structure(folder, system, component)
+
+
+def write_structure(folder, system, component):
     (folder / "SystemStructure.ssd").write_text(
         '<?xml version="1.0" encoding="UTF-8"?><ssd:SystemStructureDescription version="1.0" '
         'xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription" name="x">'
