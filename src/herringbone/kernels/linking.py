@@ -26,10 +26,15 @@ from numba.core.codegen import CodeLibrary, JITCodeLibrary
 from numba.core.compiler import CompileResult
 from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import InlineOverloads, NopythonRewrites
 from numba.core.typing import Signature
+from numba.core.untyped_passes import LiteralPropagationSubPipelinePass, LiteralUnroll
 
 from herringbone.core.activity import COMPILING
 
+_NEEDLESS = {NopythonRewrites, InlineOverloads, LiteralUnroll, LiteralPropagationSubPipelinePass}
+"""Passes of numba for what the kernel language does not have: array expressions, functions that are
+inlined before they are typed, loops over tuples of several types."""
 _SHARED = llvm.Linkage.linkonce_odr
 
 
@@ -131,7 +136,10 @@ def _pipeline(library_class: type[JITCodeLibrary]) -> type[compiler.Compiler]:
             codegen, name = self.state.targetctx.codegen(), self.state.func_id.func_qualname
             self.state.library = library_class(codegen, name)
             self.state.library.enable_object_caching()
-            return super().define_pipelines()
+            (passes,) = super().define_pipelines()
+            passes.passes = [each for each in passes.passes if each[0] not in _NEEDLESS]
+            passes.finalize()
+            return [passes]
 
     return Pipeline
 
