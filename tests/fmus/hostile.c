@@ -69,13 +69,4 @@ EXPORT Status fmi2EnterInitializationMode(Component c) { return OK; }
 EXPORT Status fmi2ExitInitializationMode(Component c) { return OK; }
 EXPORT Status fmi2Reset(Component c) { return OK; }
 
-/* Functions of capabilities that it has not. */
-#define ABSENT(name) \
-    EXPORT Status fmi2##name(void) { return ERROR; }
-ABSENT(GetInteger) ABSENT(GetBoolean) ABSENT(GetString)
-ABSENT(SetInteger) ABSENT(SetBoolean) ABSENT(SetString)
-ABSENT(GetFMUstate) ABSENT(SetFMUstate) ABSENT(FreeFMUstate)
-ABSENT(SerializedFMUstateSize) ABSENT(SerializeFMUstate) ABSENT(DeSerializeFMUstate)
-ABSENT(GetDirectionalDerivative) ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
-ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetRealStatus) ABSENT(GetIntegerStatus)
-ABSENT(GetBooleanStatus) ABSENT(GetStringStatus)
+#include "absent.h"
