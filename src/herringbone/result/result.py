@@ -16,7 +16,7 @@ from herringbone.core import HerringboneError, Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
 from herringbone.core.facts import Facts
-from herringbone.core.names import matches, matches_any, shown
+from herringbone.core.names import matches_any, shown
 from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
 
@@ -102,12 +102,16 @@ class Result(Facts):
         Raises:
             ParameterError: a pattern matches nothing.
         """
-        parts = [PartPath(part) for part in self.info.model]
-        names = {c: endings(parts, c) for c in self.data.columns if c != TIME}
+        names = self._called()
         for pattern in patterns:
-            if not any(matches(name, pattern) for called in names.values() for name in called):
+            if not any(matches_any(called, [pattern]) for called in names.values()):
                 raise ParameterError(f"no column matches '{pattern}'; see result.data.columns")
         return [c for c, called in names.items() if matches_any(called, patterns)]
+
+    def _called(self) -> dict[str, tuple[str, ...]]:
+        """The names by which each column but the time may be called."""
+        parts = [PartPath(part) for part in self.info.model]
+        return {c: endings(parts, c) for c in self.data.columns if c != TIME}
 
     def column(self, name: str) -> str:
         """The column of that name, or the only one whose name ends so, its part cut short.
@@ -117,8 +121,7 @@ class Result(Facts):
         """
         if name in self.data:
             return name
-        parts = [PartPath(part) for part in self.info.model]
-        found = [c for c in self.data.columns if name in endings(parts, c)]
+        found = [column for column, called in self._called().items() if name in called]
         if len(found) > 1:
             raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
         if not found:
