@@ -4,7 +4,7 @@ import argparse
 import re
 import traceback
 from collections.abc import Sequence
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -63,6 +63,7 @@ class _Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)}; see '{self.prog} --help'\n")
 
 
+@cache
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
     parser.add_argument("--version", action="version", version=herringbone.__version__)

@@ -11,6 +11,8 @@ from herringbone.core.names import is_identifier
 from herringbone.cosim.ssp.read import read_ssp
 
 COUNT = 10_000
+PARTS_OF_RUN = 7
+"""No divisor of the kinds and commands, so that each part meets all of them."""
 SEED = 11
 PIECES = (
     '"', "'", '"""', "'''", "\\", "\\\\", "\n", "\r", "\t", "\x1b[31m", "{", "}", "{0}", "{name}",
@@ -106,7 +108,8 @@ def refused(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.slow
-def test_no_name_becomes_code_or_a_path(refused, tmp_path):
+@pytest.mark.parametrize("part", range(PARTS_OF_RUN))
+def test_no_name_becomes_code_or_a_path(refused, tmp_path, part):
     """In TOML and SSP through all commands, and on the command line.
 
     The FMU of the .ssp is missing, which is found after its names were read.
@@ -115,7 +118,7 @@ def test_no_name_becomes_code_or_a_path(refused, tmp_path):
     for folder in (system, plain, ssp):
         folder.mkdir()
     (plain / "system.toml").write_text(PARTS)
-    for n, name in enumerate(hostile_names()):
+    for n, name in list(enumerate(hostile_names()))[part::PARTS_OF_RUN]:
         command, kind = COMMANDS[n // 3 % len(COMMANDS)], n % 3
         if kind == 0:
             text = TOML[n // 3 % len(TOML)].replace("{0}", quoted(name))
