@@ -31,6 +31,7 @@ from numba.core.typing import Signature
 from numba.core.untyped_passes import LiteralPropagationSubPipelinePass, LiteralUnroll
 
 from herringbone.core.activity import COMPILING
+from herringbone.kernels.typed_calls import remembered_calls
 
 _NEEDLESS = {NopythonRewrites, InlineOverloads, LiteralUnroll, LiteralPropagationSubPipelinePass}
 """Passes of numba for what the kernel language does not have: array expressions, functions that are
@@ -39,19 +40,19 @@ _SHARED = llvm.Linkage.linkonce_odr
 
 
 @contextmanager
-def _no_collection() -> Iterator[None]:
+def _quickly() -> Iterator[None]:
     """Without the search for cycles among millions of objects, a sixth of the time.
 
     Only the outermost compilation turns it on again.
     """
-    if not gc.isenabled():
-        yield
-        return
+    collects = gc.isenabled()
     gc.disable()
     try:
-        yield
+        with remembered_calls():
+            yield
     finally:
-        gc.enable()
+        if collects:
+            gc.enable()
 
 
 class Piece(JITCodeLibrary):
@@ -203,7 +204,7 @@ class KernelDispatcher(CPUDispatcher):
 
     def compile(self, sig: Signature | tuple) -> Callable:
         """Compile for a signature, unless it is compiled or cached."""
-        with _no_collection():
+        with _quickly():
             return super().compile(sig)
 
     def get_call_template(self, args: tuple, kws: dict) -> tuple:
@@ -220,7 +221,7 @@ class CFunction(CFunc):
 
     def compile(self) -> None:
         """Compile it, unless it is cached."""
-        with _no_collection():
+        with _quickly():
             super().compile()
 
     def _compile_uncached(self) -> CompileResult:
