@@ -19,7 +19,7 @@ from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import kernel, seldom
 
 ROWS = 256
 """Most rows of a cycle."""
@@ -97,7 +97,7 @@ _REFUSALS = (
 )
 
 
-@kernel
+@seldom
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:

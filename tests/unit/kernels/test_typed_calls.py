@@ -34,7 +34,8 @@ def asked(monkeypatch):
     typed_calls_ask = typed_calls._ask
     monkeypatch.setattr(typed_calls, "_ask", ask)
     monkeypatch.setattr(typed_calls, "_found", type(typed_calls._found)())
-    return found
+    yield found
+    types.BaseFunction.get_call_type = typed_calls_ask
 
 
 @pytest.mark.parametrize(("function", "args"), CALLS)
