@@ -114,7 +114,8 @@ def run(
         _log.info("%s, scene %s: %s, %s FMUs", structure.name, chosen.name, coupling, fmu)
         lines += _record_notes(record_step, coupling, grid)
         bond = fastest_bond(structure)
-        with told(progress) as tell:
+        what = f"simulating {1e3 * chosen.t_end:g} ms of {structure.name}"
+        with told(progress, what) as tell:
             recording = simulate(
                 structure, parts, coupling, grid, tell, bond_frequency=bond, slow=slow
             )

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 
 from tqdm import tqdm
 
+from herringbone.core.activity import activity
+
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
 _FORMAT = "{l_bar}{bar}| {n:.1f}/{total:.1f} ms simulated [{elapsed}<{remaining}]"
@@ -42,13 +44,17 @@ class Bar:
 
 
 @contextmanager
-def told(progress: bool | Progress) -> Iterator[Progress | None]:
-    """What a run calls inside: a bar for True, None for False."""
+def told(progress: bool | Progress, what: str) -> Iterator[Progress | None]:
+    """What a run calls inside: a bar for True; for False None, and a line says what takes long."""
     if not isinstance(progress, bool):
         yield progress
         return
+    if not progress:
+        with activity(what):
+            yield None
+        return
     bar = Bar(always=True)
     try:
-        yield bar.show if progress else None
+        yield bar.show
     finally:
         bar.close()

@@ -179,13 +179,13 @@ def test_values_may_be_paths():
 
 def test_progress_is_a_bar_or_told(capfd):
     seen = []
-    with told(lambda *where: seen.append(where)) as tell:
+    with told(lambda *where: seen.append(where), "a run") as tell:
         tell(0.1, 0.2)
     assert seen == [(0.1, 0.2)]
-    with told(False) as tell:
+    with told(False, "a run") as tell:
         assert tell is None
     assert capfd.readouterr().err == ""
-    with told(True) as tell:
+    with told(True, "a run") as tell:
         tell(0.1, 0.2)
         tell(0.2, 0.2)
     assert "200.0/200.0 ms simulated" in capfd.readouterr().err
