@@ -25,9 +25,7 @@ def tangent_stiffness(gear: Instance, side: int) -> np.ndarray:
     deflection = gear[f"mesh_{SIDES[side]}.deflection"]
     table = _table(gear, side)
     phases = np.arange(force_law.PHASES) / force_law.PHASES
-    return np.array(
-        [force_law.force_and_tangent(gear.block, table, p, deflection)[1] for p in phases]
-    )
+    return np.array([force_law.law(gear.block, table, p, deflection)[1] for p in phases])
 
 
 def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> None:
@@ -68,6 +66,6 @@ def _write_line(
     secant = (force - tangent * (deflection - limit)) / limit
     block[at : at + force_law.TABLE_SIZE] = 0.0
     block[at], block[at + 1] = limit, 0.0
-    nodes = block[at + 2 : at + force_law.TABLE_SIZE].reshape(force_law.PHASES, -1, 4)
+    nodes = block[at + 2 : at + force_law.TABLE_SIZE].reshape(force_law.PHASES, -1, force_law.NODE)
     nodes[:, :, 0] = secant
     nodes[:, _LAST, 2] = (tangent - secant) / (0.5 * _LAST)

@@ -15,6 +15,21 @@ _BASE_RADIUS = tuple(
     0.5 * z * _MODULE / math.cos(_HELIX_ANGLE) * math.cos(_TRANSVERSE_ANGLE)
     for z in (_PINION_TEETH, _WHEEL_TEETH)
 )
+_FACE_WIDTH = 0.0473
+_BACKLASH = 180e-6
+
+
+def _coast_phase() -> float:
+    """Phase of the drive flank plus that of the coast flank, in [0, 1): see the equations."""
+    pitch = 2.0 * math.pi * _BASE_RADIUS[0] / _PINION_TEETH
+    tip = 0.5 * _WHEEL_TEETH * _MODULE / math.cos(_HELIX_ANGLE) + _MODULE
+    approach = math.sqrt(tip**2 - _BASE_RADIUS[1] ** 2)
+    approach -= _BASE_RADIUS[1] * math.tan(_TRANSVERSE_ANGLE)
+    thinned = 0.5 * _BACKLASH / math.cos(_BASE_HELIX_ANGLE)
+    overlap = _FACE_WIDTH * math.tan(_BASE_HELIX_ANGLE)
+    return (0.5 + (2.0 * approach - thinned + overlap) / pitch) % 1.0
+
+
 _SHAFT_DAMPING_RATIO = 0.02
 _DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3
 """Nominal deflection [m, rad], shaft speed [rad/s] and angular frequency of vibration [rad/s]."""
@@ -95,7 +110,8 @@ def _results() -> list[Variable]:
         *meshes,
         output("transmission_error", "m", "mean of the halves' rb1 theta_pinion - rb2 theta_wheel"),
         output("axial_offset", "m", "eps_z: apex of the pinion against that of the wheel"),
-        local("time_outside_table", "s", "time with a mesh loaded outside its table, drive side"),
+        local("time_outside_table", "s", "time with a mesh loaded outside its table"),
+        local("time_on_other_flank", "s", "time with a mesh loaded on the flank not in `flank`"),
     ]
 
 
@@ -128,7 +144,13 @@ def _mesh_parameters() -> list[Variable]:
         p("mesh_damping_ratio", "1", "zeta of the mesh damping", 0.1, minimum=0),
         p("damping_transition", "m", "deflection over which the damping rises", 5e-7,
           minimum=1e-12),
-        p("backlash", "m", "normal backlash", 180e-6, minimum=0),
+        p("damping_gate", "1", "1: damping rises over damping_transition, 0: it acts in full", 1.0,
+          minimum=0, maximum=1, whole=True),
+        p("backlash", "m", "normal backlash", _BACKLASH, minimum=0),
+        p("flank", "1", "flank along whose line of action y points: 1 drive, -1 coast", 1.0,
+          minimum=-1, maximum=1, whole=True, quantity=Quantity.CARRYING_FLANK),
+        p("coast_phase", "1", "phase of the drive flank plus that of the coast flank, mesh periods",
+          _coast_phase()),
         p("stagger", "1", "right half ahead of left half, mesh periods", 0.0),
         p("symmetry_deviation", "m", "f_A: axial offset of the chevron's apex", 0.0),
         p("symmetry_constant", "1", "c0: constant share of f_A", 0.4),
