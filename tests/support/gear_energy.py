@@ -1,6 +1,7 @@
 """Phases, depths and energies of a gear pair by the formulas of its README."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -32,6 +33,21 @@ def apex(p: dict[str, float], th: np.ndarray) -> tuple[float, float, float]:
     return p["symmetry_deviation"] * offset, *slopes
 
 
+def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, float, float]:
+    """e [m] of a flank (f: 1, -1), and its slopes over the angles of pinion and wheel half."""
+    file = Path(gear.resources / gear.texts["tooth_errors"])
+    total = np.zeros(3)
+    for line in file.read_text().splitlines():
+        row = line.split(",")
+        if row[:2] == [("left", "right")[side], "drive" if f > 0 else "coast"]:
+            order, amplitude, phase = map(float, row[3:])
+            body = GEARS.index(row[2])
+            psi = order * th[side + 2 * body] + phase
+            total[0] += amplitude * math.cos(psi)
+            total[1 + body] -= amplitude * order * math.sin(psi)
+    return tuple(total)
+
+
 def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
     """Of each mesh: which flank (1, -1), phase and depth; by the docstring's formulas."""
     p = {n: gear[n] for n in INDEX}
@@ -44,10 +60,12 @@ def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
         delta = math.cos(beta) * path + s * math.sin(beta) * axial
         shift = rho * math.tan(beta) * axial / p["pinion.base_radius"]
         phase = rho * th[side] + s * shift + side * p["stagger"]
-        if delta > 0.0:
-            found.append((1, phase, delta))
+        depth = delta - error(gear, th, side, 1)[0]
+        if depth > 0.0:
+            found.append((1, phase, depth))
         else:
-            found.append((-1, p["coast_phase"] - phase, -p["backlash"] - delta))
+            depth = -p["backlash"] - delta - error(gear, th, side, -1)[0]
+            found.append((-1, p["coast_phase"] - phase, depth))
     return found
 
 
@@ -81,6 +99,8 @@ def stored_energy(gear: Instance, x: np.ndarray) -> float:
         name = GEARS[body // 2]
         total += 0.5 * p[f"{name}.mass"] * (x[12 + body] ** 2 + x[16 + body] ** 2)
         total += 0.5 * p[f"{name}.inertia"] * w[body] ** 2
+        psi = th[body] + p[f"{name}.unbalance_phase"]
+        total -= 0.5 * p[f"{name}.unbalance"] * math.sin(psi) * w[body] * x[12 + body]
     for i, name in ((0, "pinion"), (2, "wheel")):
         for axis, s in (("y", x[0:4]), ("z", x[4:8]), ("t", th)):
             total += 0.5 * p[f"{name}.shaft_stiffness_{axis}"] * (s[i] - s[i + 1]) ** 2
@@ -104,7 +124,9 @@ def depth_rates(gear: Instance, x: np.ndarray) -> list[float]:
     for side, (f, _, _) in enumerate(contacts(gear, x)):
         rolled = p["pinion.base_radius"] * w[side] - p["wheel.base_radius"] * w[side + 2]
         rate = c * (vy[side] - vy[side + 2] + rolled)
-        rates.append(f * (rate + (1 - 2 * side) * s * (vz[side] - vz[side + 2] + apex_rate)))
+        rate += (1 - 2 * side) * s * (vz[side] - vz[side + 2] + apex_rate)
+        _, of_pinion, of_wheel = error(gear, th, side, f)
+        rates.append(f * rate - of_pinion * w[side] - of_wheel * w[side + 2])
     return rates
 
 

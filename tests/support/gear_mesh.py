@@ -42,7 +42,7 @@ def constant_table(path: Path, stiffness: float = MESH_STIFFNESS / 2) -> Path:
     return write_table(path, lambda phase, load: stiffness)
 
 
-def gear_pair(table: Path, parameters: Mapping[str, float] | None = None) -> Instance:
+def gear_pair(table: Path, parameters: Mapping[str, float | str] | None = None) -> Instance:
     """An initialised gear pair with the given table and parameters."""
     gear = Instance(GEAR_MESH, "gear")
     gear.set("stiffness_table", str(table))
@@ -50,6 +50,14 @@ def gear_pair(table: Path, parameters: Mapping[str, float] | None = None) -> Ins
         gear.set(name, value)
     gear.initialise()
     return gear
+
+
+def write_errors(path: Path, rows: list[tuple]) -> Path:
+    """A given transmission error; rows of side, flank, gear, order, amplitude [m], phase [rad]."""
+    head = ["# units: order 1, amplitude m, phase rad", "side,flank,gear,order,amplitude,phase"]
+    lines = [",".join(map(str, row)) for row in rows]
+    path.write_text("\n".join(head + lines) + "\n", encoding="utf-8")
+    return path
 
 
 UNDAMPED = {

@@ -5,9 +5,13 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
+from herringbone.components.resources import transmission_error
 from herringbone.kernels import force_law
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
 from herringbone.kernels.jit import kernel
+
+_OPEN = 1e-12
+"""Depth [m] at which flanks that are open have their tangent stiffness."""
 
 
 @kernel
@@ -15,6 +19,7 @@ def derive(b: np.ndarray) -> None:
     """Write what follows from the parameters alone."""
     b[at.COS], b[at.SIN] = cosine(b[at.BETA]), sine(b[at.BETA])
     b[at.TAN] = b[at.SIN] / b[at.COS]
+    b[at.CARRYING] = -1.0 if b[at.FLANK] < 0.0 else 1.0
     b[at.PHASE_RATE] = b[at.TEETH[0]] / at.TWO_PI
     b[at.PER_PITCH] = b[at.PHASE_RATE] / b[at.RB[0]]
     b[at.AXIAL_PHASE] = b[at.TAN] * b[at.PER_PITCH]
@@ -61,15 +66,21 @@ def _impact(b: np.ndarray, phase: float) -> float:
 def _flank(
     b: np.ndarray, side: int, f: float, phase: float, depth: float, rate: float
 ) -> tuple[float, float]:
-    """Pressure [N] between two flanks (f: 1 drive, -1 coast), and dU/d(phase) [J]."""
-    force, tangent, slope = force_law.law(b, at.TABLE[side], phase, depth)
+    """Pressure [N] between two flanks (f: 1 drive, -1 coast), and dU/d(phase) [J].
+
+    Open flanks have the damping that their contact begins with; it acts if it is not gated.
+    """
+    x = depth if depth > 0.0 else _OPEN
+    force, tangent, slope = force_law.law(b, at.TABLE[side], phase, x)
+    damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
+    if depth <= 0.0:
+        return damping * rate, 0.0
     g = min(1.0, depth * b[at.PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
-    if b[at.IMPACT] > 0.0 and f == b[at.FLANK]:
+    if b[at.IMPACT] > 0.0 and f == b[at.CARRYING]:
         force += g * _impact(b, phase)
     if b[at.GATE] == 0.0:
-        g = 1.0
-    damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
+        return force + damping * rate, slope
     return max(0.0, force + damping * g * rate), slope
 
 
@@ -81,7 +92,8 @@ def _mesh(b: np.ndarray, side: int, eps: float, eps_rate: float) -> None:
     path = b[at.APPROACH] + side * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
     axial = b[z] - b[z + 2] + eps
     delta = b[at.COS] * (b[y] - b[y + 2] + path) + s * b[at.SIN] * axial
-    phase = b[at.PHASE_RATE] * (b[at.ANGLE] + side * b[at.TWIST_P])
+    pinion = b[at.ANGLE] + side * b[at.TWIST_P]
+    phase = b[at.PHASE_RATE] * pinion
     phase += s * b[at.AXIAL_PHASE] * axial + side * b[at.STAGGER]
     y, z = y + at.RATE, z + at.RATE
     path = b[at.APPROACH + at.RATE] + side * (
@@ -91,15 +103,26 @@ def _mesh(b: np.ndarray, side: int, eps: float, eps_rate: float) -> None:
     normal, push = 0.0, 0.0
     for flank in range(2):
         f = 1.0 - 2.0 * flank
-        depth = f * delta - flank * b[at.BACKLASH]
+        depth, depth_rate = f * delta - flank * b[at.BACKLASH], f * rate
+        per_pinion, per_wheel = 0.0, 0.0
+        errors = transmission_error.group(at.ERRORS, side, flank)
+        if b[errors] > 0.0:
+            angle = wheel(b, 0) + side * b[at.TWIST_W]
+            e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, angle)
+            depth -= e
+            depth_rate -= per_pinion * (b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE])
+            depth_rate -= per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
         b[at.DEPTH + 2 * side + flank] = depth
-        if f == b[at.FLANK]:
+        if f == b[at.CARRYING]:
             b[at.LOADED + side] = f * (depth + flank * b[at.BACKLASH])
-        if depth > 0.0:
+        pulled = b[at.GATE] == 0.0 and flank == 0 and depth > -b[at.BACKLASH]
+        if depth > 0.0 or pulled:
             own = phase if flank == 0 else b[at.COAST_PHASE] - phase
-            pressure, slope = _flank(b, side, f, own, depth, f * rate)
+            pressure, slope = _flank(b, side, f, own, depth, depth_rate)
             normal += f * pressure
             push += f * slope * b[at.PER_PITCH]
+            b[at.TORQUE + side] += pressure * per_pinion
+            b[at.TORQUE + 2 + side] += pressure * per_wheel
     b[at.NORMAL + side], b[at.PATH + side] = normal, b[at.COS] * normal
     b[at.PUSH + side] = b[at.COS] * normal + push
 

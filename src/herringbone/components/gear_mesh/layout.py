@@ -4,14 +4,16 @@ import math
 
 from herringbone.components.gear_mesh.variables import VARIABLES
 from herringbone.components.ports import HALVES, flange, journals
-from herringbone.components.resources import stiffness_table
+from herringbone.components.resources import stiffness_table, transmission_error
 from herringbone.core import Declaration, Text
 from herringbone.core.roles import GEARS, Role
 from herringbone.kernels import force_law, steppers
 
 STATES = 24
 INPUTS = 10
-_DERIVED = 16
+_DERIVED = 14
+_PAIR = 1 + stiffness_table.PAIR[1]
+_TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR
 _RESULTS = 18
 
 DECLARATION = Declaration(
@@ -24,9 +26,17 @@ DECLARATION = Declaration(
             "stiffness table of both meshes, CSV",
             "mesh_stiffness.csv",
             stiffness_table.COLUMNS,
-        )
+            header=stiffness_table.PAIR[0],
+            header_count=stiffness_table.PAIR[1],
+        ),
+        Text(
+            "tooth_errors",
+            "given transmission error, CSV of harmonics",
+            "perfect_teeth.csv",
+            transmission_error.COLUMNS,
+        ),
     ],
-    tables=2 * force_law.TABLE_SIZE + STATES + _DERIVED + _RESULTS,
+    tables=_TABLES + STATES + _DERIVED + _RESULTS,
     work=steppers.body_work(STATES, INPUTS),
     roles=[Role.GEAR_PAIR],
     ports=[*journals(), *(flange(gear, gear) for gear in GEARS)],
@@ -44,18 +54,23 @@ S_Y, V_Y, A_Y, S_Z, V_Z, A_Z = (
     _d.indices(*(f"{h}.{q}" for h in HALVES)) for q in ("s_y", "v_y", "a_y", "s_z", "v_z", "a_z")
 )
 TAU, PHI, W, A = (_d.indices(*(f"{g}.{q}" for g in GEARS)) for q in ("tau", "phi", "w", "a"))
-RB, MASSES, INERTIAS, K_Y, K_Z, K_T, C_Y, C_Z, C_T, SHARE, TEETH = (
+RB, MASSES, INERTIAS, K_Y, K_Z, K_T, C_Y, C_Z, C_T, SHARE, TEETH, UNBALANCE, UNBALANCE_PHASE = (
     _d.indices(*(f"{g}.{q}" for g in GEARS))
     for q in (
         "base_radius", "mass", "inertia", "shaft_stiffness_y", "shaft_stiffness_z",
         "shaft_stiffness_t", "shaft_damping_y", "shaft_damping_z", "shaft_damping_t",
         "torque_share_left", "number_of_teeth",
+        "unbalance", "unbalance_phase",
     )
 )  # fmt: skip
 FORCE = _d.indices("mesh_left.force", "mesh_right.force")
 DEFLECTION = _d.indices("mesh_left.deflection", "mesh_right.deflection")
-TE, OFFSET, OUTSIDE, OTHER_FLANK = _d.indices(
-    "transmission_error", "axial_offset", "time_outside_table", "time_on_other_flank"
+TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN = _d.indices(
+    "transmission_error",
+    "axial_offset",
+    "time_outside_table",
+    "time_on_other_flank",
+    "table_of_this_pair",
 )
 BETA, ZETA, TRANSITION, GATE, BACKLASH, FLANK, COAST_PHASE, STAGGER = _d.indices(
     "base_helix_angle", "mesh_damping_ratio", "damping_transition", "damping_gate", "backlash",
@@ -69,11 +84,16 @@ IMPACT, IMPACT_DURATION, RESTRAINT, AXIAL_DRAG, DRAG, MICRO_STEP = _d.indices(
     "impact_force", "impact_duration", "pinion_restraint", "pinion_axial_drag", "drag_torque",
     "micro_step",
 )  # fmt: skip
+FACE_WIDTH = _i["face_width"]
 DEGREE = _i["interface_degree"]
 
 TABLE = (_d.first_table, _d.first_table + force_law.TABLE_SIZE)
 """Force laws of the left and the right mesh."""
-SCRATCH = TABLE[1] + force_law.TABLE_SIZE
+ERRORS = TABLE[1] + force_law.TABLE_SIZE
+"""The given transmission error."""
+PAIR = ERRORS + transmission_error.TABLE_SIZE
+"""1 if the table tells its pair, then the pair: see `stiffness_table`."""
+SCRATCH = PAIR + _PAIR
 """Room for the derivatives of all states."""
 
 _derived = SCRATCH + STATES
@@ -83,6 +103,8 @@ PHASE_RATE, AXIAL_PHASE, PER_PITCH = _derived + 3, _derived + 4, _derived + 5
 """Mesh periods per angle [1/rad] and axial shift [1/m] of a pinion half; transverse 1 / p_bt."""
 PATH_MASS, PER_TRANSITION, PER_WHEEL_RB = _derived + 6, _derived + 7, _derived + 8
 """Mass [kg] of both rotations along the path of contact; reciprocals."""
+CARRYING = _derived + 13
+"""1: the drive flank carries, -1: the coast flank."""
 PER_MASS, PER_INERTIA = (_derived + 9, _derived + 10), (_derived + 11, _derived + 12)
 
 _results = _derived + _DERIVED

@@ -7,6 +7,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.contact import derive, meshes, wheel
 from herringbone.kernels import force_law, steppers
+from herringbone.kernels.elementary import sine_and_cosine
 from herringbone.kernels.jit import kernel
 
 
@@ -38,6 +39,22 @@ def _translations(b: np.ndarray, dx: np.ndarray) -> None:
 
 
 @kernel
+def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
+    """Accelerations of y and theta of a half with unbalance, from those without."""
+    u, m, i = 0.5 * b[at.UNBALANCE[gear]], b[at.MASSES[gear]], b[at.INERTIAS[gear]]
+    twist = at.TWIST_P + 2 * gear
+    psi, w = b[at.ANGLE], b[at.ANGLE + at.RATE]
+    if gear == 1:
+        psi, w = wheel(b, 0), wheel(b, 1)
+    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[gear]])
+    w += half * b[twist + at.RATE]
+    force, torque = m * a + u * c * w * w, i * alpha
+    us = u * s
+    per = 1.0 / (m * i - us * us)
+    return per * (i * force + us * torque), per * (m * torque + us * force)
+
+
+@kernel
 def _rotations(b: np.ndarray, dx: np.ndarray) -> None:
     """Accelerations of the angles."""
     for gear in range(2):
@@ -58,7 +75,12 @@ def _rotations(b: np.ndarray, dx: np.ndarray) -> None:
             left += rb * b[at.PATH]
             right += rb * b[at.PATH + 1]
         left *= per_inertia
-        dx[twist + at.RATE] = right * per_inertia - left
+        right *= per_inertia
+        if b[at.UNBALANCE[gear]] > 0.0:
+            y = at.Y + 2 * gear + at.RATE
+            dx[y], left = _swing(b, gear, 0, dx[y], left)
+            dx[y + 1], right = _swing(b, gear, 1, dx[y + 1], right)
+        dx[twist + at.RATE] = right - left
         if gear == 0:
             dx[at.ANGLE + at.RATE] = left
             dx[at.APPROACH + at.RATE] = rb * left
@@ -152,7 +174,7 @@ def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     """Advance by h [s]; add up the times outside the tables and on the other flank."""
     derive(b)
     status = _advance(b, w, t, h, b[at.MICRO_STEP], int(b[at.DEGREE]))
-    other = 1 if b[at.FLANK] > 0.0 else 0
+    other = 1 if b[at.CARRYING] > 0.0 else 0
     inside, carried = True, True
     for side in range(2):
         drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
