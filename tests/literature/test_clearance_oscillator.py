@@ -31,17 +31,29 @@ def linear_amplitude(w: float) -> float:
     return RATIO / math.hypot(1 - w**2, 2 * ZETA * w)
 
 
-def sweep(table, frequencies: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Amplitude (in mean deflections) and smallest force at each frequency."""
+def sweep(
+    table,
+    frequencies: np.ndarray,
+    *,
+    zeta: float = ZETA,
+    ratio: float = RATIO,
+    rising: int = 0,
+    **changed: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Amplitude (in mean deflections) and smallest force at each frequency.
+
+    The alternating force grows with the power `rising` of the frequency.
+    """
     parameters = {
         "pinion.inertia": 1e6,  # keeps its speed
         **{f"{gear}.mass": 1e15 for gear in ("pinion", "wheel")},
         "base_helix_angle": 0.0,
-        "mesh_damping_ratio": ZETA,
+        "mesh_damping_ratio": zeta,
         "damping_transition": 1e-10,
         "backlash": 1e-3,
         "interface_degree": 4,
         "micro_step": 1e-4,
+        **changed,
     }
     gear = gear_pair(table, parameters)
     pinion, radius = gear["pinion.base_radius"], gear["wheel.base_radius"]
@@ -52,14 +64,14 @@ def sweep(table, frequencies: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     results = []
     names = ["wheel.tau", *(f"wheel.tau.node{n}" for n in range(1, 5))]
     angles = 2 * math.pi * (np.arange(PARTS)[:, None] + np.arange(5) / 4) / PARTS
-    torques = -load * radius * (1 + RATIO * np.cos(angles))
+    torques = ratio * np.cos(angles)
     at = [gear.component.declaration.index[name] for name in names]
     for w in frequencies:
         h = 2 * math.pi / (w * omega) / PARTS
         gear.set("micro_step", h / 4)
         path, force = [], []
         for n in range(PERIODS * PARTS):
-            gear.block[at] = torques[n % PARTS]
+            gear.block[at] = -load * radius * (1 + w**rising * torques[n % PARTS])
             gear.step(0.0, h)
             if n >= (PERIODS - 2) * PARTS:
                 path += [
@@ -118,3 +130,25 @@ def test_hysteresis_below_the_lower_root(upwards, downwards):
         n = np.rint(w / STEP)
         assert up[n] == pytest.approx(linear_amplitude(n * STEP), rel=2e-3)
         assert down[n] > 1.5 * up[n]
+
+
+PUBLISHED = {"zeta": 0.05, "ratio": 0.5, "rising": 2}
+"""A. Kahraman and R. Singh (1990): F_m = 0.1, F_ah = 0.05, so an excitation of 0.5 W**2."""
+
+
+@pytest.mark.parametrize(
+    ("gate", "transition", "expected"), [(0.0, 5e-7, 0.71), (1.0, 1e-10, 0.58), (1.0, 5e-7, 0.58)]
+)
+def test_drop_of_the_published_oscillator(table, gate, transition, expected):
+    """Swept downwards: its damping acts on open teeth, too, and separation ends at 0.71.
+
+    With damping in contact only nothing is lost in free flight, and it goes on to 0.58.
+    """
+    frequencies = np.arange(0.90, 0.54, -0.01)
+    changed = {"damping_gate": gate, "damping_transition": transition}
+    amplitude, force = sweep(table, frequencies, **PUBLISHED, **changed)
+    last = int(np.argmax(amplitude[1:] < 0.5 * amplitude[:-1]))
+    assert amplitude[last + 1] < 0.5 * amplitude[last]
+    assert frequencies[last] == pytest.approx(expected, abs=0.015)  # two digits, and a step
+    free = force[:last].max()
+    assert free == 0.0 if gate else free < 0.0  # ungated damping pulls

@@ -42,7 +42,7 @@ def constant_table(path: Path, stiffness: float = MESH_STIFFNESS / 2) -> Path:
     return write_table(path, lambda phase, load: stiffness)
 
 
-def gear_pair(table: Path, parameters: Mapping[str, float] | None = None) -> Instance:
+def gear_pair(table: Path, parameters: Mapping[str, float | str] | None = None) -> Instance:
     """An initialised gear pair with the given table and parameters."""
     gear = Instance(GEAR_MESH, "gear")
     gear.set("stiffness_table", str(table))
@@ -50,6 +50,14 @@ def gear_pair(table: Path, parameters: Mapping[str, float] | None = None) -> Ins
         gear.set(name, value)
     gear.initialise()
     return gear
+
+
+def write_errors(path: Path, rows: list[tuple]) -> Path:
+    """A given transmission error; rows of side, flank, gear, order, amplitude [m], phase [rad]."""
+    head = ["# units: order 1, amplitude m, phase rad", "side,flank,gear,order,amplitude,phase"]
+    lines = [",".join(map(str, row)) for row in rows]
+    path.write_text("\n".join(head + lines) + "\n", encoding="utf-8")
+    return path
 
 
 UNDAMPED = {
@@ -113,7 +121,10 @@ def linearise(derivative: Rhs, x: np.ndarray) -> np.ndarray:
 def equilibrium(
     gear: Instance, seats: Seats | None, torque: float = 200.0, angle: float = 0.0
 ) -> np.ndarray:
-    """States at rest under `torque` on the pinion and its reaction on the wheel."""
+    """States at rest under `torque` on the pinion; also sets the torque on the wheel.
+
+    That is the ratio of the base radii but for the energy that the meshes take up over their phase.
+    """
     gear.set("pinion.tau", torque)
     gear.set("wheel.tau", -torque * gear["wheel.base_radius"] / gear["pinion.base_radius"])
     index = gear.component.declaration.index
@@ -123,10 +134,15 @@ def equilibrium(
     x[index["angle"]] = angle
     free = [i for i in range(12) if i != index["angle"]]
     for _ in range(30):
-        jacobian = linearise(derivative, x)[12:, free]
+        here, tau = derivative(x), gear["wheel.tau"]
+        gear.set("wheel.tau", tau + 1.0)
+        of_torque = (derivative(x) - here)[12:, None]
+        gear.set("wheel.tau", tau)
+        jacobian = np.hstack([linearise(derivative, x)[12:, free], of_torque])
         scale = np.abs(jacobian).max(axis=0)
-        step = np.linalg.lstsq(jacobian / scale, -derivative(x)[12:], rcond=1e-13)[0] / scale
-        x[free] += step
-        if np.abs(step).max() < 1e-19:
+        step = np.linalg.lstsq(jacobian / scale, -here[12:], rcond=1e-13)[0] / scale
+        x[free] += step[:-1]
+        gear.set("wheel.tau", tau + step[-1])
+        if np.abs(step[:-1]).max() < 1e-19:
             break
     return x

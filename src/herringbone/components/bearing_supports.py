@@ -1,8 +1,9 @@
 r"""Massless bearings of the four gear halves, between shaft (gear frame) and seat (housing frame).
 
-The gear's y is the line of action. In the housing frame (x toward the wheel, y up, z axial) it is
-the unit vector n = (sin(alpha_wt), cos(alpha_wt), 0), for a pinion that turns about +z. With the
-seat motion projected on n, each half has
+The gear's y is the line of action of the flank that carries. In the housing frame (x toward the
+wheel, y up, z axial) it is the unit vector n = (flank sin(alpha_wt), cos(alpha_wt), 0), for a
+pinion whose driving rotation is about +z; flank is 1 (drive) or -1 (coast), the same as at the
+gear. With the seat motion projected on n, each half has
 
     d = s_y - n . s_seat,   f = radial_stiffness gap(d) + radial_damping g d'
     force on the shaft: -f along y;   force on the seat: +f n
@@ -139,6 +140,16 @@ _d = Declaration(
             minimum=-math.pi,
             maximum=math.pi,
         ),
+        parameter(
+            "flank",
+            "1",
+            "whose line of action y is: -1 that of the coast flank, else the drive flank's",
+            1.0,
+            minimum=-1,
+            maximum=1,
+            whole=True,
+            quantity=Quantity.CARRYING_FLANK,
+        ),
     ],
     work=steppers.element_work(_INPUTS),
     roles=[Role.BEARING],
@@ -168,7 +179,9 @@ _K_R, _C_R, _K_A, _C_A, _CLEARANCE = (
         "radial_clearance",
     )
 )
-_PER_SHAFT, _ANGLE, _DEGREE = _d.indices("axial_per_shaft", "pressure_angle", "interface_degree")
+_PER_SHAFT, _ANGLE, _FLANK, _DEGREE = _d.indices(
+    "axial_per_shaft", "pressure_angle", "flank", "interface_degree"
+)
 
 
 @kernel
@@ -191,6 +204,8 @@ def _radial(b: np.ndarray, gear: int, d: float, rate: float) -> float:
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
     n_x, n_y = sine(b[_ANGLE]), cosine(b[_ANGLE])
+    if b[_FLANK] < 0.0:
+        n_x = -n_x
     axial_share = 1.0 - 0.5 * b[_PER_SHAFT]
     for i in range(4):
         gear = i // 2

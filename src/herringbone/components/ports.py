@@ -6,8 +6,13 @@ from herringbone.core.roles import HALVES, Port, PortKind, Quantity
 __all__ = ["HALVES", "flange", "flange_body", "journals", "seats"]
 
 
-def flange_body(port: str) -> tuple[Variable, ...]:
-    """The rotational port of a body: it gives motion and takes torque."""
+def flange_body(port: str, *, more: tuple[str, ...] = ()) -> tuple[Variable, ...]:
+    """The rotational port of a body: it gives motion and takes torque.
+
+    Args:
+        port: its name.
+        more: inputs besides the torque on which its acceleration depends directly.
+    """
     phi, w, a = (f"{port}.{q}" for q in ("phi", "w", "a"))
     return (
         input_(f"{port}.tau", "N.m", f"torque on the body at {port}"),
@@ -21,7 +26,7 @@ def flange_body(port: str) -> tuple[Variable, ...]:
             quantity=Quantity.SPEED,
             place=port,
         ),
-        output(a, "rad/s2", f"angular acceleration of {port}", feedthrough=(f"{port}.tau",)),
+        output(a, "rad/s2", f"angular acceleration of {port}", feedthrough=(f"{port}.tau", *more)),
     )
 
 

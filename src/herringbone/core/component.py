@@ -62,6 +62,8 @@ class Component:
         equations: the docstring of the component's module, Markdown.
         load: reads the resource files (by String parameter) into the tables of a block;
             raises ResourceError.
+        verify: checks what was loaded against the parameters of a block, at the end of
+            initialisation; raises ResourceError.
         start: makes a block's states from its start parameters, at the end of initialisation;
             a kernel, or `unchanged`.
         guess: puts the states where steady rotation is searched from, when the inputs are set:
@@ -87,6 +89,7 @@ class Component:
     kernels: Kernels
     equations: str
     load: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
+    verify: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
     start: Callable[[np.ndarray], None] = unchanged
     guess: Callable[[np.ndarray], None] = unchanged
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints

@@ -78,7 +78,7 @@ class Instance:
         """
         if not self._stale_resources:
             return
-        files = {name: self._resource(name, text) for name, text in self.texts.items()}
+        files = self._files()
         self.block[self.component.declaration.first_table :] = 0.0
         try:
             self.component.load(self.block, files)
@@ -86,6 +86,15 @@ class Instance:
             raise ResourceError(f"{self.name}: {error}") from error
         self.work[:] = 0.0
         self._stale_resources = False
+
+    def _verify(self) -> None:
+        try:
+            self.component.verify(self.block, self._files())
+        except ResourceError as error:
+            raise ResourceError(f"{self.name}: {error}") from error
+
+    def _files(self) -> dict[str, Path]:
+        return {name: self._resource(name, text) for name, text in self.texts.items()}
 
     def _resource(self, name: str, text: str) -> Path:
         file = Path(text) if Path(text).is_absolute() else self.resources / text
@@ -106,6 +115,7 @@ class Instance:
         for variable in declaration.parameters:
             check_value(self.name, variable, self.block[declaration.index[variable.name]])
         self.load_resources()
+        self._verify()
         self.component.start(self.block)
         self.component.kernels.out(self.block, time)
         first, count = declaration.first_output, len(declaration.node_outputs)

@@ -62,6 +62,7 @@ class Quantity(StrEnum):
 
     SPEED = "speed"
     TORQUE = "torque"
+    CARRYING_FLANK = "carrying flank"
     NUMBER_OF_TEETH = "number of teeth"
     MESH_FORCE = "mesh force"
     MESH_DEFLECTION = "mesh deflection"

@@ -128,7 +128,8 @@ class Text:
     """A String parameter that names a resource file, a flat CSV of these columns.
 
     A relative name is looked up in the component's resources folder. `quantity` is what the file
-    means to those who ask for the component's role.
+    means to those who ask for the component's role. The file may have a comment line
+    `# header: ...` with `header_count` numbers.
     """
 
     name: str
@@ -137,6 +138,8 @@ class Text:
     columns: tuple[Column, ...] = ()
     quantity: Quantity | None = None
     place: str = ""
+    header: str = ""
+    header_count: int = 0
 
 
 def input_(name: str, unit: str, description: str, start: float = 0.0) -> Variable:

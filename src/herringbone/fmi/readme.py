@@ -16,13 +16,18 @@ the step. At degree 0, the start value, inputs are held.
 """
 
 
+def _number(value: float) -> str:
+    """All digits: the README alone is enough to compute the same."""
+    return repr(float(value)).removesuffix(".0")
+
+
 def _start(variable: Variable) -> str:
-    return f"{variable.start:.6g}"
+    return _number(variable.start)
 
 
 def _range(variable: Variable) -> str:
     low, high = (
-        f"{x:.6g}" if math.isfinite(x) else "" for x in (variable.minimum, variable.maximum)
+        _number(x) if math.isfinite(x) else "" for x in (variable.minimum, variable.maximum)
     )
     return f"{low} ... {high}" if low or high else ""
 

@@ -1,4 +1,6 @@
-"""Force law of a mesh: F(., 0) = 0, periodic, C1, monotone, through the points of its table."""
+"""Force law of a mesh: F(., 0) = 0, periodic, C1, monotone, through its table; and its energy."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,8 +22,9 @@ def law(loads: np.ndarray, stiffness: np.ndarray, at: int = 7):
     assert np.isfinite(block[at:-3]).all()
 
     def function(phase: float, deflection: float) -> tuple[float, float]:
-        return force_law.force_and_tangent(block, at, phase, deflection)
+        return force_law.law(block, at, phase, deflection)[:2]
 
+    function.block, function.at = block, at
     return function, block[at], block[at + 1]
 
 
@@ -137,6 +140,51 @@ def test_tangent_is_constant_above_the_limit(mesh):
             value, slope = force(p, factor * limit)
             assert slope == pytest.approx(tangent, rel=1e-13)
             assert value == pytest.approx(at_limit + tangent * (factor - 1) * limit, rel=1e-12)
+
+
+def energy(force, phase: float, x: float) -> float:
+    return force_law.energy(force.block, force.at, phase, x)
+
+
+def test_energy_is_the_integral_of_the_force(mesh):
+    """Gauss' rule over u = sqrt(x), cell by cell: F dx is a polynomial of degree 6 in u there."""
+    force, limit, _ = mesh
+    points, weights = np.polynomial.legendre.leggauss(4)
+    for p, d in POINTS[:40]:
+        x = 1.5 * limit * d
+        inside = np.sqrt(min(x, limit) / limit) * (force_law.DEFLECTIONS - 1)
+        ends = np.append(np.arange(np.ceil(inside)), inside)
+        total = 0.0
+        for a, b in pairwise(ends):
+            u = 0.5 * (a + b) + 0.5 * (b - a) * points
+            size = limit / (force_law.DEFLECTIONS - 1) ** 2
+            values = [force(p, v * v * size)[0] * 2 * v * size for v in u]
+            total += 0.5 * (b - a) * float(weights @ values)
+        if x > limit:
+            total += (x - limit) * 0.5 * (force(p, limit)[0] + force(p, x)[0])
+        assert energy(force, p, x) == pytest.approx(total, rel=1e-13)
+
+
+def test_phase_slope_of_the_energy(mesh):
+    force, limit, _ = mesh
+    e = 1e-4
+    for p, d in POINTS:
+        x = 1.5 * limit * d
+        p = (np.floor(p * 128) + 0.5) / 128  # noqa: PLW2901 (inside a cell)
+        slope = (energy(force, p + e, x) - energy(force, p - e, x)) / (2 * e)
+        found = force_law.law(force.block, force.at, p, x)[2]
+        # A cubic in p: the difference is exact but for e**2 times its third derivative, at most
+        # 6 * 128**3 of the differences of K between nodes, here below 1e-3 of K; and rounding.
+        size = energy(force, p, x)
+        assert found == pytest.approx(slope, abs=size * (e**2 * 128**3 * 1e-3 + 1e-12 / e))
+
+
+def test_energy_of_a_table_without_phase_has_no_slope():
+    loads, stiffness = np.array([100.0, 1e4]), np.full((2, 8), 1e9) * [[0.8], [1.0]]
+    force, limit, _ = law(loads, stiffness)
+    for p, d in POINTS[:20]:
+        slope = force_law.law(force.block, force.at, p, 1.5 * limit * d)[2]
+        assert abs(slope) <= 1e-12 * energy(force, p, 1.5 * limit * d)
 
 
 def worst(loads: np.ndarray, stiffness: np.ndarray) -> np.ndarray:

@@ -93,6 +93,20 @@ def test_direction_of_the_line_of_action():
     assert b["seat.pinion_left.f_z"] == 0.0
 
 
+def test_line_of_action_of_the_coast_flank():
+    """Mirrored at the line of centres; what goes in and out along it stays one direction."""
+    b = bearings({"shaft.pinion_left.s_y": 1e-6}, flank=-1)
+    force = 6.34e8 * 1e-6
+    assert b["shaft.pinion_left.f_y"] == pytest.approx(-force, rel=1e-14)
+    assert b["seat.pinion_left.f_x"] == pytest.approx(-force * math.sin(ALPHA), rel=5e-6)
+    assert b["seat.pinion_left.f_y"] == pytest.approx(force * math.cos(ALPHA), rel=5e-6)
+    along = {
+        "seat.wheel_left.s_x": -1e-6 * math.sin(b["pressure_angle"]),
+        "seat.wheel_left.s_y": 1e-6 * math.cos(b["pressure_angle"]),
+    }
+    assert bearings(along, flank=-1)["shaft.wheel_left.f_y"] == pytest.approx(force, rel=1e-12)
+
+
 def test_motion_across_the_line_of_action_gives_no_force():
     b = bearings()
     a = b["pressure_angle"]

@@ -13,11 +13,11 @@ from types import ModuleType
 
 import numpy as np
 
-from herringbone.analysis.twin.composite_source import BlockMap, composite_source
+from herringbone.analysis.twin.composite_source import BlockMap, composite_source, has_check
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_source
 from herringbone.components.in_process import InProcessPart
-from herringbone.components.resources.loader import Refusal, ResourceLoader
+from herringbone.components.resources.loader import NO_FILE, Refusal, ResourceLoader
 from herringbone.core import (
     Component,
     Declaration,
@@ -94,11 +94,13 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         places,
     )
     module = load_generated("composite", source)
+    loader = _loader(declaration, instances, module)
     component = Component(
         declaration,
         Kernels(_step_kernel(declaration, module), module.system_rhs, module.system_out),
         f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations.",
-        load=_loader(declaration, instances, module.system_load),
+        load=loader,
+        verify=loader.verify,
         start=module.system_start,
         indicators=module.system_indicators,
         indicator_count=sum(i.component.indicator_count for i in instances),
@@ -175,6 +177,8 @@ def _declaration(
                 t.description,
                 _packed_name(i, t.name),
                 t.columns,
+                header=t.header,
+                header_count=t.header_count,
             )
             for i in instances
             for t in i.component.declaration.texts
@@ -271,7 +275,7 @@ def _step_kernel(declaration: Declaration, module: ModuleType) -> Callable:
 
 
 def _loader(
-    declaration: Declaration, instances: list[Instance], kernel: Callable
+    declaration: Declaration, instances: list[Instance], module: ModuleType
 ) -> ResourceLoader:
     refusals: list[Refusal] = []
     text = 0
@@ -279,10 +283,19 @@ def _loader(
     for instance in instances:
         texts, loader = instance.component.declaration.texts, instance.component.load
         if isinstance(loader, ResourceLoader):
-            refusals += [replace(r, text=r.text + text) for r in loader.refusals]
+            refusals += [
+                replace(r, text=r.text if r.text == NO_FILE else r.text + text)
+                for r in loader.refusals
+            ]
             scratch = max(scratch, loader.scratch)
             text += len(texts)
-    return ResourceLoader(declaration.texts, kernel, tuple(refusals), scratch)
+    return ResourceLoader(
+        declaration.texts,
+        module.system_load,
+        tuple(refusals),
+        scratch,
+        module.system_verify if any(map(has_check, instances)) else None,
+    )
 
 
 def _resources(instances: list[Instance]) -> Iterator[tuple[str, Path]]:

@@ -80,6 +80,13 @@ def system_load(
     blocks = b[{first}:]
     at = 0
 {loads}    return 0
+
+
+@kernel
+def system_verify(b: np.ndarray, report: np.ndarray) -> int:
+    blocks = b[{first}:]
+    refresh(b)
+{checks}    return 0
 """
 
 
@@ -109,6 +116,8 @@ def composite_source(
     for name, pairs in (("OUTPUT", m.outputs), ("PARAMETER", m.parameters)):
         ends = ("TO", "FROM") if name == "OUTPUT" else ("FROM", "TO")
         lines += [f"\n{name}_{end} = {tuple(p[k] for p in pairs)!r}" for k, end in enumerate(ends)]
+    checking = sorted({i.component.name for i in instances if has_check(i)})
+    lines += [f'\n{n}_check = COMPONENTS["{n}"].load.check' for n in checking]
     text = _KERNELS.format(
         first=m.first,
         states=m.states,
@@ -118,8 +127,15 @@ def composite_source(
         starts=_starts(instances, blocks, states, starting),
         indicators=_indicators(instances, blocks),
         loads=_loads(instances, blocks),
+        checks=_checks(instances, blocks),
     )
     return "".join([*lines, "\n", text])
+
+
+def has_check(instance: Instance) -> bool:
+    """True if a part checks what it loads against its parameters."""
+    load = instance.component.load
+    return isinstance(load, ResourceLoader) and load.check is not None
 
 
 def _starts(
@@ -151,6 +167,24 @@ def _indicators(instances: list[Instance], blocks: tuple[int, ...]) -> str:
     return "".join(lines)
 
 
+def _checks(instances: list[Instance], blocks: tuple[int, ...]) -> str:
+    """What each part loaded against its parameters; refusals are numbered as in `_loads`."""
+    lines, refusals = [], 0
+    for p, instance in enumerate(instances):
+        load = instance.component.load
+        if not isinstance(load, ResourceLoader):
+            continue
+        if load.check is not None:
+            lines.append(
+                f"    status = {instance.component.name}_check("
+                f"blocks[{blocks[p]}:{blocks[p + 1]}], report)\n"
+                "    if status != 0:\n"
+                f"        return {refusals} + status\n"
+            )
+        refusals += len(load.refusals)
+    return "".join(lines)
+
+
 def _loads(instances: list[Instance], blocks: tuple[int, ...]) -> str:
     """Each part's load kernel gets its own files; refusals are numbered part after part."""
     lines, file, refusals = [], 0, 0
@@ -161,7 +195,8 @@ def _loads(instances: list[Instance], blocks: tuple[int, ...]) -> str:
         lines.append("    size = 0\n")
         for k, text in enumerate(texts):
             at = 2 * (file + k)
-            lines.append(f"    size += {len(text.columns)} + shape[{at}] * shape[{at + 1}]\n")
+            fixed = len(text.columns) + text.header_count
+            lines.append(f"    size += {fixed} + shape[{at}] * shape[{at + 1}]\n")
         lines.append(
             f"    status = {instance.component.name}_load(values[at : at + size], "
             f"shape[{2 * file}:{2 * (file + len(texts))}], blocks[{blocks[p]}:{blocks[p + 1]}], "

@@ -87,6 +87,30 @@ def read_flat_csv(
     return {name: np.array(values) for name, values in columns.items()}, units
 
 
+def read_header(file: TablePath, name: str, count: int) -> np.ndarray:
+    """Numbers of the comment line `# name: ...` of a flat CSV file; the last such line counts.
+
+    Returns:
+        (count,), NaN if the file has no such line.
+
+    Raises:
+        ResourceError: it has not that many finite numbers.
+    """
+    mark, last = f"# {name}:", 0
+    lines = file.read_text(encoding="utf-8-sig").splitlines() if count else []
+    for line, text in enumerate(lines, 1):
+        last = line if text.startswith(mark) else last
+    if last == 0:
+        return np.full(count, np.nan)
+    try:
+        found = np.array([float(word) for word in lines[last - 1].removeprefix(mark).split()])
+    except ValueError:
+        found = np.empty(0)
+    if len(found) != count or not np.isfinite(found).all():
+        raise ResourceError(f"{file}, line {last}: '{mark}' takes {count} finite numbers")
+    return found
+
+
 def _number(text: str, column: str, file: TablePath, line: int) -> float:
     try:
         value = float(text)

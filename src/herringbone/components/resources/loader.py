@@ -10,13 +10,21 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.resources.flat_csv import TablePath, check_units, read_flat_csv
+from herringbone.components.resources.flat_csv import (
+    TablePath,
+    check_units,
+    read_flat_csv,
+    read_header,
+)
 from herringbone.core import Column, ResourceError, Text
 
-REPORT = 6
+REPORT = 12
 """Numbers that a refusal may show."""
 
+NO_FILE = -1
+
 LoadKernel = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], int]
+CheckKernel = Callable[[np.ndarray, np.ndarray], int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +33,8 @@ class Refusal:
 
     Attributes:
         format: follows the file's path; has `%g` conversions for the numbers of the report.
-        text: which one of the component's resource files is at fault.
+        text: which one of the component's resource files is at fault; NO_FILE: parameters are, and
+            the format stands alone.
     """
 
     format: str
@@ -34,7 +43,8 @@ class Refusal:
     def error(self, files: Sequence[TablePath], report: np.ndarray) -> ResourceError:
         """The refusal with its numbers."""
         numbers = self.format.replace("%%", "").count("%")
-        return ResourceError(f"{files[self.text]}{self.format % tuple(report[:numbers])}")
+        file = "" if self.text == NO_FILE else files[self.text]
+        return ResourceError(f"{file}{self.format % tuple(report[:numbers])}")
 
 
 @dataclass(frozen=True)
@@ -48,17 +58,23 @@ class ResourceLoader:
             refusal, counted from 1, and writes the numbers that the refusal shows to `report`.
         refusals: what the kernel may return.
         scratch: length of the scratch space.
+        check: check(b, report) -> int, in the kernel language: what was loaded against the
+            parameters; it returns what `kernel` does. None: there is nothing to check.
     """
 
     texts: tuple[Text, ...]
     kernel: LoadKernel
     refusals: tuple[Refusal, ...]
     scratch: int
+    check: CheckKernel | None = None
 
     def __call__(self, block: np.ndarray, files: Mapping[str, Path]) -> None:
         """Read the files, given by String parameter; raises ResourceError."""
         paths = [files[text.name] for text in self.texts]
-        read = [read_numbers(p, text.columns) for p, text in zip(paths, self.texts, strict=True)]
+        read = [
+            read_numbers(p, text.columns, text.header, text.header_count)
+            for p, text in zip(paths, self.texts, strict=True)
+        ]
         values = np.concatenate([numbers for numbers, _ in read])
         shape = np.array([shape for _, shape in read], dtype=np.int64).ravel()
         report = np.zeros(REPORT)
@@ -66,18 +82,29 @@ class ResourceLoader:
         if refusal:
             raise self.refusals[refusal - 1].error(paths, report)
 
+    def verify(self, block: np.ndarray, files: Mapping[str, Path]) -> None:
+        """Check what was loaded against the parameters; raises ResourceError."""
+        if self.check is None:
+            return
+        report = np.zeros(REPORT)
+        refusal = self.check(block, report)
+        if refusal:
+            paths = [files[text.name] for text in self.texts]
+            raise self.refusals[refusal - 1].error(paths, report)
+
 
 def read_numbers(
-    file: TablePath, columns: tuple[Column, ...]
+    file: TablePath, columns: tuple[Column, ...], header: str = "", header_count: int = 0
 ) -> tuple[np.ndarray, tuple[int, int]]:
-    """Read a flat CSV file as numbers.
+    """Read a flat CSV file as numbers; see `Text` for its grammar.
 
     Returns:
         One number per declared column (which of its units the file uses; 0 for words), then the
-        rows, columns in declared order; and the number of rows and of columns.
+        numbers of the header line (NaN if there is none), then the rows, columns in declared
+        order; and the number of rows and of columns.
 
     Raises:
-        ResourceError: see `read_flat_csv`; or a word that a column does not take.
+        ResourceError: see `read_flat_csv` and `read_header`; or a word that a column does not take.
     """
     words = tuple(c for c in columns if c.words)
     rest = next((c.name for c in columns if c.rest), "")
@@ -90,7 +117,8 @@ def read_numbers(
     order = [*declared, *(name for name in table if name not in declared)]
     rows = np.column_stack([table[name] for name in order])
     used = [float(c.units.index(units[c.name].strip())) if c.units else 0.0 for c in columns]
-    return np.concatenate([used, rows.ravel()]), rows.shape
+    given = read_header(file, header, header_count)
+    return np.concatenate([used, given, rows.ravel()]), rows.shape
 
 
 def _numbered(column: Column, found: np.ndarray, file: TablePath) -> np.ndarray:

@@ -3,7 +3,12 @@
 Columns: side (left, right), load [N] (normal force of the own side), phase [mesh periods],
 stiffness [N/m] (secant, normal direction). At zero load, which a table may have, the stiffness is
 the limit; it is zero there if the unloaded flanks have a gap. `read_stiffness_table` gives a table
-as arrays, off line, with the component's own refusals.
+as arrays, off line, with the component's own refusals. The comment line
+
+    # pair: z1 z2 r_b1 r_b2 beta_b b
+
+tells of which pair the table is: teeth, base radii [m], base helix angle [rad], face width per half
+[m]. It may be left out.
 """
 
 from pathlib import Path
@@ -22,7 +27,14 @@ COLUMNS = (
     Column("phase", ("1",)),
     Column("stiffness", ("N/m",)),
 )
+PAIR = ("pair", 6)
+"""The header line of the pair: teeth, base radii [m], base helix angle [rad], face width [m]."""
 _WIDTH = len(COLUMNS)
+PAIR_AT = _WIDTH
+"""Where the pair stands in the numbers of a file."""
+_FIRST = PAIR_AT + PAIR[1]
+SIZE = _FIRST
+"""Length of the numbers of a file without its rows."""
 _ROWS = 2 * LOADS * (PHASES + 1)
 _PHASES_AT, GRID = _ROWS, 2 * _ROWS
 SCRATCH_SIZE = 3 * _ROWS
@@ -80,7 +92,7 @@ def _axes(values: np.ndarray, rows: int, side: int, s: np.ndarray) -> tuple[int,
     """Rows of a side; its loads and phases, ascending, in the scratch."""
     own, loads, phases = 0, 0, 0
     for row in range(rows):
-        at = _WIDTH * (row + 1)
+        at = _FIRST + _WIDTH * row
         if values[at] == side:
             own += 1
             loads = _insert(s, 0, loads, values[at + 1])
@@ -94,7 +106,7 @@ def _fill(values: np.ndarray, rows: int, side: int, s: np.ndarray, loads: int, p
     for i in range(loads * phases):
         s[GRID + i] = np.nan
     for row in range(rows):
-        at = _WIDTH * (row + 1)
+        at = _FIRST + _WIDTH * row
         if values[at] == side:
             i = _place(s, 0, loads, values[at + 1])
             j = _place(s, _PHASES_AT, phases, values[at + 2])
@@ -110,7 +122,7 @@ def _check_values(
     values: np.ndarray, rows: int, side: int, s: np.ndarray, report: np.ndarray
 ) -> int:
     for row in range(rows):
-        at = _WIDTH * (row + 1)
+        at = _FIRST + _WIDTH * row
         least = 0.0 if values[at + 1] == 0.0 else _LEAST
         if values[at] == side and not values[at + 3] >= least:
             report[0], report[1], report[2] = values[at + 3], values[at + 1], values[at + 2]
@@ -202,7 +214,7 @@ def read_stiffness_table(file: Path) -> tuple[tuple[np.ndarray, np.ndarray], ...
     Raises:
         ResourceError: see `read_numbers` and `collect`.
     """
-    values, (rows, _) = read_numbers(file, COLUMNS)
+    values, (rows, _) = read_numbers(file, COLUMNS, *PAIR)
     tables = []
     for side in range(len(SIDES)):
         s, report = np.empty(SCRATCH_SIZE), np.zeros(REPORT)

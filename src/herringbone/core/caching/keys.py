@@ -70,7 +70,8 @@ def sources_key() -> str:
 @cache
 def packed_key() -> str:
     """Key of packed FMUs: `sources_key`, and the docstrings, which are their documentation."""
-    return digest_of(sources_key(), *_contents(PACKAGE / "components", {".py"}))
+    folders = PACKAGE / "components", PACKAGE / "kernels"
+    return digest_of(sources_key(), *(c for f in folders for c in _contents(f, {".py"})))
 
 
 @cache

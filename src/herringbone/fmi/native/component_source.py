@@ -22,6 +22,7 @@ double hb_longest_step(double *b);
 void hb_start(double *b);
 int32_t hb_load(const double *values, const int64_t *shape, double *b, double *scratch,
                 double *report);
+int32_t hb_verify(double *b, double *report);
 void hb_tangent(double *b, double t, double *d, double *dx);
 void hb_indicators(double *b, double t, double *z);
 """
@@ -84,6 +85,7 @@ def component_source(used: UsedStates) -> str:
         "longest_step": "NULL" if component.longest_step is unbounded else "hb_longest_step",
         "start": "NULL" if component.start is unchanged else "hb_start",
         "load": "hb_load" if loader else "NULL",
+        "verify": "hb_verify" if loader and loader.check else "NULL",
         "load_scratch": loader.scratch if loader else 0,
         "refusals_count": len(refusals),
         "refusals": "refusals",
@@ -233,4 +235,6 @@ def _grammars(texts: Iterable[Text]) -> Iterable[str]:
 
 
 def _text(i: int, text: Text) -> str:
-    return f"{{{_string(text.name)}, {_string(text.start)}, columns_{i}, {len(text.columns)}}}"
+    name, start, header = (_string(s) for s in (text.name, text.start, text.header))
+    counts = len(text.columns), text.header_count
+    return f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}}}"

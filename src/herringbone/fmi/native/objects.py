@@ -71,6 +71,9 @@ def entry_points(of: Component) -> dict[str, CFunction]:
             )
         )
 
+    def verify(b, report):  # noqa: ANN001, ANN202
+        return types.int32(kernels_check(carray(b, (block,)), carray(report, (REPORT,))))
+
     def tangent(b, t, d, dx):  # noqa: ANN001, ANN202
         kernels_tangent(carray(b, (block,)), t, carray(d, (block,)), carray(dx, (2 * states,)))
 
@@ -95,6 +98,9 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     if isinstance(of.load, ResourceLoader):
         kernels_load, scratch = of.load.kernel, of.load.scratch
         found["hb_load"] = (types.int32(_REALS, _COUNTS, _REALS, _REALS, _REALS), load)
+        kernels_check: Any = of.load.check  # not used if it is None
+        if kernels_check is not None:
+            found["hb_verify"] = (types.int32(_REALS, _REALS), verify)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
     return {symbol: c_code(signature, function) for symbol, (signature, function) in found.items()}

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 from herringbone.core import HerringboneError
+from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
 SIDES = ("left", "right")
@@ -13,6 +14,7 @@ def table_text(stiffness: MeshStiffness) -> str:
     """The table as CSV (grammar: `components.resources.stiffness_table`), origin in comments."""
     lines = [
         "# units: load N, phase 1, stiffness N/m",
+        f"# pair: {_fingerprint(stiffness.pair)}",
         *(f"# {line}" for line in origin(stiffness)),
     ]
     lines.append("side,load,phase,stiffness")
@@ -23,6 +25,13 @@ def table_text(stiffness: MeshStiffness) -> str:
                 for phase, value in zip(stiffness.phases, row, strict=True)
             ]
     return "\n".join(lines) + "\n"
+
+
+def _fingerprint(pair: GearPair) -> str:
+    """Whose table it is: teeth, base radii [m], base helix angle [rad], face width [m]."""
+    lengths = (*pair.base_radius, abs(pair.base_helix_angle), pair.face_width)
+    numbers = (*pair.number_of_teeth, *(f"{x:.10g}" for x in lengths))
+    return " ".join(map(str, numbers))
 
 
 def origin(stiffness: MeshStiffness) -> list[str]:

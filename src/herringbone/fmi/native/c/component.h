@@ -14,7 +14,7 @@
 /* Values of a signal with nodes: X, X.node1 ... X.node4, side by side in the block. */
 #define HB_STRIDE 5
 /* Numbers that a refusal may show. */
-#define HB_REPORT 6
+#define HB_REPORT 12
 
 /* What the environment may do with an entry of the block. */
 enum HbAccess {
@@ -46,18 +46,21 @@ typedef struct {
                                  names, are numbers in the unit that stands under this name */
 } HbColumn;
 
-/* A String parameter that names a resource file; `columns` is its grammar. */
+/* A String parameter that names a resource file; `columns` is its grammar. The file may have a
+   comment line "# header: ..." with header_count numbers. */
 typedef struct {
     const char *name, *start;
     const HbColumn *columns;
     uint32_t column_count;
+    const char *header;
+    uint32_t header_count;
 } HbText;
 
-/* Why the load kernel refuses: `text` is the resource file at fault (index in `texts`); the message
-   is the file's path, then `format` with the report's numbers. The format has %g conversions only,
-   at most HB_REPORT. */
+/* Why the load or verify kernel refuses: `text` is the resource file at fault (index in `texts`; -1:
+   none, parameters are); the message is the file's path, then `format` with the report's numbers. The
+   format has %g conversions only, at most HB_REPORT. */
 typedef struct {
-    uint32_t text;
+    int32_t text;
     const char *format;
 } HbRefusal;
 
@@ -114,11 +117,13 @@ typedef struct {
     void (*start)(double *b);
     /* Tables from resource files: a refusal's number, counted from 1, or 0.
        values: file after file; for each one a number per declared column (index of the unit that the
-       file uses, 0 for words), then its rows, columns in declared order, further ones in file order.
+       file uses, 0 for words), the numbers of its header line (NaN if it has none), then its rows, columns in declared order, further ones in file order.
        shape: for each file (rows, columns). scratch: `load_scratch` long.
        report: HB_REPORT numbers for the refusal's format. */
     int32_t (*load)(const double *values, const int64_t *shape, double *b, double *scratch,
                     double *report);
+    /* What was loaded against the parameters, at the end of initialisation: as `load`. */
+    int32_t (*verify)(double *b, double *report);
     uint32_t load_scratch;
     uint32_t refusals_count;
     const HbRefusal *refusals;

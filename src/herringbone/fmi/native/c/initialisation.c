@@ -22,21 +22,6 @@ Status instance_enter_initialisation(Instance *instance) {
     return STATUS_OK;
 }
 
-Status instance_exit_initialisation(Instance *instance) {
-    if (instance->now.phase != PHASE_INITIALISATION)
-        return instance_refuse(instance, "exitInitializationMode");
-    instance->outdated = true;
-    Status status = instance_refresh(instance);
-    if (status != STATUS_OK)
-        return status;
-    double *signal = instance->block + hb_component.first_output;
-    for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
-        for (int node = 1; node < HB_STRIDE; node++)
-            signal[node] = signal[0];
-    instance->now.phase = instance->model_exchange ? PHASE_EVENT : PHASE_STEP;
-    return STATUS_OK;
-}
-
 /* Path of a resource file; NULL if there is none. */
 static char *resource_path(Instance *instance, uint32_t k) {
     const char *text = instance->texts->values[k];
@@ -70,9 +55,9 @@ static Status refuse_tables(Instance *instance, int32_t number, char *const file
     const HbRefusal *refusal = &hb_component.refusals[number - 1];
     Message why;
     message_write(&why, refusal->format, report[0], report[1], report[2], report[3], report[4],
-                  report[5]);
-    return instance_fail(instance, STATUS_ERROR, "%s: %s%s", instance->name, files[refusal->text],
-                         why.text);
+                  report[5], report[6], report[7], report[8], report[9], report[10], report[11]);
+    return instance_fail(instance, STATUS_ERROR, "%s: %s%s", instance->name,
+                         refusal->text < 0 ? "" : files[refusal->text], why.text);
 }
 
 /* Model exchange has the states of the data set with which the FMU was built. */
@@ -143,6 +128,43 @@ Status instance_read_resources(Instance *instance) {
     free(files);
     free(shape);
     return status;
+}
+
+/* What was loaded against the parameters. */
+static Status verify_tables(Instance *instance) {
+    double report[HB_REPORT] = {0.0};
+    int32_t refusal = hb_component.verify ? hb_component.verify(instance->block, report) : 0;
+    if (refusal == 0)
+        return STATUS_OK;
+    uint32_t count = hb_component.texts_count, found = 0;
+    char **files = calloc((size_t)count + 1, sizeof *files);
+    if (!files)
+        return instance_fail(instance, STATUS_ERROR, "%s: out of memory", instance->name);
+    while (found < count && (files[found] = resource_path(instance, found)))
+        found++;
+    if (found == count)
+        refuse_tables(instance, refusal, files, report);
+    for (uint32_t k = 0; k < found; k++)
+        free(files[k]);
+    free(files);
+    return STATUS_ERROR;
+}
+
+Status instance_exit_initialisation(Instance *instance) {
+    if (instance->now.phase != PHASE_INITIALISATION)
+        return instance_refuse(instance, "exitInitializationMode");
+    instance->outdated = true;
+    Status status = instance_refresh(instance);
+    if (status == STATUS_OK)
+        status = verify_tables(instance);
+    if (status != STATUS_OK)
+        return status;
+    double *signal = instance->block + hb_component.first_output;
+    for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
+        for (int node = 1; node < HB_STRIDE; node++)
+            signal[node] = signal[0];
+    instance->now.phase = instance->model_exchange ? PHASE_EVENT : PHASE_STEP;
+    return STATUS_OK;
 }
 
 Status instance_refresh(Instance *instance) {

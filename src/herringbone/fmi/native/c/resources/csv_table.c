@@ -86,22 +86,34 @@ static bool cut_units(Table *table, Message *message) {
     return true;
 }
 
-static bool cut(Table *table, Message *message) {
+/* Keep a comment line if it is the header line. */
+static void keep_header(Table *table, char *line, size_t number, const char *header) {
+    size_t length = strlen(header);
+    if (length > 0 && strncmp(line, "# ", 2) == 0 && strncmp(line + 2, header, length) == 0 &&
+        line[2 + length] == ':') {
+        table->header = line + length + 3;
+        table->header_line = number;
+    }
+}
+
+static bool cut(Table *table, const char *header, Message *message) {
     if (!cut_units(table, message))
         return false;
     char *next = end_line(table->text);
     for (size_t number = 2; next; number++) {
         char *line = next;
         next = end_line(line);
-        if (*line && *line != '#' && !cut_row(table, line, number, message))
+        if (*line == '#')
+            keep_header(table, line, number, header);
+        else if (*line && !cut_row(table, line, number, message))
             return false;
     }
     return true;
 }
 
-bool csv_table_read(Table *table, const char *file, Message *message) {
+bool csv_table_read(Table *table, const char *file, const char *header, Message *message) {
     *table = (Table){.file = file, .text = platform_read_text(file, message)};
-    return table->text && allocate(table, message) && cut(table, message);
+    return table->text && allocate(table, message) && cut(table, header, message);
 }
 
 void csv_table_free(Table *table) {

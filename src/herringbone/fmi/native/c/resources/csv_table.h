@@ -14,15 +14,17 @@ typedef struct {
 typedef struct {
     const char *file;
     char *text;
-    char *units; /* what follows "# units:" in the first line */
+    char *units;  /* what follows "# units:" in the first line */
+    char *header; /* what follows "# <header>:" in the last such line; NULL: there is none */
+    size_t header_line;
     char **fields;
     Row *rows; /* the first one is the header */
     size_t field_count, row_count;
 } Table;
 
-/* Read a file; false, with a message, if there is none, its first line does not begin with
+/* Read a file; `header` is the name of its header line, "": it has none. False, with a message, if there is none, its first line does not begin with
    "# units:", or a quote is not closed. Free the table in any case. */
-bool csv_table_read(Table *table, const char *file, Message *message);
+bool csv_table_read(Table *table, const char *file, const char *header, Message *message);
 void csv_table_free(Table *table);
 
 /* Cut spaces off both ends, in place. */

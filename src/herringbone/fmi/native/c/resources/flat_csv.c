@@ -1,5 +1,6 @@
 #include "flat_csv.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,6 +177,28 @@ static bool read_units(const Table *table, const HbText *grammar, double values[
     return true;
 }
 
+/* Read the numbers of the header line; NaN if the file has none. */
+static bool read_header(const Table *table, const HbText *grammar, double values[],
+                        Message *message) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < grammar->header_count; k++)
+        values[k] = NAN;
+    if (!table->header)
+        return true;
+    for (char *word = table->header + strspn(table->header, CSV_SPACE); *word; count++) {
+        char *end = word + strcspn(word, CSV_SPACE), *next = end + strspn(end, CSV_SPACE);
+        *end = '\0';
+        if (count == grammar->header_count || !platform_number(word, &values[count]))
+            break;
+        word = next;
+        if (!*word && count + 1 == grammar->header_count)
+            return true;
+    }
+    message_write(message, "%s, line %zu: '# %s:' takes %u finite numbers", table->file,
+                  table->header_line, grammar->header, (unsigned)grammar->header_count);
+    return false;
+}
+
 /* Room for more numbers behind those that count; NULL with a message if memory is short. */
 static double *grow(Numbers *numbers, size_t more, const char *file, Message *message) {
     double *values = realloc(numbers->values, (numbers->count + more) * sizeof *values);
@@ -201,9 +224,11 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
         table->fields[i] = csv_trim(table->fields[i]);
     if (!check_header(table, grammar, message))
         return false;
-    size_t rows = table->row_count - 1, count = declared + rows * table->rows->count;
+    size_t rows = table->row_count - 1, first = declared + grammar->header_count;
+    size_t count = first + rows * table->rows->count;
     values = grow(numbers, count, table->file, message);
-    if (!values || !read_rows(table, grammar, values + declared, message))
+    if (!values || !read_rows(table, grammar, values + first, message) ||
+        !read_header(table, grammar, values + declared, message))
         return false;
     numbers->count += count;
     shape[0] = (int64_t)rows;
@@ -214,7 +239,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
 bool flat_csv_read(const char *file, const HbText *grammar, Numbers *numbers, int64_t shape[2],
                    Message *message) {
     Table table;
-    bool read = csv_table_read(&table, file, message) &&
+    bool read = csv_table_read(&table, file, grammar->header, message) &&
                 append(&table, grammar, numbers, shape, message);
     csv_table_free(&table);
     return read;

@@ -15,6 +15,21 @@ _BASE_RADIUS = tuple(
     0.5 * z * _MODULE / math.cos(_HELIX_ANGLE) * math.cos(_TRANSVERSE_ANGLE)
     for z in (_PINION_TEETH, _WHEEL_TEETH)
 )
+_FACE_WIDTH = 0.0473
+_BACKLASH = 180e-6
+
+
+def _coast_phase() -> float:
+    """Phase of the drive flank plus that of the coast flank, in [0, 1): see the equations."""
+    pitch = 2.0 * math.pi * _BASE_RADIUS[0] / _PINION_TEETH
+    tip = 0.5 * _WHEEL_TEETH * _MODULE / math.cos(_HELIX_ANGLE) + _MODULE
+    approach = math.sqrt(tip**2 - _BASE_RADIUS[1] ** 2)
+    approach -= _BASE_RADIUS[1] * math.tan(_TRANSVERSE_ANGLE)
+    thinned = 0.5 * _BACKLASH / math.cos(_BASE_HELIX_ANGLE)
+    overlap = _FACE_WIDTH * math.tan(_BASE_HELIX_ANGLE)
+    return (0.5 + (2.0 * approach - thinned + overlap) / pitch) % 1.0
+
+
 _SHAFT_DAMPING_RATIO = 0.02
 _DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3
 """Nominal deflection [m, rad], shaft speed [rad/s] and angular frequency of vibration [rad/s]."""
@@ -67,16 +82,18 @@ def _ports() -> list[Variable]:
     ports = []
     for half in HALVES:
         for axis in "yz":
+            # An unbalance couples y with the rotation.
+            through = (f"{half.partition('_')[0]}.tau",) if axis == "y" else ()
             force, s, v, a = (f"{half}.{q}_{axis}" for q in "fsva")
             at = f"of {half} along {axis}"
             ports += [
                 input_(force, "N", f"force on {half} along {axis}"),
                 output(s, "m", f"position {at}", nodes=True, rate=v),
                 output(v, "m/s", f"velocity {at}", nodes=True, rate=a),
-                output(a, "m/s2", f"acceleration {at}", feedthrough=(force,)),
+                output(a, "m/s2", f"acceleration {at}", feedthrough=(force, *through)),
             ]
     for gear in GEARS:
-        ports += flange_body(gear)
+        ports += flange_body(gear, more=tuple(f"{gear}_{side}.f_y" for side in SIDES))
     return ports
 
 
@@ -95,7 +112,13 @@ def _results() -> list[Variable]:
         *meshes,
         output("transmission_error", "m", "mean of the halves' rb1 theta_pinion - rb2 theta_wheel"),
         output("axial_offset", "m", "eps_z: apex of the pinion against that of the wheel"),
-        local("time_outside_table", "s", "time with a mesh loaded outside its table, drive side"),
+        local("time_outside_table", "s", "time with a mesh loaded outside its table"),
+        local(
+            "table_of_this_pair",
+            "1",
+            "1: the table tells its pair, and it is this one; 0: it tells none",
+        ),
+        local("time_on_other_flank", "s", "time with a mesh loaded on the flank not in `flank`"),
     ]
 
 
@@ -117,6 +140,9 @@ def _gear_parameters(gear: str, teeth: int, base_radius: float) -> list[Variable
         p(f"{gear}.shaft_damping_t", "N.m.s/rad", "gap shaft, torsion", c_t, minimum=0),
         p(f"{gear}.torque_share_left", "1", "left half's share of the flange torque", 0.5,
           minimum=0, maximum=1),
+        p(f"{gear}.unbalance", "kg.m", "unbalance of the gear, half of it at each half", 0.0,
+          minimum=0),
+        p(f"{gear}.unbalance_phase", "rad", "angle of the unbalance from +y at angle 0", 0.0),
     ]  # fmt: skip
 
 
@@ -125,10 +151,18 @@ def _mesh_parameters() -> list[Variable]:
     return [
         p("base_helix_angle", "rad", "base helix angle beta_b", _BASE_HELIX_ANGLE,
           minimum=-1.2, maximum=1.2),
+        p("face_width", "m", "face width of a half: whose table it is", _FACE_WIDTH,
+          minimum=1e-6),
         p("mesh_damping_ratio", "1", "zeta of the mesh damping", 0.1, minimum=0),
         p("damping_transition", "m", "deflection over which the damping rises", 5e-7,
           minimum=1e-12),
-        p("backlash", "m", "normal backlash", 180e-6, minimum=0),
+        p("damping_gate", "1", "1: damping rises over damping_transition, 0: it always acts", 1.0,
+          minimum=0, maximum=1, whole=True),
+        p("backlash", "m", "normal backlash", _BACKLASH, minimum=0),
+        p("flank", "1", "whose line of action y is: -1 coast, else drive", 1.0,
+          minimum=-1, maximum=1, whole=True, quantity=Quantity.CARRYING_FLANK),
+        p("coast_phase", "1", "phase of the drive flank plus that of the coast flank, mesh periods",
+          _coast_phase()),
         p("stagger", "1", "right half ahead of left half, mesh periods", 0.0),
         p("symmetry_deviation", "m", "f_A: axial offset of the chevron's apex", 0.0),
         p("symmetry_constant", "1", "c0: constant share of f_A", 0.4),

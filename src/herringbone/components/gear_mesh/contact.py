@@ -1,0 +1,143 @@
+"""Forces of both meshes and all their reactions on the bodies."""
+
+import math
+
+import numpy as np
+
+from herringbone.components.gear_mesh import layout as at
+from herringbone.components.resources import transmission_error
+from herringbone.kernels import force_law
+from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
+from herringbone.kernels.jit import kernel
+
+_OPEN = 1e-12
+"""Depth [m] at which flanks that are open have their tangent stiffness."""
+
+
+@kernel
+def derive(b: np.ndarray) -> None:
+    """Write what follows from the parameters alone."""
+    b[at.COS], b[at.SIN] = cosine(b[at.BETA]), sine(b[at.BETA])
+    b[at.TAN] = b[at.SIN] / b[at.COS]
+    b[at.CARRYING] = -1.0 if b[at.FLANK] < 0.0 else 1.0
+    b[at.PHASE_RATE] = b[at.TEETH[0]] / at.TWO_PI
+    b[at.PER_PITCH] = b[at.PHASE_RATE] / b[at.RB[0]]
+    b[at.AXIAL_PHASE] = b[at.TAN] * b[at.PER_PITCH]
+    b[at.PATH_MASS] = 1.0 / (
+        b[at.RB[0]] ** 2 / b[at.INERTIAS[0]] + b[at.RB[1]] ** 2 / b[at.INERTIAS[1]]
+    )
+    b[at.PER_TRANSITION], b[at.PER_WHEEL_RB] = 1.0 / b[at.TRANSITION], 1.0 / b[at.RB[1]]
+    for gear in range(2):
+        b[at.PER_MASS[gear]], b[at.PER_INERTIA[gear]] = (
+            1.0 / b[at.MASSES[gear]],
+            1.0 / b[at.INERTIAS[gear]],
+        )
+
+
+@kernel
+def wheel(b: np.ndarray, order: int) -> float:
+    """Angle [rad] (order 0) or speed [rad/s] (order 1) of the wheel's left half."""
+    o = order * at.RATE
+    return (b[at.RB[0]] * b[at.ANGLE + o] - b[at.APPROACH + o]) * b[at.PER_WHEEL_RB]
+
+
+@kernel
+def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
+    """eps_z [m], its rate [m/s], its slopes over the mean angles of pinion and wheel [m/rad]."""
+    if b[at.F_A] == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    sin_p, cos_p = sine_and_cosine(b[at.ANGLE] + 0.5 * b[at.TWIST_P] + b[at.PHI1])
+    sin_w, cos_w = sine_and_cosine(wheel(b, 0) + 0.5 * b[at.TWIST_W] + b[at.PHI2])
+    offset = b[at.F_A] * (b[at.C0] + b[at.C1] * cos_p + b[at.C2] * cos_w)
+    per_pinion, per_wheel = -b[at.F_A] * b[at.C1] * sin_p, -b[at.F_A] * b[at.C2] * sin_w
+    rate = per_pinion * (b[at.ANGLE + at.RATE] + 0.5 * b[at.TWIST_P + at.RATE])
+    rate += per_wheel * (wheel(b, 1) + 0.5 * b[at.TWIST_W + at.RATE])
+    return offset, rate, per_pinion, per_wheel
+
+
+@kernel
+def _impact(b: np.ndarray, phase: float) -> float:
+    """Force [N] of the meshing impact."""
+    into = (phase - math.floor(phase)) / b[at.IMPACT_DURATION]
+    return 0.5 * b[at.IMPACT] * (1.0 - cosine(at.TWO_PI * into)) if into < 1.0 else 0.0
+
+
+@kernel
+def _flank(
+    b: np.ndarray, side: int, f: float, phase: float, depth: float, rate: float
+) -> tuple[float, float]:
+    """Pressure [N] between two flanks (f: 1 drive, -1 coast), and dU/d(phase) [J].
+
+    Open flanks have the damping that their contact begins with; it acts if it is not gated.
+    """
+    x = depth if depth > 0.0 else _OPEN
+    force, tangent, slope = force_law.law(b, at.TABLE[side], phase, x)
+    damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
+    if depth <= 0.0:
+        return damping * rate, 0.0
+    g = min(1.0, depth * b[at.PER_TRANSITION])
+    g *= g * (3.0 - 2.0 * g)
+    if b[at.IMPACT] > 0.0 and f == b[at.CARRYING]:
+        force += g * _impact(b, phase)
+    if b[at.GATE] == 0.0:
+        return force + damping * rate, slope
+    return max(0.0, force + damping * g * rate), slope
+
+
+@kernel
+def _mesh(b: np.ndarray, side: int, eps: float, eps_rate: float) -> None:
+    """Write the results of mesh 0 (left) or 1 (right)."""
+    s = 1.0 - 2.0 * side
+    y, z = at.Y + side, at.Z + side
+    path = b[at.APPROACH] + side * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
+    axial = b[z] - b[z + 2] + eps
+    delta = b[at.COS] * (b[y] - b[y + 2] + path) + s * b[at.SIN] * axial
+    pinion = b[at.ANGLE] + side * b[at.TWIST_P]
+    phase = b[at.PHASE_RATE] * pinion
+    phase += s * b[at.AXIAL_PHASE] * axial + side * b[at.STAGGER]
+    y, z = y + at.RATE, z + at.RATE
+    path = b[at.APPROACH + at.RATE] + side * (
+        b[at.RB[0]] * b[at.TWIST_P + at.RATE] - b[at.RB[1]] * b[at.TWIST_W + at.RATE]
+    )
+    rate = b[at.COS] * (b[y] - b[y + 2] + path) + s * b[at.SIN] * (b[z] - b[z + 2] + eps_rate)
+    normal, push = 0.0, 0.0
+    for flank in range(2):
+        f = 1.0 - 2.0 * flank
+        depth, depth_rate = f * delta - flank * b[at.BACKLASH], f * rate
+        per_pinion, per_wheel = 0.0, 0.0
+        errors = transmission_error.group(at.ERRORS, side, flank)
+        if b[errors] > 0.0:
+            angle = wheel(b, 0) + side * b[at.TWIST_W]
+            e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, angle)
+            depth -= e
+            depth_rate -= per_pinion * (b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE])
+            depth_rate -= per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
+        b[at.DEPTH + 2 * side + flank] = depth
+        if f == b[at.CARRYING]:
+            b[at.LOADED + side] = f * (depth + flank * b[at.BACKLASH])
+        pulled = b[at.GATE] == 0.0 and flank == 0 and depth > -b[at.BACKLASH]
+        if depth > 0.0 or pulled:
+            own = phase if flank == 0 else b[at.COAST_PHASE] - phase
+            pressure, slope = _flank(b, side, f, own, depth, depth_rate)
+            normal += f * pressure
+            push += f * slope * b[at.PER_PITCH]
+            b[at.TORQUE + side] += pressure * per_pinion
+            b[at.TORQUE + 2 + side] += pressure * per_wheel
+    b[at.NORMAL + side], b[at.PATH + side] = normal, b[at.COS] * normal
+    b[at.PUSH + side] = b[at.COS] * normal + push
+
+
+@kernel
+def meshes(b: np.ndarray) -> float:
+    """Write the results of both meshes, after `derive`; eps_z [m]."""
+    for i in range(4):
+        b[at.TORQUE + i] = 0.0
+    eps, eps_rate, per_pinion, per_wheel = _apex(b)
+    _mesh(b, 0, eps, eps_rate)
+    _mesh(b, 1, eps, eps_rate)
+    if b[at.F_A] != 0.0:
+        thrust = 0.5 * b[at.TAN] * (b[at.PUSH] - b[at.PUSH + 1])
+        for half in range(2):
+            b[at.TORQUE + half] -= thrust * per_pinion
+            b[at.TORQUE + 2 + half] -= thrust * per_wheel
+    return eps

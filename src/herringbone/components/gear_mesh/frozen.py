@@ -1,0 +1,96 @@
+"""The gear pair with its meshes frozen at an operating point, as linear analysis takes it.
+
+At the operating point each mesh has a normal force N, a depth d of the flanks that carry and, over
+a mesh period, tangent stiffnesses. The frozen mesh keeps the operating point and has one stiffness
+K:
+
+    F(p, depth) = N + K (depth - d),    depth >= d / 2
+
+so that the states at which the mesh was frozen are still an equilibrium, but for the torque with
+which the energy changed over the phase: below 1e-4 of the load's. The axial offset of the chevron's
+apex and the given transmission error stay at their values; meshing impact and unbalance are off.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.components.gear_mesh import layout as at
+from herringbone.components.resources import transmission_error
+from herringbone.core import Instance, ParameterError
+from herringbone.core.roles import GEARS, SIDES
+from herringbone.kernels import force_law
+
+_LAST = force_law.DEFLECTIONS - 1
+
+
+def _carrying(gear: Instance) -> int:
+    """0 if the drive flank carries, 1 if the coast flank does."""
+    return 1 if gear["flank"] < 0.0 else 0
+
+
+def _depth(gear: Instance, side: int) -> float:
+    deflection = gear[f"mesh_{SIDES[side]}.deflection"]
+    return -gear["backlash"] - deflection if _carrying(gear) else deflection
+
+
+def tangent_stiffness(gear: Instance, side: int) -> np.ndarray:
+    """Tangent stiffness [N/m] of mesh 0 (left) or 1 (right) over a period, at its depth."""
+    depth = _depth(gear, side)
+    phases = np.arange(force_law.PHASES) / force_law.PHASES
+    return np.array([force_law.law(gear.block, at.TABLE[side], p, depth)[1] for p in phases])
+
+
+def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> None:
+    """Replace the force laws of a gear pair by straight lines through its operating point.
+
+    Args:
+        gear: at the operating point.
+        stiffness: makes one stiffness [N/m] of the tangents over a mesh period.
+
+    Raises:
+        ParameterError: a mesh is open at the operating point.
+    """
+    offset, share = gear["axial_offset"], gear["symmetry_deviation"]
+    for side, name in enumerate(SIDES):
+        depth, force = _depth(gear, side), abs(gear[f"mesh_{name}.force"])
+        if depth <= 0.0 or force <= 0.0:
+            raise ParameterError(
+                f"{gear.name}: the {name} mesh is open (deflection "
+                f"{gear[f'mesh_{name}.deflection']:g} m) where stability is wanted; choose a scene "
+                "that starts in equilibrium under load"
+            )
+        tangent = stiffness(tangent_stiffness(gear, side))
+        _write_line(gear.block, at.TABLE[side], depth, force, tangent)
+    _hold_errors(gear)
+    index = gear.component.declaration.index
+    for name in ("impact_force", *(f"{g}.unbalance" for g in GEARS)):
+        gear.block[index[name]] = 0.0
+    gear.block[index["symmetry_pinion"]] = gear.block[index["symmetry_wheel"]] = 0.0
+    gear.block[index["symmetry_constant"]] = offset / share if share else 0.0
+
+
+def _hold_errors(gear: Instance) -> None:
+    """Make a constant of the transmission error of each flank."""
+    pinion = gear["angle"]
+    wheel = gear["pinion.base_radius"] * pinion - gear["approach"]
+    wheel /= gear["wheel.base_radius"]
+    for side in range(2):
+        angles = pinion + side * gear["pinion_twist"], wheel + side * gear["wheel_twist"]
+        for flank in range(2):
+            group = transmission_error.group(at.ERRORS, side, flank)
+            if gear.block[group] > 0.0:
+                e = transmission_error.error(gear.block, group, *angles)[0]
+                gear.block[group : group + 5] = 1.0, 0.0, 0.0, e, 0.0
+
+
+def _write_line(block: np.ndarray, first: int, depth: float, force: float, tangent: float) -> None:
+    """Table part whose law above half the depth is a line; below, the secant is constant."""
+    limit = 0.5 * depth
+    secant = (force - tangent * (depth - limit)) / limit
+    end = first + force_law.TABLE_SIZE
+    block[first:end] = 0.0
+    block[first], block[first + 1] = limit, 0.0
+    nodes = block[first + 2 : end].reshape(force_law.PHASES, -1, force_law.NODE)
+    nodes[:, :, 0] = secant
+    nodes[:, _LAST, 2] = (tangent - secant) / (0.5 * _LAST)

@@ -1,0 +1,120 @@
+"""Declaration of the gear mesh, and where everything lies in its block."""
+
+import math
+
+from herringbone.components.gear_mesh.variables import VARIABLES
+from herringbone.components.ports import HALVES, flange, journals
+from herringbone.components.resources import stiffness_table, transmission_error
+from herringbone.core import Declaration, Text
+from herringbone.core.roles import GEARS, Role
+from herringbone.kernels import force_law, steppers
+
+STATES = 24
+INPUTS = 10
+_DERIVED = 14
+_PAIR = 1 + stiffness_table.PAIR[1]
+_TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR
+_RESULTS = 18
+
+DECLARATION = Declaration(
+    "gear_mesh",
+    "Herringbone gear pair: four half-bodies, gap shafts, two meshes (12 degrees of freedom)",
+    VARIABLES,
+    texts=[
+        Text(
+            "stiffness_table",
+            "stiffness table of both meshes, CSV",
+            "mesh_stiffness.csv",
+            stiffness_table.COLUMNS,
+            header=stiffness_table.PAIR[0],
+            header_count=stiffness_table.PAIR[1],
+        ),
+        Text(
+            "tooth_errors",
+            "given transmission error, CSV of harmonics",
+            "perfect_teeth.csv",
+            transmission_error.COLUMNS,
+        ),
+    ],
+    tables=_TABLES + STATES + _DERIVED + _RESULTS,
+    work=steppers.body_work(STATES, INPUTS),
+    roles=[Role.GEAR_PAIR],
+    ports=[*journals(), *(flange(gear, gear) for gear in GEARS)],
+)
+
+_d = DECLARATION
+_i = _d.index
+RATE = 12
+"""A rate lies this far behind its position."""
+Y, Z = _i["y_1"], _i["z_1"]
+ANGLE, TWIST_P, APPROACH, TWIST_W = _d.indices("angle", "pinion_twist", "approach", "wheel_twist")
+F_Y = _d.indices(*(f"{h}.f_y" for h in HALVES))
+F_Z = _d.indices(*(f"{h}.f_z" for h in HALVES))
+S_Y, V_Y, A_Y, S_Z, V_Z, A_Z = (
+    _d.indices(*(f"{h}.{q}" for h in HALVES)) for q in ("s_y", "v_y", "a_y", "s_z", "v_z", "a_z")
+)
+TAU, PHI, W, A = (_d.indices(*(f"{g}.{q}" for g in GEARS)) for q in ("tau", "phi", "w", "a"))
+RB, MASSES, INERTIAS, K_Y, K_Z, K_T, C_Y, C_Z, C_T, SHARE, TEETH, UNBALANCE, UNBALANCE_PHASE = (
+    _d.indices(*(f"{g}.{q}" for g in GEARS))
+    for q in (
+        "base_radius", "mass", "inertia", "shaft_stiffness_y", "shaft_stiffness_z",
+        "shaft_stiffness_t", "shaft_damping_y", "shaft_damping_z", "shaft_damping_t",
+        "torque_share_left", "number_of_teeth",
+        "unbalance", "unbalance_phase",
+    )
+)  # fmt: skip
+FORCE = _d.indices("mesh_left.force", "mesh_right.force")
+DEFLECTION = _d.indices("mesh_left.deflection", "mesh_right.deflection")
+TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN = _d.indices(
+    "transmission_error",
+    "axial_offset",
+    "time_outside_table",
+    "time_on_other_flank",
+    "table_of_this_pair",
+)
+BETA, ZETA, TRANSITION, GATE, BACKLASH, FLANK, COAST_PHASE, STAGGER = _d.indices(
+    "base_helix_angle", "mesh_damping_ratio", "damping_transition", "damping_gate", "backlash",
+    "flank", "coast_phase", "stagger",
+)  # fmt: skip
+F_A, C0, C1, C2, PHI1, PHI2 = _d.indices(
+    "symmetry_deviation", "symmetry_constant", "symmetry_pinion", "symmetry_wheel",
+    "symmetry_pinion_phase", "symmetry_wheel_phase",
+)  # fmt: skip
+IMPACT, IMPACT_DURATION, RESTRAINT, AXIAL_DRAG, DRAG, MICRO_STEP = _d.indices(
+    "impact_force", "impact_duration", "pinion_restraint", "pinion_axial_drag", "drag_torque",
+    "micro_step",
+)  # fmt: skip
+FACE_WIDTH = _i["face_width"]
+DEGREE = _i["interface_degree"]
+
+TABLE = (_d.first_table, _d.first_table + force_law.TABLE_SIZE)
+"""Force laws of the left and the right mesh."""
+ERRORS = TABLE[1] + force_law.TABLE_SIZE
+"""The given transmission error."""
+PAIR = ERRORS + transmission_error.TABLE_SIZE
+"""1 if the table tells its pair, then the pair: see `stiffness_table`."""
+SCRATCH = PAIR + _PAIR
+"""Room for the derivatives of all states."""
+
+_derived = SCRATCH + STATES
+COS, SIN, TAN = _derived, _derived + 1, _derived + 2
+"""Of the base helix angle."""
+PHASE_RATE, AXIAL_PHASE, PER_PITCH = _derived + 3, _derived + 4, _derived + 5
+"""Mesh periods per angle [1/rad] and axial shift [1/m] of a pinion half; transverse 1 / p_bt."""
+PATH_MASS, PER_TRANSITION, PER_WHEEL_RB = _derived + 6, _derived + 7, _derived + 8
+"""Mass [kg] of both rotations along the path of contact; reciprocals."""
+CARRYING = _derived + 13
+"""1: the drive flank carries, -1: the coast flank."""
+PER_MASS, PER_INERTIA = (_derived + 9, _derived + 10), (_derived + 11, _derived + 12)
+
+_results = _derived + _DERIVED
+NORMAL, PATH, PUSH = _results, _results + 2, _results + 4
+"""By side [N]: normal force; its part along the path; the same with the energy's push."""
+LOADED = _results + 6
+"""By side: deflection [m] on the flank that carries."""
+DEPTH = _results + 8
+"""By side, drive flank, then coast flank: how deep the flanks are in each other [m]."""
+TORQUE = _results + 12
+"""By body: torque [N m] of what moves the flanks by a rotation."""
+
+TWO_PI = 2.0 * math.pi

@@ -1,0 +1,187 @@
+"""Motion of the four half-bodies under the forces of shafts, meshes and ports."""
+
+import math
+
+import numpy as np
+
+from herringbone.components.gear_mesh import layout as at
+from herringbone.components.gear_mesh.contact import derive, meshes, wheel
+from herringbone.kernels import force_law, steppers
+from herringbone.kernels.elementary import sine_and_cosine
+from herringbone.kernels.jit import kernel
+
+
+@kernel
+def _drag(b: np.ndarray, w: float) -> float:
+    """Drag torque [N m] on a pinion half at its speed [rad/s]."""
+    return 0.5 * b[at.DRAG] * w / math.sqrt(1.0 + w * w)
+
+
+@kernel
+def _translations(b: np.ndarray, dx: np.ndarray) -> None:
+    """Accelerations along the line of action and along the axis."""
+    for gear in range(2):
+        sign, first = 2.0 * gear - 1.0, 2 * gear
+        y, z, per_mass = at.Y + first, at.Z + first, b[at.PER_MASS[gear]]
+        bend = b[at.K_Y[gear]] * (b[y] - b[y + 1])
+        bend += b[at.C_Y[gear]] * (b[y + at.RATE] - b[y + 1 + at.RATE])
+        stretch = b[at.K_Z[gear]] * (b[z] - b[z + 1])
+        stretch += b[at.C_Z[gear]] * (b[z + at.RATE] - b[z + 1 + at.RATE])
+        for half in range(2):
+            s = 1.0 - 2.0 * half
+            force = b[at.F_Y[first + half]] - s * bend + sign * b[at.PATH + half]
+            dx[y + half + at.RATE] = force * per_mass
+            force = b[at.F_Z[first + half]] - s * stretch + s * sign * b[at.TAN] * b[at.PUSH + half]
+            if gear == 0:
+                force -= 0.25 * b[at.RESTRAINT] * (b[z] + b[z + 1])
+                force -= b[at.AXIAL_DRAG] * b[z + half + at.RATE]
+            dx[z + half + at.RATE] = force * per_mass
+
+
+@kernel
+def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
+    """Accelerations of y and theta of a half with unbalance, from those without."""
+    u, m, i = 0.5 * b[at.UNBALANCE[gear]], b[at.MASSES[gear]], b[at.INERTIAS[gear]]
+    twist = at.TWIST_P + 2 * gear
+    psi, w = b[at.ANGLE], b[at.ANGLE + at.RATE]
+    if gear == 1:
+        psi, w = wheel(b, 0), wheel(b, 1)
+    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[gear]])
+    w += half * b[twist + at.RATE]
+    force, torque = m * a + u * c * w * w, i * alpha
+    us = u * s
+    per = 1.0 / (m * i - us * us)
+    return per * (i * force + us * torque), per * (m * torque + us * force)
+
+
+@kernel
+def _rotations(b: np.ndarray, dx: np.ndarray) -> None:
+    """Accelerations of the angles."""
+    for gear in range(2):
+        twist = at.TWIST_P + 2 * gear
+        share, tau, per_inertia = b[at.SHARE[gear]], b[at.TAU[gear]], b[at.PER_INERTIA[gear]]
+        torsion = b[at.K_T[gear]] * b[twist] + b[at.C_T[gear]] * b[twist + at.RATE]
+        left = share * tau + torsion + b[at.TORQUE + 2 * gear]
+        right = (1.0 - share) * tau - torsion + b[at.TORQUE + 2 * gear + 1]
+        rb = b[at.RB[gear]]
+        if gear == 0:
+            left -= rb * b[at.PUSH]
+            right -= rb * b[at.PUSH + 1]
+            if b[at.DRAG] > 0.0:
+                w = b[at.ANGLE + at.RATE]
+                left -= _drag(b, w)
+                right -= _drag(b, w + b[twist + at.RATE])
+        else:
+            left += rb * b[at.PATH]
+            right += rb * b[at.PATH + 1]
+        left *= per_inertia
+        right *= per_inertia
+        if b[at.UNBALANCE[gear]] > 0.0:
+            y = at.Y + 2 * gear + at.RATE
+            dx[y], left = _swing(b, gear, 0, dx[y], left)
+            dx[y + 1], right = _swing(b, gear, 1, dx[y + 1], right)
+        dx[twist + at.RATE] = right - left
+        if gear == 0:
+            dx[at.ANGLE + at.RATE] = left
+            dx[at.APPROACH + at.RATE] = rb * left
+        else:
+            dx[at.APPROACH + at.RATE] -= rb * left
+
+
+@kernel
+def _derivatives(b: np.ndarray, dx: np.ndarray) -> None:
+    """Derivatives of all states, after `meshes`."""
+    for i in range(at.RATE):
+        dx[i] = b[i + at.RATE]
+    _translations(b, dx)
+    _rotations(b, dx)
+
+
+@kernel
+def _rates(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    """Derivatives of all states, after `derive`."""
+    meshes(b)
+    _derivatives(b, dx)
+
+
+@kernel
+def rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    """Derivatives of all states."""
+    derive(b)
+    _rates(b, t, dx)
+
+
+@kernel
+def _motions(b: np.ndarray) -> None:
+    """Write positions and velocities at the ports."""
+    for i in range(4):
+        b[at.S_Y[i]], b[at.V_Y[i]] = b[at.Y + i], b[at.Y + at.RATE + i]
+        b[at.S_Z[i]], b[at.V_Z[i]] = b[at.Z + i], b[at.Z + at.RATE + i]
+    for order in range(2):
+        o = order * at.RATE
+        to = at.PHI if order == 0 else at.W
+        b[to[0]] = b[at.ANGLE + o] + (1.0 - b[at.SHARE[0]]) * b[at.TWIST_P + o]
+        b[to[1]] = wheel(b, order) + (1.0 - b[at.SHARE[1]]) * b[at.TWIST_W + o]
+
+
+@kernel
+def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
+    """Write the outputs that depend on the inputs, from the derivatives of the states."""
+    for i in range(4):
+        b[at.A_Y[i]] = dx[at.Y + at.RATE + i]
+        b[at.A_Z[i]] = dx[at.Z + at.RATE + i]
+    angle, approach = dx[at.ANGLE + at.RATE], dx[at.APPROACH + at.RATE]
+    b[at.A[0]] = angle + (1.0 - b[at.SHARE[0]]) * dx[at.TWIST_P + at.RATE]
+    b[at.A[1]] = (b[at.RB[0]] * angle - approach) * b[at.PER_WHEEL_RB] + (
+        1.0 - b[at.SHARE[1]]
+    ) * dx[at.TWIST_W + at.RATE]
+
+
+@kernel
+def _results(b: np.ndarray, t: float) -> None:
+    """Write all outputs, after `derive`."""
+    _motions(b)
+    b[at.OFFSET] = meshes(b)
+    for side in range(2):
+        b[at.FORCE[side]], b[at.DEFLECTION[side]] = b[at.NORMAL + side], b[at.LOADED + side]
+    b[at.TE] = b[at.APPROACH] + 0.5 * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
+    dx = b[at.SCRATCH : at.SCRATCH + at.STATES]
+    _derivatives(b, dx)
+    _accelerations(b, dx)
+
+
+@kernel
+def out(b: np.ndarray, t: float) -> None:
+    """Write all outputs."""
+    derive(b)
+    _results(b, t)
+
+
+@kernel
+def indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
+    """Contact of each mesh: depth on the drive flank, and the gap on the coast flank."""
+    derive(b)
+    meshes(b)
+    for side in range(2):
+        z[2 * side], z[2 * side + 1] = b[at.DEPTH + 2 * side], -b[at.DEPTH + 2 * side + 1]
+
+
+_advance = steppers.body_stepper(_rates, _results, at.DECLARATION)
+
+
+@kernel
+def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    """Advance by h [s]; add up the times outside the tables and on the other flank."""
+    derive(b)
+    status = _advance(b, w, t, h, b[at.MICRO_STEP], int(b[at.DEGREE]))
+    other = 1 if b[at.CARRYING] > 0.0 else 0
+    inside, carried = True, True
+    for side in range(2):
+        drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
+        inside = inside and force_law.inside(b, at.TABLE[side], max(drive, coast))
+        carried = carried and b[at.DEPTH + 2 * side + other] <= 0.0
+    if not inside:
+        b[at.OUTSIDE] += h
+    if not carried:
+        b[at.OTHER_FLANK] += h
+    return status
