@@ -20,7 +20,7 @@ STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
 def test_table_and_files(tmp_path, capsys):
     assert main(["gear", str(THESIS), "-o", str(tmp_path)]) == 0
     text = capsys.readouterr().out
-    for line in ("transverse contact ratio", "1.4024", "12.6817 N/(mm um)", "normal, one half"):
+    for line in ("transverse contact ratio", "1.4024", "12.6817 N/(mm um)", "normal to the flank"):
         assert line in text
     (loads, left), (_, right) = read_stiffness_table(tmp_path / "mesh_stiffness.csv")
     assert left.shape == (10, 64)
@@ -33,9 +33,9 @@ def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
     assert main(["gear", str(THESIS), "-o", str(tmp_path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["pair"]["transverse_contact_ratio"] == pytest.approx(1.4024, abs=5e-5)
-    assert found["forces"]["normal"] == pytest.approx(2252.228, abs=1e-3)
+    assert found["forces"]["half"]["normal"] == pytest.approx(2252.228, abs=1e-3)
     stiffness, at = found["mesh_stiffness"], 5
-    assert stiffness["load"][at] == pytest.approx(found["forces"]["normal"], rel=1e-12)
+    assert stiffness["load"][at] == pytest.approx(found["forces"]["half"]["normal"], rel=1e-12)
     ratio = stiffness["load"][at] / stiffness["deflection"][at] / stiffness["secant"][at]
     assert ratio == pytest.approx(1.0, abs=1e-3)  # harmonics of 2 %: means of s and 1/s differ
     assert all(Path(file).is_file() for file in found["files"])

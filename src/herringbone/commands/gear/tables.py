@@ -17,6 +17,15 @@ _PULSE = 0.02
 _HARMONICS = 3
 _COLUMN = 9
 """Width of a number of a pair."""
+_FORCES = {
+    "tangential_reference": "tangential, at the reference circle",
+    "radial_reference": "radial, at the reference circle",
+    "tangential_working": "tangential, at the working pitch circle",
+    "radial_working": "radial, at the working pitch circle",
+    "line_of_action": "line of action, transverse",
+    "normal": "normal to the flank (pair: sum)",
+    "axial": "axial",
+}
 _Row = tuple[str, str]
 _PAIR_FIGURES = (
     "number_of_teeth", "halves", "normal_module", "normal_pressure_angle",
@@ -114,12 +123,11 @@ def _geometry(pair: GearPair) -> list[_Row]:
 def _forces(job: GearJob) -> list[_Row]:
     torque = job.pinion_torque
     forces = job.pair.tooth_forces(torque)
-    return [
-        (f"Forces at {torque:.6g} N m of the pinion", ""),
-        ("tangential, at the reference circle", f"{forces.tangential:.1f} N"),
-        ("line of action, transverse", f"{forces.line_of_action:.1f} N"),
-        ("normal, one half", f"{forces.normal:.1f} N"),
-        ("axial, one half", f"{forces.axial:.1f} N"),
+    columns = (forces.half,) if job.pair.halves == 1 else (forces.pair, forces.half)
+    heading = "" if job.pair.halves == 1 else " (pair   one half)"
+    return [(f"Forces at {torque:.6g} N m of the pinion{heading}", "")] + [
+        (label, f"{_pair([getattr(column, name) for column in columns], 1.0, 1)} N")
+        for name, label in _FORCES.items()
     ]
 
 
