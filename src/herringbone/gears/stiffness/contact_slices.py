@@ -72,6 +72,22 @@ class Slices(NamedTuple):
     gap: np.ndarray
 
 
+class LineLoad(NamedTuple):
+    """Load on the contact lines of one half at one phase, each (n,).
+
+    Attributes:
+        path: from the start of the path of contact [m].
+        face: along the face [m].
+        length: of line that a point stands for [m].
+        load: per length of line, normal to the flank [N/m].
+    """
+
+    path: np.ndarray
+    face: np.ndarray
+    length: np.ndarray
+    load: np.ndarray
+
+
 @dataclass(frozen=True)
 class ContactSlices:
     """Contact lines of one half as slices.
