@@ -44,7 +44,7 @@ def test_spur_pair_at_the_pitch_point():
     """One pair of teeth in contact: the contact stress of ISO 6336-2 with Z_epsilon 1."""
     pair = gear_pair(SPUR)
     forces = pair.tooth_forces(200.0)
-    found = flank_load(SliceMesh(pair), pair, PHASES, [forces.normal] * 32)
+    found = flank_load(SliceMesh(pair), pair, PHASES, np.full(32, forces.normal))
     pitch = pair.path_of_contact.pitch - pair.path_of_contact.start
     middle = [np.interp(pitch, found.path, column) for column in found.pressure.T]
     expected = iso_6336_2(pair, forces.pair.tangential_reference)
@@ -88,7 +88,7 @@ def test_map_holds_the_mean_load():
 
     Lines of b epsilon_alpha / cos(beta_b) pass over the flank; strips and bins: 1 %.
     """
-    found = flank_load(SliceMesh(PAIR), PAIR, PHASES, [LOAD] * 32)
+    found = flank_load(SliceMesh(PAIR), PAIR, PHASES, np.full(32, LOAD))
     length = PAIR.face_width * PAIR.transverse_contact_ratio / math.cos(PAIR.base_helix_angle)
     mean = np.trapezoid(found.line_load.mean(axis=1), found.path) / found.path[-1]
     assert mean * length == pytest.approx(LOAD, rel=0.01)
@@ -100,7 +100,7 @@ def test_relief_takes_the_load_off_the_ends():
     """Of the path (tips) and of the face (crowning); the middle takes it."""
     modification = Modification((8e-6, 8e-6), 3e-3, helix_crowning=5e-6)
     plain, relieved = (
-        flank_load(mesh, PAIR, PHASES, [LOAD] * 32)
+        flank_load(mesh, PAIR, PHASES, np.full(32, LOAD))
         for mesh in (SliceMesh(PAIR), SliceMesh(PAIR, modification))
     )
     rows, columns = plain.path.size, plain.face.size

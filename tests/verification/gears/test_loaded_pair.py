@@ -50,6 +50,8 @@ def test_symmetry_deviation(axial):
     force = exact.force_left + exact.force_right
     left, right = found.halves
     assert left.force / force == pytest.approx(exact.force_left / force, abs=5e-4)
+    for half in found.halves:
+        assert MESH.law(half.phases)(half.deflection)[0] == pytest.approx(half.force, rel=5e-4)
     assert left.secant == pytest.approx(exact.secant_left, rel=1e-3)
     assert right.secant == pytest.approx(exact.secant_right, rel=1e-3)
     assert found.transmission_error == pytest.approx(exact.approach / COSINE, rel=1e-3)

@@ -12,7 +12,6 @@ The map is what passes over the flank in a mesh period: the phases of the line t
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -74,7 +73,7 @@ def contact_pressure(pair: GearPair, path: np.ndarray, line_load: np.ndarray) ->
 
 
 def flank_load(
-    mesh: LoadedLines, pair: GearPair, phases: Sequence[float], forces: Sequence[float]
+    mesh: LoadedLines, pair: GearPair, phases: np.ndarray, forces: np.ndarray
 ) -> FlankLoad:
     """Load on the flank of one half over a mesh period.
 
@@ -84,9 +83,8 @@ def flank_load(
         phases: (n,) equidistant over a mesh period.
         forces: (n,) normal forces of the half [N].
     """
-    lines = [
-        mesh.line_load(phase, force) for phase, force in zip(phases, forces, strict=True)
-    ]  # fmt: skip
+    at = zip(phases.tolist(), forces.tolist(), strict=True)
+    lines = [mesh.line_load(phase, force) for phase, force in at]
     path, face, load = (
         np.concatenate([getattr(line, name) for line in lines]) for name in ("path", "face", "load")
     )

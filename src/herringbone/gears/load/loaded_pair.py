@@ -2,7 +2,8 @@ r"""A pair under load over a mesh period: forces and deflections of its halves, 
 
 The transmission error is how far the wheel stays behind, on the line of action in the transverse
 plane: the approach of the gears normal to the flanks over cos(beta_b), mean of both halves. The
-halves share the load equally unless there is a symmetry deviation; then see `load_sharing`.
+halves share the load equally unless there is a symmetry deviation; then see `load_sharing`. It
+counts from where the flanks would touch without that deviation.
 """
 
 import math
