@@ -44,10 +44,12 @@ def test_mounting_error_opens_the_backlash():
 def test_thesis_pair_forces_at_200_newton_metres():
     pair = gear_pair(THESIS)
     forces = pair.tooth_forces(200.0)
-    assert forces.tangential == pytest.approx(3665.7, abs=0.05)
-    assert forces.line_of_action == pytest.approx(3976.30, abs=5e-3)
-    assert forces.normal == pytest.approx(2252.2, abs=0.05)
-    assert forces.axial == pytest.approx(1058.2, abs=0.05)
+    assert forces.pair.tangential_reference == pytest.approx(3665.7, abs=0.05)
+    assert forces.pair.line_of_action == pytest.approx(3976.30, abs=5e-3)
+    assert forces.normal == forces.half.normal == pytest.approx(2252.2, abs=0.05)
+    assert forces.half.axial == pytest.approx(1058.2, abs=0.05)
+    assert forces.pair.axial == 0.0
+    assert forces.half.tangential_working == pytest.approx(0.5 * 3665.7, abs=0.05)
     assert pair.mesh_frequency(1000.0 * math.pi / 30.0) == pytest.approx(450.0)
 
 
@@ -88,3 +90,14 @@ def test_nrel_stage_stiffness():
     stiffness = gear_pair(HELICAL).iso6336_stiffness()
     assert stiffness.theoretical_single == pytest.approx(20.051822093657e9, rel=1e-13)
     assert stiffness.single == pytest.approx(15.402808090687e9, rel=1e-13)
+
+
+def test_forces_at_both_circles():
+    """A commercial program's report of the NREL 5 MW stage 3 at 40953 N m, in newtons."""
+    forces = gear_pair(HELICAL).tooth_forces(40953.0).pair
+    assert forces.tangential_reference == pytest.approx(240064.4, rel=2e-6)
+    assert forces.radial_reference == pytest.approx(88724.2, rel=2e-6)
+    assert forces.axial == pytest.approx(42329.8, rel=2e-6)
+    assert forces.normal == pytest.approx(259412.2, rel=2e-6)
+    assert forces.tangential_working == pytest.approx(235840.3, rel=2e-6)
+    assert forces.radial_working == pytest.approx(99409.4, rel=2e-6)

@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from herringbone.commands.gear.report import gear
@@ -12,6 +13,9 @@ from herringbone.commands.main import main
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core.paths import component_folder
+from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.table_file import table_text
+from herringbone.gears.stiffness.methods import mesh_stiffness
 
 THESIS = component_folder("gear_mesh") / "gear_pair.toml"
 STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
@@ -20,7 +24,7 @@ STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
 def test_table_and_files(tmp_path, capsys):
     assert main(["gear", str(THESIS), "-o", str(tmp_path)]) == 0
     text = capsys.readouterr().out
-    for line in ("transverse contact ratio", "1.4024", "12.6817 N/(mm um)", "normal, one half"):
+    for line in ("transverse contact ratio", "1.4024", "12.6817 N/(mm um)", "normal to the flank"):
         assert line in text
     (loads, left), (_, right) = read_stiffness_table(tmp_path / "mesh_stiffness.csv")
     assert left.shape == (10, 64)
@@ -33,9 +37,9 @@ def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
     assert main(["gear", str(THESIS), "-o", str(tmp_path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["pair"]["transverse_contact_ratio"] == pytest.approx(1.4024, abs=5e-5)
-    assert found["forces"]["normal"] == pytest.approx(2252.228, abs=1e-3)
+    assert found["forces"]["half"]["normal"] == pytest.approx(2252.228, abs=1e-3)
     stiffness, at = found["mesh_stiffness"], 5
-    assert stiffness["load"][at] == pytest.approx(found["forces"]["normal"], rel=1e-12)
+    assert stiffness["load"][at] == pytest.approx(found["forces"]["half"]["normal"], rel=1e-12)
     ratio = stiffness["load"][at] / stiffness["deflection"][at] / stiffness["secant"][at]
     assert ratio == pytest.approx(1.0, abs=1e-3)  # harmonics of 2 %: means of s and 1/s differ
     assert all(Path(file).is_file() for file in found["files"])
@@ -71,6 +75,20 @@ def test_rexs_with_torque_and_halves(tmp_path):
         ([str(STAGE), "--stage", "7"], "stage '7' is none of 10 (First stage)"),
         ([str(STAGE), "--halves", "3"], "halves = 3 must be 1"),
         ([str(THESIS), "--torque", "5e9"], "too large"),
+        ([str(THESIS), "--accuracy", "12"], "class 12 must be an integer from 1 to 11"),
+        ([str(THESIS), "--speed", "0"], "speed 0 rad/s must be positive"),
+        ([str(THESIS), "--symmetry-deviation", "20kg"], "unit 'kg' is no length"),
+        ([str(THESIS), "--symmetry-deviation", "much"], "'much' is no length"),
+        ([str(THESIS), "--pinion-axial-stiffness", "1"], "goes with --symmetry-deviation"),
+        (
+            [str(THESIS), "--symmetry-deviation", "1um", "--pinion-axial-stiffness", "stiff"],
+            "give a number in N/m, or rigid",
+        ),
+        (
+            [str(THESIS), "--symmetry-deviation", "1um", "--pinion-axial-stiffness", "-1"],
+            "axial stiffness -1 N/m of the pinion",
+        ),
+        ([str(STAGE), "--symmetry-deviation", "1um"], "load sharing is of double-helical pairs"),
     ],
 )
 def test_bad_input(tmp_path, capsys, arguments, message):
@@ -80,3 +98,72 @@ def test_bad_input(tmp_path, capsys, arguments, message):
     assert message in error
     assert error.count("\n") == 1
     assert not folder.exists()
+
+
+def test_table_is_that_of_the_method(tmp_path):
+    """The mesh that carries the load on the flanks is the one of the table."""
+    gear(THESIS, tmp_path)
+    job = read_gear_file(THESIS)
+    expected = table_text(mesh_stiffness(job.task(), "slices"))
+    assert (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8") == expected
+
+
+def test_loaded_pair(tmp_path, capsys):
+    """Table, JSON, CSV and picture tell the same of a held pinion."""
+    options = [
+        "--symmetry-deviation", "10um", "--pinion-axial-stiffness", "1e8", "--speed", "1200",
+        "--accuracy", "5", "--load-factor", "1.25", "-o", str(tmp_path),
+    ]  # fmt: skip
+    assert main(["gear", str(THESIS), *options]) == 0
+    text = capsys.readouterr().out
+    for line in (
+        "Under 200 N m of the pinion, f_A 10 um, pinion axially held by 1e+08 N/m; left   right",
+        "at 1200 r/min, class 5, K_A 1.25",
+        "subcritical",
+    ):
+        assert line in text
+    assert main(["gear", str(THESIS), *options, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    loaded, force = found["loaded"], found["forces"]["pair"]["normal"]
+    left, right = (np.array(half["force"]) for half in loaded["halves"])
+    assert left + right == pytest.approx(np.full(left.size, force), rel=1e-8)
+    assert f"{loaded['over_torque']['share_left'][4]:.4f}" in text
+    assert loaded["over_torque"]["torque"][4] == pytest.approx(200.0)
+    error = np.array(loaded["transmission_error"]["value"])
+    assert loaded["transmission_error"]["peak_to_peak"] == pytest.approx(np.ptp(error))
+    secant = np.array(loaded["halves"][0]["secant"])
+    assert secant == pytest.approx(left / loaded["halves"][0]["deflection"])
+    assert f"{1e-6 * secant.mean():.1f}" in text
+    assert loaded["dynamic_factor"]["specific_load"] == pytest.approx(1.25 * 38.75e3, rel=1e-4)
+    maps = pd.read_csv(tmp_path / "flank_load.csv", comment="#")
+    for side, flank in zip(("left", "right"), loaded["flank_load"], strict=True):
+        half = maps[maps["side"] == side]
+        assert half["pressure"].max() == pytest.approx(flank["largest_pressure"], rel=0.02)
+        assert f"{1e-6 * flank['largest_pressure']:.0f}" in text
+    assert maps["axial"].max() < 69.8e-3
+    assert (tmp_path / "gear_load.png").stat().st_size > 10_000
+
+
+def test_rigid_and_floating_pinion(tmp_path, capsys):
+    """`rigid` is said, infinity is no JSON; without it the pinion floats."""
+    for held, expected in ((["--pinion-axial-stiffness", "rigid"], "rigid"), ([], 0.0)):
+        options = ["--symmetry-deviation", "20 um", *held, "-o", str(tmp_path), "--json"]
+        assert main(["gear", str(THESIS), *options]) == 0
+        found = json.loads(capsys.readouterr().out)["loaded"]
+        assert found["symmetry"]["pinion_axial_stiffness"] == expected
+        share = found["over_torque"]["share_left"][4]
+        assert share == pytest.approx(1.0 if held else 0.5, abs=1e-6)
+
+
+def test_gear_outside_the_standard_has_no_dynamic_factor(tmp_path, capsys):
+    """Faces below 4 mm have no ISO 1328-1 class: said in the table, refused if a class is asked."""
+    file = tmp_path / "thin.toml"
+    file.write_text(
+        "[gear_pair]\nnumber_of_teeth = [30, 40]\nnormal_module = '2 mm'\nface_width = '3 mm'\n"
+        "halves = 1\n",
+        encoding="utf-8",
+    )
+    assert main(["gear", str(file), "-o", str(tmp_path)]) == 0
+    assert "face width 3 mm is outside the scope of ISO 1328-1" in capsys.readouterr().out
+    assert main(["gear", str(file), "-o", str(tmp_path), "--accuracy", "7"]) == 2
+    assert "face width 3 mm is outside the scope" in capsys.readouterr().err

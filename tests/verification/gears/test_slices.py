@@ -9,9 +9,11 @@ from support.gears import HELICAL, SPUR, THESIS, gear_pair
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness import slices
+from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.resolution import resolution_table
 from herringbone.gears.stiffness.slices import SliceMesh
+from herringbone.gears.stiffness.tooth_compliance import plane_modulus, tooth_compliance
 
 HUB = {"bore_diameter": (0.040, 0.090)}
 """Hub of the prototype that gave the thesis pair's figures."""
@@ -35,6 +37,42 @@ def test_mean_stiffness_of_the_thesis_pair(hertz, torque, stiffness):
     """Two independent programs agree to their digits."""
     found = SliceMesh(THESIS_PAIR, hertz=hertz).solve([load_at(torque)])
     assert 2.0 * found.secant.mean() == pytest.approx(stiffness, rel=6e-4)
+
+
+@pytest.mark.parametrize(
+    ("hertz", "torque", "stiffness"),
+    [
+        ("lundberg", 200.0, 1.585e9),
+        ("lundberg", 1000.0, 1.665e9),
+        ("lundberg", 2000.0, 1.702e9),
+        ("yang-sun", 2000.0, 1.939e9),
+    ],
+)
+def test_mean_stiffness_in_plane_stress(hertz, torque, stiffness):
+    """The same two programs; the contact stays in plane strain."""
+    found = SliceMesh(THESIS_PAIR, hertz=hertz, plane="stress").solve([load_at(torque)])
+    assert 2.0 * found.secant.mean() == pytest.approx(stiffness, rel=6e-4)
+
+
+def test_plane_follows_from_the_face_width():
+    """Strain from 10 m_n on, to the last bit; narrow teeth between, nearer to stress."""
+    for pair in (THESIS_PAIR, gear_pair(SPUR, face_width=10.01 * 4.5e-3)):
+        load = [1e5 * pair.face_width]
+        for mesh in (SliceMesh, CoupledSliceMesh):
+            chosen, strain = (m.solve(load, 4) for m in (mesh(pair), mesh(pair, plane="strain")))
+            assert np.array_equal(chosen.secant, strain.secant)
+    narrow = gear_pair(SPUR, face_width=4.5e-3)
+    moduli = [plane_modulus(narrow, plane) for plane in ("stress", "by-width", "strain")]
+    assert moduli == pytest.approx([2.06e11, 2.06e11 / (1.0 - 0.37 * 0.09), 2.06e11 / 0.91])
+
+
+def test_plane_strain_is_stiffer_by_its_modulus():
+    """Bending, axial and foundation by 1 - nu^2; shear does not change."""
+    pair, radius = gear_pair(SPUR), np.array([36.5e-3, 39e-3])
+    strain, stress = (tooth_compliance(pair, 0, radius, plane) for plane in ("strain", "stress"))
+    for part in ("bending", "axial", "foundation"):
+        assert getattr(strain, part) == pytest.approx(0.91 * getattr(stress, part), rel=1e-12)
+    assert np.array_equal(strain.shear, stress.shear)
 
 
 @pytest.mark.parametrize(
@@ -188,6 +226,7 @@ def test_secant_rises_with_the_load():
         (SPUR, {"calibration": -1.0}, [1.0], "calibration factor -1"),
         (SPUR, {"slices": 0}, [1.0], "slices = 0"),
         (SPUR, {"hertz": "no"}, [1.0], "'no' is none of lundberg"),
+        (SPUR, {"plane": "no"}, [1.0], "plane = 'no' is none of by-width, strain, stress"),
         (SPUR, {}, [100.0, 10.0], "must ascend"),
         (SPUR, {}, [-1.0, 10.0], "from zero or above"),
         (SPUR, {}, [math.nan], "finite"),

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.roles import Role
@@ -12,11 +13,15 @@ from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
+from herringbone.gears.load.figures import Conditions, Loaded, loaded_figures
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.methods import check_method, mesh_stiffness
+from herringbone.gears.stiffness.methods import METHODS, check_method
 from herringbone.gears.stiffness.point_mesh import Progress
 
-TABLE, PICTURE = "mesh_stiffness.csv", "gear_pair.png"
+TABLE, FLANKS = "mesh_stiffness.csv", "flank_load.csv"
+PICTURE, LOAD_PICTURE = "gear_pair.png", "gear_load.png"
+_OVERSAMPLING = 4
+"""As `mesh_stiffness` has it; the mesh is needed besides, for the load on its flanks."""
 _READERS = (".toml", ".rexs", ".xml")
 
 
@@ -28,6 +33,7 @@ def gear(
     torque: float | None = None,
     stage: str | None = None,
     halves: int | None = None,
+    conditions: Conditions | None = None,
     progress: Progress | None = None,
     as_json: bool = False,
 ) -> str:
@@ -40,6 +46,7 @@ def gear(
         torque: of the pinion [N m]; the file's if None.
         stage: of a REXS file.
         halves: of a REXS stage; 1 if None.
+        conditions: of the load; None: the usual ones.
         progress: called with what is done and the share of the work, 0 to 1.
         as_json: one JSON object, in SI units and rad, instead of the table.
 
@@ -55,12 +62,15 @@ def gear(
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})
     task = job.task()
-    stiffness = mesh_stiffness(task, method, progress)
+    mesh = METHODS[method](task, progress)
+    fine = mesh.solve(task.loads, _OVERSAMPLING * task.phases)
+    stiffness = fine.resampled(task.phases)
+    loaded = loaded_figures(job, mesh, fine, conditions or Conditions())
     folder = output or Path("results") / f"gear-{file.stem}"
-    written = [str(path) for path in _write(stiffness, folder, file.stem)]
+    written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:
-        return json.dumps({**gear_figures(job, stiffness), "files": written})
-    return f"{gear_tables(job, stiffness)}\n\nFiles: {', '.join(written)}"
+        return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
+    return f"{gear_tables(job, stiffness, loaded)}\n\nFiles: {', '.join(written)}"
 
 
 def _job(file: Path, stage: str | None, halves: int | None) -> GearJob:
@@ -75,11 +85,12 @@ def _job(file: Path, stage: str | None, halves: int | None) -> GearJob:
     return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
 
 
-def _write(stiffness: MeshStiffness, folder: Path, name: str) -> list[Path]:
-    """Write table, picture and, of a double-helical pair, the component's values."""
+def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) -> list[Path]:
+    """Write tables, pictures and, of a double-helical pair, the component's values."""
+    from herringbone.plotting.gear_load import write_gear_load_picture  # noqa: PLC0415 (lazy)
     from herringbone.plotting.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
 
-    texts = {TABLE: table_text(stiffness)}
+    texts = {TABLE: table_text(stiffness), FLANKS: flank_text(stiffness.pair, loaded.flanks)}
     if stiffness.pair.halves == 2:
         component = _component()
         texts[f"{component}.toml"] = _values_text(stiffness.pair, component)
@@ -88,11 +99,12 @@ def _write(stiffness: MeshStiffness, folder: Path, name: str) -> list[Path]:
         for file_name, text in texts.items():
             (folder / file_name).write_text(text, encoding="utf-8", newline="\n")
         write_gear_pair_picture(stiffness, f"Gear pair {name}", folder / PICTURE)
+        write_gear_load_picture(loaded, f"Gear pair {name}", folder / LOAD_PICTURE)
     except OSError as error:
         raise HerringboneError(
             f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
         ) from error
-    return [folder / file_name for file_name in (*texts, PICTURE)]
+    return [folder / file_name for file_name in (*texts, PICTURE, LOAD_PICTURE)]
 
 
 def _component() -> str:

@@ -4,19 +4,29 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
+from herringbone.commands.gear.loaded import loaded_json, loaded_rows
 from herringbone.gears.geometry.corner_contact import Impact, meshing_impact
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
+from herringbone.gears.load.figures import Loaded
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.slices import SliceMesh
 
-_SPEED = 1000.0 * math.pi / 30.0
-"""Speed at which the meshing impact is told [rad/s]."""
+_RPM = math.pi / 30.0
 _PULSE = 0.02
 """Share of the impact force that a helical tooth's corner may have: one of some fifty slices."""
 _HARMONICS = 3
 _COLUMN = 9
 """Width of a number of a pair."""
+_FORCES = {
+    "tangential_reference": "tangential, at the reference circle",
+    "radial_reference": "radial, at the reference circle",
+    "tangential_working": "tangential, at the working pitch circle",
+    "radial_working": "radial, at the working pitch circle",
+    "line_of_action": "line of action, transverse",
+    "normal": "normal to the flank (pair: sum)",
+    "axial": "axial",
+}
 _Row = tuple[str, str]
 _PAIR_FIGURES = (
     "number_of_teeth", "halves", "normal_module", "normal_pressure_angle",
@@ -28,18 +38,19 @@ _PAIR_FIGURES = (
 )  # fmt: skip
 
 
-def gear_tables(job: GearJob, stiffness: MeshStiffness) -> str:
-    """Tables of geometry, forces, mesh stiffness and meshing impact, with units."""
+def gear_tables(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> str:
+    """Tables of geometry, forces, mesh stiffness, load and meshing impact, with units."""
     return "\n\n".join([
         _aligned([*_geometry(job.pair), *_forces(job)]),
-        _stiffness_table(stiffness),
-        _aligned(_impact_rows(job, stiffness)),
+        _stiffness_table(stiffness, loaded),
+        _aligned([*loaded_rows(loaded), *_impact_rows(job, stiffness, loaded)]),
     ])  # fmt: skip
 
 
-def gear_figures(job: GearJob, stiffness: MeshStiffness) -> dict:
+def gear_figures(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> dict:
     """What the tables show, in SI units and rad."""
-    pair, impact = job.pair, _impact(job, stiffness)
+    speed = loaded.conditions.speed
+    pair, impact = job.pair, _impact(job, stiffness, speed)
     forces = pair.tooth_forces(job.pinion_torque)
     return {
         "pair": {name: getattr(pair, name) for name in _PAIR_FIGURES},
@@ -54,7 +65,8 @@ def gear_figures(job: GearJob, stiffness: MeshStiffness) -> dict:
             "deflection": stiffness.deflection.mean(axis=1).tolist(),
             "harmonics": stiffness.harmonics()[:, :_HARMONICS].tolist(),
         },
-        "impact": {"speed": _SPEED, **asdict(impact)},
+        "loaded": loaded_json(loaded),
+        "impact": {"speed": speed, **asdict(impact)},
     }
 
 
@@ -114,46 +126,53 @@ def _geometry(pair: GearPair) -> list[_Row]:
 def _forces(job: GearJob) -> list[_Row]:
     torque = job.pinion_torque
     forces = job.pair.tooth_forces(torque)
-    return [
-        (f"Forces at {torque:.6g} N m of the pinion", ""),
-        ("tangential, at the reference circle", f"{forces.tangential:.1f} N"),
-        ("line of action, transverse", f"{forces.line_of_action:.1f} N"),
-        ("normal, one half", f"{forces.normal:.1f} N"),
-        ("axial, one half", f"{forces.axial:.1f} N"),
+    columns = (forces.half,) if job.pair.halves == 1 else (forces.pair, forces.half)
+    heading = "" if job.pair.halves == 1 else " (pair   one half)"
+    return [(f"Forces at {torque:.6g} N m of the pinion{heading}", "")] + [
+        (label, f"{_pair([getattr(column, name) for column in columns], 1.0, 1)} N")
+        for name, label in _FORCES.items()
     ]
 
 
-def _stiffness_table(stiffness: MeshStiffness) -> str:
-    """Means over a mesh period, at every load."""
+def _stiffness_table(stiffness: MeshStiffness, loaded: Loaded) -> str:
+    """Means over a mesh period, at every load; transmission error of the pair at its torque."""
     lines = [
         "Mesh stiffness of one half, means over a mesh period",
         stiffness.method,
-        f"{'load':>10}  {'secant':>9}  {'tangent':>9}  {'deflection':>10}   secant's harmonics",
-        f"{'[N]':>10}  {'[N/um]':>9}  {'[N/um]':>9}  {'[um]':>10}   1 to {_HARMONICS} [% of mean]",
+        f"{'torque':>8}  {'load':>9}  {'secant':>9}  {'tangent':>9}  {'deflection':>10}"
+        f"  {'TE p-p':>7}   secant's harmonics",
+        f"{'[N m]':>8}  {'[N]':>9}  {'[N/um]':>9}  {'[N/um]':>9}  {'[um]':>10}  {'[um]':>7}"
+        f"   1 to {_HARMONICS} [% of mean]",
     ]
     harmonics = stiffness.harmonics()[:, :_HARMONICS]
+    arm = stiffness.pair.base_radius[0] * math.cos(stiffness.pair.base_helix_angle)
+    torques = stiffness.pair.halves * arm * stiffness.loads
+    unloaded = [] if stiffness.loads[0] > 0.0 else ["-"]
+    errors = unloaded + [f"{1e6 * pair.peak_to_peak:.3f}" for pair in loaded.torques]
+    errors += ["-"] * (torques.size - len(errors))
     for i, load in enumerate(stiffness.loads):
         amplitudes = " ".join(f"{100.0 * value:7.2f}" for value in harmonics[i])
         lines.append(
-            f"{load:10.1f}  {1e-6 * stiffness.secant[i].mean():9.1f}  "
+            f"{torques[i]:8.1f}  {load:9.1f}  {1e-6 * stiffness.secant[i].mean():9.1f}  "
             f"{1e-6 * stiffness.tangent[i].mean():9.1f}  "
-            f"{1e6 * stiffness.deflection[i].mean():10.3f}  {amplitudes}"
+            f"{1e6 * stiffness.deflection[i].mean():10.3f}  {errors[i]:>7}  {amplitudes}"
         )
     return "\n".join(lines)
 
 
-def _impact(job: GearJob, stiffness: MeshStiffness) -> Impact:
+def _impact(job: GearJob, stiffness: MeshStiffness, speed: float) -> Impact:
     """What the meshing impact may reach at the job's torque; an upper bound for helical teeth."""
     load = job.pair.tooth_forces(job.pinion_torque).normal
     mesh = SliceMesh(job.pair, calibration=job.calibration)
     deflection = load / stiffness.mean(load)
-    return meshing_impact(job.pair, _SPEED, deflection, mesh.single_pair_stiffness(load))
+    return meshing_impact(job.pair, speed, deflection, mesh.single_pair_stiffness(load))
 
 
-def _impact_rows(job: GearJob, stiffness: MeshStiffness) -> list[_Row]:
-    impact = _impact(job, stiffness)
+def _impact_rows(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> list[_Row]:
+    speed = loaded.conditions.speed
+    impact = _impact(job, stiffness, speed)
     return [
-        ("Meshing impact at this load and 1000 r/min, without relief", ""),
+        (f"Meshing impact at this load and {speed / _RPM:g} r/min, without relief", ""),
         ("contact begins early by", f"{1e3 * impact.early_contact:.3f} mm"),
         ("velocity, normal to the flank", f"{impact.velocity:.4f} m/s"),
         ("force over the full face (upper bound)", f"{impact.force:.0f} N"),

@@ -9,22 +9,48 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class ToothForces:
-    """Forces in the mesh [N] at a torque of the pinion; of one half where it says so.
+class MeshForces:
+    """Forces in the mesh [N]: of one half, or of a whole pair.
+
+    The tangential and the radial force are the force on the line of action, resolved at the
+    reference circle (pressure angle alpha_t, as ISO 6336 does) or at the working pitch circle
+    (alpha_wt, where the bearings feel them).
 
     Attributes:
-        tangential: at the reference circle, all halves together (F_t of ISO 6336).
-        line_of_action: in the transverse plane, all halves together.
-        normal: normal to the flank, one half.
-        axial: one half.
-        radial: toward the gear's axis, one half.
+        tangential_reference: at the reference circle; F_t of ISO 6336.
+        radial_reference: toward the gear's axis, at the reference circle.
+        tangential_working: at the working pitch circle.
+        radial_working: toward the gear's axis, at the working pitch circle.
+        line_of_action: in the transverse plane.
+        normal: normal to the flanks; of a pair the sum of both halves.
+        axial: the halves of a double-helical pair cancel.
     """
 
-    tangential: float
+    tangential_reference: float
+    radial_reference: float
+    tangential_working: float
+    radial_working: float
     line_of_action: float
     normal: float
     axial: float
-    radial: float
+
+
+@dataclass(frozen=True)
+class ToothForces:
+    """Static forces in the mesh at a torque of the pinion.
+
+    Attributes:
+        pair: of all halves together.
+        half: of one half.
+    """
+
+    pair: MeshForces
+    half: MeshForces
+
+    @property
+    def normal(self) -> float:
+        """Normal to the flank, one half [N]: the load of stiffness tables."""
+        return self.half.normal
 
 
 @dataclass(frozen=True)
@@ -78,11 +104,20 @@ def tooth_forces(pair: "GearPair", torque: float) -> ToothForces:
     the one at the base cylinder.
     """
     along = torque / pair.base_radius[0]
-    half = along / pair.halves
-    return ToothForces(
-        tangential=torque / pair.reference_radius[0],
+    axial = along * math.tan(abs(pair.base_helix_angle))
+    half = _resolved(pair, along / pair.halves, axial / pair.halves)
+    return ToothForces(_resolved(pair, along, 0.0 if pair.halves == 2 else axial), half)
+
+
+def _resolved(pair: "GearPair", along: float, axial: float) -> MeshForces:
+    """Forces of a force on the line of action [N]."""
+    reference, working = pair.transverse_pressure_angle, pair.working_transverse_pressure_angle
+    return MeshForces(
+        tangential_reference=along * math.cos(reference),
+        radial_reference=along * math.sin(reference),
+        tangential_working=along * math.cos(working),
+        radial_working=along * math.sin(working),
         line_of_action=along,
-        normal=half / math.cos(pair.base_helix_angle),
-        axial=half * math.tan(abs(pair.base_helix_angle)),
-        radial=half * math.sin(pair.working_transverse_pressure_angle),
+        normal=along / math.cos(pair.base_helix_angle),
+        axial=axial,
     )

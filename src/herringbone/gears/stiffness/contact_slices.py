@@ -17,7 +17,8 @@ foundations (see `tooth_compliance`), times `calibration`, and the contact itsel
 
 w the load per length, h the depth of the tooth behind the contact, rho the radius of the contact's
 relative curvature in the normal section. The logarithm takes w + 100 N/m, so that the compliance
-has a limit at zero load. Slices do not support each other.
+has a limit at zero load. The contact is in plane strain whatever the face width: it is a tenth of a
+millimetre wide. Slices do not support each other.
 
 **Corner contact** (optional): lines reach beyond the path of contact, with the gap that the tip
 corner leaves (see `corner_contact`).
@@ -39,7 +40,11 @@ from herringbone.gears.geometry.contact_lines import cut_lines
 from herringbone.gears.geometry.corner_contact import corner_separation
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
-from herringbone.gears.stiffness.tooth_compliance import tooth_compliance
+from herringbone.gears.stiffness.tooth_compliance import (
+    PLANES,
+    plane_modulus,
+    tooth_compliance,
+)
 
 SLICES = 120
 _GRID = 129
@@ -67,6 +72,22 @@ class Slices(NamedTuple):
     gap: np.ndarray
 
 
+class LineLoad(NamedTuple):
+    """Load on the contact lines of one half at one phase, each (n,).
+
+    Attributes:
+        path: from the start of the path of contact [m].
+        face: along the face [m].
+        length: of line that a point stands for [m].
+        load: per length of line, normal to the flank [N/m].
+    """
+
+    path: np.ndarray
+    face: np.ndarray
+    length: np.ndarray
+    load: np.ndarray
+
+
 @dataclass(frozen=True)
 class ContactSlices:
     """Contact lines of one half as slices.
@@ -78,6 +99,7 @@ class ContactSlices:
         slices: number of slices across the face.
         corner_contact: follow tip corners outside the path of contact.
         hertz: "lundberg" (load dependent) or "yang-sun" (constant).
+        plane: "by-width", "strain" or "stress" in the teeth; see `tooth_compliance`.
     """
 
     pair: GearPair
@@ -86,6 +108,7 @@ class ContactSlices:
     slices: int = SLICES
     corner_contact: bool = False
     hertz: str = "lundberg"
+    plane: str = PLANES[0]
 
     def __post_init__(self) -> None:
         if self.slices < 1:
@@ -94,6 +117,7 @@ class ContactSlices:
             raise ParameterError(f"calibration factor {self.calibration:g} must be positive")
         if self.hertz not in HERTZ:
             raise ParameterError(f"hertz = '{self.hertz}' is none of {', '.join(HERTZ)}")
+        plane_modulus(self.pair, self.plane)
 
     def lines(self, phase: float) -> list[tuple[np.ndarray, np.ndarray, Slices]]:
         """Lines in contact at a phase: positions on path and face [m] and slices, each (n,)."""
@@ -149,7 +173,7 @@ class ContactSlices:
         s = np.linspace(0.0, points.length, _GRID)
         reach = (points.start + s, points.tangent_length - points.start - s)
         teeth = [
-            tooth_compliance(pair, gear, np.hypot(pair.base_radius[gear], reach[gear]))
+            tooth_compliance(pair, gear, np.hypot(pair.base_radius[gear], reach[gear]), self.plane)
             for gear in range(2)
         ]
         total = self.calibration * (teeth[0].total + teeth[1].total)

@@ -31,6 +31,7 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness.contact_slices import ContactSlices
 from herringbone.gears.stiffness.point_mesh import Line, PointMesh
+from herringbone.gears.stiffness.tooth_compliance import PLANES
 
 COUPLING = 2.5
 """Default coupling length along the face, in normal modules."""
@@ -50,6 +51,7 @@ class CoupledSliceMesh(PointMesh):
         slices: number of slices across the face; None: eight per coupling length, at least 60.
         corner_contact: follow tip corners outside the path of contact.
         coupling: length L along the face, in normal modules.
+        plane: "by-width", "strain" or "stress" in the teeth; see `tooth_compliance`.
     """
 
     pair: GearPair
@@ -58,6 +60,7 @@ class CoupledSliceMesh(PointMesh):
     slices: int | None = None
     corner_contact: bool = False
     coupling: float = COUPLING
+    plane: str = PLANES[0]
 
     def __post_init__(self) -> None:
         if not 0.0 < self.coupling < math.inf:
@@ -80,6 +83,7 @@ class CoupledSliceMesh(PointMesh):
             calibration=self.calibration,
             slices=self.slices or _FEWEST_SLICES,
             corner_contact=self.corner_contact,
+            plane=self.plane,
         )
 
     def compliance(self, lines: list[Line]) -> np.ndarray:

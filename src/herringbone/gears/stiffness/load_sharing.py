@@ -14,23 +14,35 @@ from its sister (`gap_shaft_compliance`). The contact lines of the halves are sh
 ripple of the mesh: no constant deviation loads the halves unequally then. The deviation is never
 part of a stiffness table: that is a function of the phase and of the half's own load.
 
+The half's force law comes from a slice model, or from a stiffness table of any method (`TableLaw`).
+
 What the stiffness of the whole pair is, is a matter of definition once the halves differ; see the
 properties of `LoadSharing`.
 """
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Protocol
 
 import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
-from herringbone.gears.stiffness.slices import Law, SliceMesh
+from herringbone.gears.stiffness.slices import Law
+from herringbone.gears.stiffness.two_halves import half_difference, share, upper_approach
 
 RIGID = math.inf
-_NEWTON = 100
-_TOLERANCE = 1e-10
+
+
+class HalfMesh(Protocol):
+    """One half of a pair with its force law: `SliceMesh` or `TableLaw`."""
+
+    @property
+    def pair(self) -> GearPair:
+        """Gear pair."""
+
+    def law(self, phases: np.ndarray) -> Law:
+        """Force law at phases (n,) [mesh periods]."""
 
 
 @dataclass(frozen=True)
@@ -52,32 +64,49 @@ class LoadSharing:
     axial_shift: np.ndarray
 
     @property
+    def approach(self) -> np.ndarray:
+        """(n,) approach of the gears normal to the flanks, mean of both halves [m]."""
+        return 0.5 * (self.deflection_left + self.deflection_right)
+
+    @property
+    def secant_left(self) -> np.ndarray:
+        """(n,) k_L: force over own deflection [N/m]; 0 where the half is apart."""
+        return _secant(self.force_left, self.deflection_left)
+
+    @property
+    def secant_right(self) -> np.ndarray:
+        """(n,) k_R: force over own deflection [N/m]; 0 where the half is apart."""
+        return _secant(self.force_right, self.deflection_right)
+
+    @property
     def share_left(self) -> float:
         """Mean share of the load that the left half carries."""
         return float(np.mean(self.force_left / (self.force_left + self.force_right)))
 
     @property
     def stiffness_left(self) -> float:
-        """Mean of force over own deflection, left half [N/m]."""
-        return float(np.mean(self.force_left / self.deflection_left))
+        """Mean of k_L [N/m]."""
+        return float(np.mean(self.secant_left))
 
     @property
     def stiffness_right(self) -> float:
-        """Mean of force over own deflection, right half [N/m]; 0 where it is apart."""
-        pressed = np.maximum(self.deflection_right, 1e-300)
-        return float(np.mean(self.force_right / pressed))
+        """Mean of k_R [N/m]."""
+        return float(np.mean(self.secant_right))
 
     @property
     def stiffness_by_mean_approach(self) -> float:
         """Mean of the whole force over the mean of both deflections [N/m]."""
-        approach = 0.5 * (self.deflection_left + self.deflection_right)
-        return float(np.mean((self.force_left + self.force_right) / approach))
+        return float(np.mean((self.force_left + self.force_right) / self.approach))
 
     @property
     def stiffness_by_loaded_half(self) -> float:
         """Mean of the whole force over the larger deflection [N/m]."""
         larger = np.maximum(self.deflection_left, self.deflection_right)
         return float(np.mean((self.force_left + self.force_right) / larger))
+
+
+def _secant(force: np.ndarray, deflection: np.ndarray) -> np.ndarray:
+    return np.divide(force, deflection, out=np.zeros_like(force), where=deflection > 0.0)
 
 
 def gap_shaft_compliance(pair: GearPair, radial_bearing_stiffness: float = 0.0) -> float:
@@ -97,7 +126,7 @@ def gap_shaft_compliance(pair: GearPair, radial_bearing_stiffness: float = 0.0) 
 
 
 def load_sharing(
-    mesh: SliceMesh,
+    mesh: HalfMesh,
     torque: float,
     symmetry_deviation: float,
     *,
@@ -109,7 +138,7 @@ def load_sharing(
     """Solve the equilibrium of both halves over a mesh period.
 
     Args:
-        mesh: slice model of one half.
+        mesh: one half.
         torque: of the pinion, half of it on either side [N m].
         symmetry_deviation: f_A, constant over the mesh period [m].
         pinion_axial_stiffness: k_p against ground [N/m]; 0: it floats; `RIGID`.
@@ -127,14 +156,14 @@ def load_sharing(
     sine, shift = math.sin(angle), symmetry_deviation * math.tan(angle) / pair.transverse_base_pitch
     laws = mesh.law(at + shift), mesh.law(at - shift)
     force = torque / (pair.base_radius[0] * math.cos(angle))
-    floor = mesh.solve([0.5 * force], phases).deflection[0]
+    most = upper_approach(laws, force, phases)
     axial = sum(
         1.0 / k if k > 0.0 else math.inf for k in (pinion_axial_stiffness, wheel_axial_stiffness)
     )
     compliance = sine**2 * axial + 0.5 * shaft_compliance
     offset = sine * symmetry_deviation
-    half = _half_difference(laws, force, floor, offset, compliance)
-    left, right = _share(laws, force, half, floor)
+    half = half_difference(laws, force, most, offset, compliance)
+    left, right = share(laws, force, half, most)
     own = 0.5 * shaft_compliance * (left.force - right.force)
     zeta = (half + own) / sine - symmetry_deviation
     return LoadSharing(at, left.force, right.force, left.deflection, right.deflection, zeta)
@@ -152,51 +181,3 @@ def _check(pair: GearPair, torque: float, pinion: float, wheel: float, complianc
             )
     if not compliance >= 0.0:
         raise ParameterError(f"shaft compliance {compliance:g} m/N must not be negative")
-
-
-class _Side(NamedTuple):
-    force: np.ndarray
-    deflection: np.ndarray
-    tangent: np.ndarray
-
-
-def _share(
-    laws: tuple[Law, Law], force: float, half: np.ndarray, start: np.ndarray
-) -> tuple[_Side, _Side]:
-    """Both halves, carrying the force together, at half of the difference of their deflections."""
-    approach = start + np.abs(half)
-    for _ in range(_NEWTON):
-        left, right = approach + half, approach - half
-        (f_left, k_left), (f_right, k_right) = laws[0](left), laws[1](right)
-        missing = force - f_left - f_right
-        approach = approach + missing / (k_left + k_right)
-        if np.abs(missing).max() < _TOLERANCE * force:
-            break
-    return _Side(f_left, left, k_left), _Side(f_right, right, k_right)
-
-
-def _half_difference(
-    laws: tuple[Law, Law], force: float, start: np.ndarray, offset: float, compliance: float
-) -> np.ndarray:
-    """Root u of (u - offset) / compliance + F_L - F_R, between 0 and the offset but for ripple."""
-    phases = start.size
-    if compliance == 0.0:
-        return np.full(phases, offset)
-    margin = abs(offset) + start.max()
-    low, high = (
-        np.full(phases, min(0.0, offset) - margin),
-        np.full(phases, max(0.0, offset) + margin),
-    )
-    half = np.zeros(phases)
-    for _ in range(_NEWTON):
-        left, right = _share(laws, force, half, start)
-        residual = (half - offset) / compliance + left.force - right.force
-        low, high = np.where(residual < 0.0, half, low), np.where(residual > 0.0, half, high)
-        slope = 4.0 * left.tangent * right.tangent / (left.tangent + right.tangent)
-        step = half - residual / np.maximum(slope + 1.0 / compliance, 1e-300)
-        step = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-        done = np.abs(residual) < 10.0 * _TOLERANCE * force
-        half = np.where(done, half, step)
-        if done.all():
-            break
-    return half

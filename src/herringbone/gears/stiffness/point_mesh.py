@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from herringbone.gears.stiffness.contact_slices import ContactSlices, Slices
+from herringbone.gears.stiffness.contact_slices import ContactSlices, LineLoad, Slices
 from herringbone.gears.stiffness.equilibrium import ContactPoints, balance
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, checked_loads
 from herringbone.gears.stiffness.slices import PHASES
@@ -41,11 +41,21 @@ class PointMesh(ABC):
 
     def points(self, phase: float) -> ContactPoints:
         """Points that may touch at a phase [mesh periods]."""
-        lines = self.lines.lines(phase)
+        return self._points(self.lines.lines(phase))
+
+    def _points(self, lines: list[Line]) -> ContactPoints:
         slices = Slices(*(np.concatenate(v) for v in zip(*(s for _, _, s in lines), strict=True)))
         return ContactPoints(
             self.compliance(lines), slices.length, slices.gap, partial(self.lines.contact, slices)
         )
+
+    def line_load(self, phase: float, force: float) -> LineLoad:
+        """Load on the contact lines at a phase and a normal force of the half [N]."""
+        lines = self.lines.lines(phase)
+        points = self._points(lines)
+        pressed = balance(points, force).forces if force > 0.0 else np.zeros_like(points.length)
+        path, face = (np.concatenate([line[i] for line in lines]) for i in range(2))
+        return LineLoad(path, face, points.length, pressed / points.length)
 
     def solve(self, loads: Sequence[float], phases: int = PHASES) -> MeshStiffness:
         """Deflection and tangent stiffness at loads, over one mesh period.

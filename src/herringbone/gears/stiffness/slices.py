@@ -35,7 +35,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.gears.stiffness.contact_slices import ContactSlices, Slices
+from herringbone.gears.stiffness.contact_slices import ContactSlices, LineLoad, Slices
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, checked_loads
 
 PHASES = 64
@@ -96,6 +96,16 @@ class SliceMesh(ContactSlices):
             return np.sum(load * slices.length, axis=1), tangent
 
         return law
+
+    def line_load(self, phase: float, force: float) -> LineLoad:
+        """Load on the contact lines at a phase and a normal force of the half [N]."""
+        path, face, parts = zip(*self.lines(phase), strict=True)
+        slices = Slices(*(np.concatenate(values)[None] for values in zip(*parts, strict=True)))
+        load = np.zeros_like(slices.gap)
+        if force > 0.0:
+            deflection, _ = self._loaded(slices, force)
+            load, _ = self._line_loads(slices, load, deflection)
+        return LineLoad(np.concatenate(path), np.concatenate(face), slices.length[0], load[0])
 
     def single_pair_stiffness(self, force: float) -> float:
         """Stiffness [N/m] of one tooth pair at the path's start, loaded over the full face."""
