@@ -10,7 +10,7 @@ from support.gears import HELICAL, SPUR, THESIS, gear_pair
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements import FiniteElementMesh, Resolution
 from herringbone.gears.finite_elements.blocks import Profile
-from herringbone.gears.finite_elements.compliance import layer_count, tooth_mesh
+from herringbone.gears.finite_elements.compliance import UNKNOWNS, layer_count, tooth_mesh
 from herringbone.gears.finite_elements.layer import layer_stiffness
 from herringbone.gears.finite_elements.section import Section, mesh_section
 from herringbone.gears.finite_elements.sweep import stack_compliance
@@ -170,7 +170,7 @@ def test_default_layers_keep_to_the_limit():
     layers = layer_count(pair, Resolution(), section)
     layer = layer_stiffness(section, 1.0 / layers, 0.0, YOUNG, POISSON)
     unknowns = (layers + 1) * len(layer.lower) + layers * layer.inner
-    assert 150_000 - len(layer.lower) - layer.inner < unknowns <= 150_000
+    assert UNKNOWNS - len(layer.lower) - layer.inner < unknowns <= UNKNOWNS
 
 
 @pytest.fixture(scope="module")
