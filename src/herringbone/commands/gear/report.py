@@ -12,8 +12,9 @@ from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
+from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.methods import check_method, mesh_stiffness
+from herringbone.gears.stiffness.methods import AUTO, check_method
 from herringbone.gears.stiffness.point_mesh import Progress
 
 TABLE, PICTURE = "mesh_stiffness.csv", "gear_pair.png"
@@ -24,7 +25,7 @@ def gear(
     file: Path,
     output: Path | None = None,
     *,
-    method: str = "slices",
+    method: str | None = None,
     torque: float | None = None,
     stage: str | None = None,
     halves: int | None = None,
@@ -36,7 +37,7 @@ def gear(
     Args:
         file: gear file (.toml) or REXS file (.rexs, .xml).
         output: folder; results/gear-NAME if None.
-        method: of the mesh stiffness.
+        method: of the mesh stiffness; the file's if None.
         torque: of the pinion [N m]; the file's if None.
         stage: of a REXS file.
         halves: of a REXS stage; 1 if None.
@@ -50,12 +51,11 @@ def gear(
         HerringboneError: see `read_gear_file`, `read_rexs`, `GearJob.task` and the method; or a
             file cannot be written.
     """
-    check_method(method)
+    check_method(method or AUTO)
     job = _job(file, stage, halves)
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})
-    task = job.task()
-    stiffness = mesh_stiffness(task, method, progress)
+    stiffness = stiffness_for(job, method, progress)
     folder = output or Path("results") / f"gear-{file.stem}"
     written = [str(path) for path in _write(stiffness, folder, file.stem)]
     if as_json:
