@@ -9,7 +9,8 @@ from herringbone.gears.files.shipped_table import GEAR_FILE
 from herringbone.gears.stiffness.load_sharing import RIGID, load_sharing
 
 JOB = read_gear_file(GEAR_FILE)  # the thesis' pair, as the gear_mesh component has it
-PLAIN = SliceMesh(JOB.pair, calibration=JOB.calibration)
+SLICES = JOB.task().calibration_of("slices")
+PLAIN = SliceMesh(JOB.pair, calibration=SLICES)
 TORQUES = np.array([200.0, 400.0, 1000.0, 2000.0, 4000.0, 8000.0])
 
 
@@ -33,7 +34,7 @@ def relief_study(axes: Axes) -> float:
     plain = PLAIN.solve(loads).secant.mean(axis=1)
     for amount in (5, 10):
         relief = Modification(tip_relief=(1e-6 * amount, 0.0), relief_length=3e-3)
-        mesh = SliceMesh(JOB.pair, relief, calibration=JOB.calibration)
+        mesh = SliceMesh(JOB.pair, relief, calibration=SLICES)
         change = 100.0 * (mesh.solve(loads).secant.mean(axis=1) / plain - 1.0)
         axes.plot(TORQUES, change, "o-", label=f"{amount} µm at the pinion's tip")
     axes.axhline(-0.95, color="black", linestyle=":", label="thesis: -0.95 % for 10 µm")

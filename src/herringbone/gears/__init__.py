@@ -13,10 +13,13 @@ from herringbone.gears.geometry.contact import PathOfContact, ToothForces
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.geometry.tooth_profile import ToothProfile
+from herringbone.gears.job import GearJob
+from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.slices import SliceMesh
 
 __all__ = [
+    "GearJob",
     "GearPair",
     "MeshStiffness",
     "Modification",
@@ -24,4 +27,5 @@ __all__ = [
     "SliceMesh",
     "ToothForces",
     "ToothProfile",
+    "stiffness_for",
 ]

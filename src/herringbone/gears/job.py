@@ -1,17 +1,16 @@
 """What is asked about a pair: its gears, modification, load, and how the table is made."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.stiffness.calibration import full_torque
 from herringbone.gears.stiffness.contact_slices import SLICES
-from herringbone.gears.stiffness.methods import Task
+from herringbone.gears.stiffness.methods import AUTO, Task, check_calibration
 from herringbone.gears.stiffness.slices import PHASES
 
-FULL_SPECIFIC_LOAD = 1e5
-"""F_t / b [N/m] at which ISO 6336-1 takes teeth as fully loaded: the torque if none is given."""
 OVERLOAD = 25.0
 """Largest load of a table over that of the torque."""
 _SHARES = (0.0, 0.001, 0.004, 0.01, 0.02, 0.04, 0.08, 0.2, 0.4, 1.0)
@@ -28,7 +27,9 @@ class GearJob:
         torque: of the pinion [N m]; None: at 100 N/mm of tangential load per face width.
         loads: normal forces of one half [N]; None: ten from zero to 25 times that of the torque.
         phases: of the table.
-        calibration: factor on the teeth's compliance, of the slice method.
+        method: of the mesh stiffness: "fe", "coupled-slices", "slices"; "auto": the best there is.
+        calibration: factors on the compliance of the teeth, by slice method; of one that is not
+            named: its own, see `stiffness.calibration`.
         slices: across the face, of the slice method.
         corner_contact: follow tip corners outside the path of contact.
     """
@@ -38,7 +39,8 @@ class GearJob:
     torque: float | None = None
     loads: Sequence[float] | None = None
     phases: int = PHASES
-    calibration: float = 1.0
+    method: str = AUTO
+    calibration: Mapping[str, float] = field(default_factory=dict)
     slices: int = SLICES
     corner_contact: bool = False
 
@@ -47,16 +49,16 @@ class GearJob:
         """Torque of the pinion [N m], given or by the specific load."""
         if self.torque is not None:
             return self.torque
-        width = self.pair.halves * self.pair.face_width
-        return FULL_SPECIFIC_LOAD * width * self.pair.reference_radius[0]
+        return full_torque(self.pair)
 
     def task(self) -> Task:
         """The task of a method.
 
         Raises:
             ParameterError: torque not positive; loads that do not begin at zero, or do not reach
-                the load of the torque; too few phases.
+                the load of the torque; too few phases; a calibration of no method.
         """
+        check_calibration(self.calibration)
         if not self.pinion_torque > 0.0:
             raise ParameterError(f"torque {self.pinion_torque:g} N m must be positive")
         if not 4 <= self.phases <= 128:

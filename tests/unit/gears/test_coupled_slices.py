@@ -1,23 +1,28 @@
 """Slices that support each other along the face: their limits."""
 
+import math
+
 import numpy as np
 import pytest
 from support.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
-from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
+from herringbone.gears.stiffness.coupled_slices import TILT, CoupledSliceMesh
 from herringbone.gears.stiffness.slices import SliceMesh
 
 LOADS = [0.0, 1e3, 2e4]
+BARE = {"parts": (1.0, 1.0), "tilt": (0.0, 0.0)}
+"""Nothing of finite elements but the coupling."""
 
 
 def test_spur_gear_does_not_feel_the_coupling():
     """All its slices deflect alike, ends included: the influence has a unit integral."""
     pair = gear_pair(SPUR)
     plain = SliceMesh(pair, calibration=0.9).solve(LOADS, 16)
-    for coupling in (0.5, 2.5, 20.0):
-        coupled = CoupledSliceMesh(pair, calibration=0.9, coupling=coupling).solve(LOADS, 16)
+    for lengths in ((0.5, 0.5), (1.3, 6.0), (20.0, 2.5)):
+        mesh = CoupledSliceMesh(pair, calibration=0.9, lengths=lengths, **BARE)
+        coupled = mesh.solve(LOADS, 16)
         np.testing.assert_allclose(coupled.secant, plain.secant, rtol=2e-3)
         np.testing.assert_allclose(coupled.tangent, plain.tangent, rtol=2e-3)
 
@@ -26,10 +31,10 @@ def test_short_coupling_is_the_slice_method():
     """The error goes with the length: 0.4 and 0.2 modules."""
     pair = gear_pair(THESIS)
     plain = SliceMesh(pair).solve([2e4], 4)
-    errors = [
-        np.abs(CoupledSliceMesh(pair, coupling=c).solve([2e4], 4).secant / plain.secant - 1).max()
-        for c in (0.4, 0.2)
-    ]
+    errors = []
+    for length in (0.4, 0.2):
+        coupled = CoupledSliceMesh(pair, lengths=(length, length), **BARE).solve([2e4], 4)
+        errors.append(np.abs(coupled.secant / plain.secant - 1).max())
     assert errors[1] < 0.6 * errors[0] < 0.04
 
 
@@ -46,6 +51,30 @@ def test_relief_and_crowning_take_load_off_the_ends():
     assert ends[0].gap.max() > 4e-6 > ends[1].gap.max()
 
 
-def test_coupling_must_be_positive():
-    with pytest.raises(ParameterError, match="coupling length 0 modules must be positive"):
-        CoupledSliceMesh(gear_pair(SPUR), coupling=0.0)
+def test_body_tilts_under_the_axial_force():
+    """One tooth pair at a time, that of a narrow gear: its deflection grows by F times the term."""
+    pair = gear_pair(THESIS, face_width=10e-3)
+    mesh = CoupledSliceMesh(pair)
+    _, face, _ = mesh.lines.lines(0.0)[0]
+    bare = CoupledSliceMesh(pair, tilt=(0.0, 0.0))
+    added = mesh.compliance(mesh.lines.lines(0.0)) - bare.compliance(bare.lines.lines(0.0))
+    plate, shear = TILT
+    expected = sum(
+        plate * (root - hub) ** 2 / 10e-3**3 + shear * math.log(root / hub) / 10e-3
+        for root, hub in zip(pair.root_radius, pair.hub_radius, strict=True)
+    )
+    expected *= math.sin(pair.base_helix_angle) ** 2 / pair.youngs_modulus
+    own = slice(0, face.size)
+    np.testing.assert_allclose(added[own, own], expected, rtol=1e-9)
+
+
+def test_spur_gear_does_not_tilt():
+    pair = gear_pair(SPUR)
+    tilted, held = (CoupledSliceMesh(pair, tilt=tilt).solve(LOADS, 4) for tilt in (TILT, (0, 0)))
+    assert np.array_equal(tilted.deflection, held.deflection)
+
+
+@pytest.mark.parametrize("lengths", [(0.0, 6.0), (1.3, -1.0)])
+def test_coupling_must_be_positive(lengths):
+    with pytest.raises(ParameterError, match=r"coupling length of the .* modules must be positive"):
+        CoupledSliceMesh(gear_pair(SPUR), lengths=lengths)

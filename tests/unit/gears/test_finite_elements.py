@@ -2,15 +2,22 @@
 
 import builtins
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from support.gears import HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
-from herringbone.gears.finite_elements import FiniteElementMesh, Resolution
+from herringbone.core.paths import CACHE_VARIABLE
+from herringbone.gears.finite_elements import (
+    FiniteElementMesh,
+    Resolution,
+    both_teeth,
+    second_process,
+)
 from herringbone.gears.finite_elements.blocks import Profile
-from herringbone.gears.finite_elements.compliance import layer_count, tooth_mesh
+from herringbone.gears.finite_elements.compliance import UNKNOWNS, layer_count, tooth_mesh
 from herringbone.gears.finite_elements.layer import layer_stiffness
 from herringbone.gears.finite_elements.section import Section, mesh_section
 from herringbone.gears.finite_elements.sweep import stack_compliance
@@ -170,7 +177,7 @@ def test_default_layers_keep_to_the_limit():
     layers = layer_count(pair, Resolution(), section)
     layer = layer_stiffness(section, 1.0 / layers, 0.0, YOUNG, POISSON)
     unknowns = (layers + 1) * len(layer.lower) + layers * layer.inner
-    assert 150_000 - len(layer.lower) - layer.inner < unknowns <= 150_000
+    assert UNKNOWNS - len(layer.lower) - layer.inner < unknowns <= UNKNOWNS
 
 
 @pytest.fixture(scope="module")
@@ -255,6 +262,57 @@ def test_contact_pushes_and_does_not_overlap(force):
     assert np.abs(apart * found.forces).max() < 1e-9 * force * found.deflection
     more = balance(points, force * (1 + 1e-6), found.forces)
     assert found.tangent == pytest.approx(1e-6 * force / (more.deflection - found.deflection), 1e-3)
+
+
+@pytest.fixture
+def cached(tmp_path, monkeypatch) -> Path:
+    """Small meshes are computed like large ones: two processes, and an empty cache."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(both_teeth, "_LARGE", 0.0)
+    return tmp_path / "tooth_compliance"
+
+
+def test_two_processes_give_the_same_teeth(spur, cached, monkeypatch):
+    """To the last bit; the second time out of the cache; the share done rises to 1."""
+    told: list[float] = []
+    pair = gear_pair(SPUR)
+    mesh = FiniteElementMesh(pair, resolution=COARSE, progress=lambda _, done: told.append(done))
+    for one, other in zip(mesh.teeth, spur.teeth, strict=True):
+        assert np.array_equal(one.matrices, other.matrices)
+        assert np.array_equal(one.path, other.path)
+        assert np.array_equal(one.face, other.face)
+        assert (one.asymmetry, one.unknowns) == (other.asymmetry, other.unknowns)
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(1.0)
+    assert len(list(cached.glob("*.npz"))) == 1
+    monkeypatch.setattr(both_teeth, "tooth_compliance", lambda *_: pytest.fail("computed again"))
+    again = FiniteElementMesh(pair, resolution=COARSE).teeth
+    assert np.array_equal(again[1].matrices, spur.teeth[1].matrices)
+
+
+def test_dead_process_is_replaced(spur, cached, monkeypatch):
+    """The process ends at once: its tooth is computed here."""
+    monkeypatch.setattr(second_process, "_MODULE", "herringbone.no_such_module")
+    found = FiniteElementMesh(gear_pair(SPUR), resolution=COARSE).teeth
+    assert np.array_equal(found[1].matrices, spur.teeth[1].matrices)
+
+
+def test_process_ends_with_what_needs_it(cached):
+    """An error beside it: nothing is left running."""
+    other = second_process.SecondProcess((gear_pair(SPUR), 1, COARSE, 0))
+    with pytest.raises(KeyboardInterrupt), other:
+        raise KeyboardInterrupt
+    assert other._process.returncode is not None
+
+
+def test_finer_neighbours_and_ring():
+    """`others` refines what is not the loaded tooth; the compliance hardly changes."""
+    pair = gear_pair(SPUR)
+    coarse, fine = (tooth_mesh(pair, 0, replace(COARSE, others=count)) for count in (1, 2))
+    assert len(fine.nodes) > 1.5 * len(coarse.nodes)
+    meshes = [FiniteElementMesh(pair, resolution=replace(COARSE, others=count)) for count in (1, 2)]
+    means = [mesh.solve([5e3], 8).secant.mean() for mesh in meshes]
+    assert means[1] == pytest.approx(means[0], rel=2e-3)
 
 
 def test_thin_rim_is_refused_at_once():

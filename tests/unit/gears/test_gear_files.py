@@ -28,6 +28,9 @@ tip_relief = ["5 um", 0.0]
 [table]
 torque = "0.2 kN m"
 corner_contact = true
+method = "slices"
+[table.calibration]
+slices = 0.88
 """
 
 
@@ -57,6 +60,8 @@ def test_units_become_si(tmp_path):
     assert job.modification.tip_relief == (5e-6, 0.0)
     assert job.torque == 200.0
     assert job.task().corner_contact
+    assert job.method == "slices"
+    assert job.calibration == {"slices": 0.88}
 
 
 def test_pair_of_the_gear_mesh_component():
@@ -78,9 +83,13 @@ def test_pair_of_the_gear_mesh_component():
         ("[table]", "[tables]", "[tables] is unknown; it takes gear_pair, modification, table"),
         ("corner_contact = true", "corner_contact = 1", "corner_contact = 1 must be true or false"),
         ("[27, 81]", "[27, 81", "cannot read"),
+        ("[table.calibration]\nslices", "calibration",
+         "calibration = 0.88 belongs to a method; write [table.calibration], slices = 0.88"),
+        ("slices = 0.88", 'slices = "much"', "[table] calibration slices = 'much' is no number"),
+        ('"slices"', "3", "[table] method = 3 must be a text"),
         ('"5 um"', '"-5 um"', "not negative"),
     ],
-)
+)  # fmt: skip
 def test_bad_gear_file(message, old, new, expected):
     assert expected in message(old, new)
 
@@ -108,6 +117,7 @@ def test_loads_follow_from_the_torque():
         ({"loads": [0.0, 1000.0]}, "largest load 1000 N of the stiffness table is below the 2252"),
         ({"torque": -1.0}, "torque -1 N m must be positive"),
         ({"phases": 2}, "phases = 2 must lie between 4 and 128"),
+        ({"calibration": {"fe": 1.0}}, "method 'fe' is unknown; it is of slices or coupled-slices"),
     ],
 )
 def test_tables_without_zero_or_large_loads(changes, expected):

@@ -107,8 +107,8 @@ def test_c1_in_phase(mesh):
         p, x = i / force_law.PHASES, 0.3 * limit
         left = (force(p, x)[0] - force(p - e, x)[0]) / e
         right = (force(p + e, x)[0] - force(p, x)[0]) / e
-        # O(e) times the second derivative, (2 pi 30)**2 of a 0.1 % content: 0.4 of F.
-        assert abs(right - left) < e * 40 * force(p, x)[0]
+        # O(e) times the second derivative: where a line enters, 0.65 F per period over a 128th.
+        assert abs(right - left) < e * 200 * force(p, x)[0]
 
 
 def test_monotone(mesh):
@@ -204,7 +204,10 @@ def test_reproduces_the_shipped_table():
     error = worst(*read_stiffness_table(SHIPPED)[0])
     # 33 nodes over sqrt(deflection): the two lowest loads (5 and 20 N m) share the second cell.
     assert error.max() < 1.1e-3
-    assert error[2:].max() < 1e-4  # 50 N m and more
+    assert error[2:-1].max() < 1e-4  # 50 N m and more
+    # The largest load lies above the limit at all phases but one, by up to 7 % of the deflection,
+    # over which the tangent changes by 0.4 %: half of their product.
+    assert error[-1] < 2e-4
 
 
 def test_reproduces_a_constant_table_to_rounding():

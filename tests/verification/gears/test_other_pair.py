@@ -16,7 +16,7 @@ TORQUE = 300.0
 
 def test_stage_of_a_rexs_file_in_the_gearbox(tmp_path):
     """z 27/51, 21 deg: the mean normal force of a half is T1 / (2 r_b1 cos(beta_b))."""
-    gear(STAGE, tmp_path, torque=TORQUE, halves=2)
+    gear(STAGE, tmp_path, method="coupled-slices", torque=TORQUE, halves=2)
     pair = read_rexs(STAGE, halves=2)
     values = tomllib.loads((tmp_path / "gear_mesh.toml").read_text(encoding="utf-8"))["set"]
     values["gear_mesh.stiffness_table"] = str(tmp_path / "mesh_stiffness.csv")

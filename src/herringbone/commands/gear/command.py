@@ -22,7 +22,11 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
         commands, "gear", _gear, "compute a gear pair: table, picture, stiffness table"
     )
     sub.add_argument("file", type=Path, help="gear file (.toml) or REXS file (.rexs)")
-    sub.add_argument("--method", default="slices", help="slices (default), coupled-slices or fe")
+    sub.add_argument(
+        "--method",
+        help="fe (extra 'fe'), coupled-slices, slices or auto, the best that is installed; the "
+        "file's if not given, or auto",
+    )
     sub.add_argument("--torque", type=float, help="of the pinion in N m; the file's if not given")
     sub.add_argument("--stage", help="id or name of the stage; of REXS files of several")
     sub.add_argument("--halves", type=int, help="of a REXS stage: 1 (default) or 2, double helical")
@@ -42,7 +46,7 @@ def _gear(options: argparse.Namespace) -> int:
     from herringbone.commands.gear.report import gear  # noqa: PLC0415 (scipy: only when needed)
 
     check_writable(options.output or Path("results"))
-    with _Bar(options.method) as bar:
+    with _Bar() as bar:
         text = gear(
             options.file,
             options.output,
@@ -99,9 +103,6 @@ def _number(text: str) -> float:
 class _Bar:
     """Progress bar of a long method, on a terminal only."""
 
-    def __init__(self, name: str) -> None:
-        self._name = name
-
     def __enter__(self) -> "_Bar":
         self._bar: tqdm | None = None
         return self
@@ -110,7 +111,7 @@ class _Bar:
         """Move the bar to a share of the work, 0 to 1."""
         if self._bar is None:
             self._bar = tqdm(total=100.0, disable=None, bar_format="{l_bar}{bar}| {elapsed}")
-        self._bar.set_description(f"{self._name}: {what}", refresh=False)
+        self._bar.set_description(what, refresh=False)
         self._bar.update(100.0 * share - self._bar.n)
 
     def __exit__(self, *exception: object) -> None:

@@ -13,15 +13,14 @@ from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
+from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.load.figures import Conditions, Loaded, loaded_figures
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.methods import METHODS, check_method
-from herringbone.gears.stiffness.point_mesh import Progress
+from herringbone.gears.stiffness.methods import AUTO, METHODS, check_method, chosen_method
+from herringbone.gears.stiffness.point_mesh import Progress, silent
 
 TABLE, FLANKS = "mesh_stiffness.csv", "flank_load.csv"
 PICTURE, LOAD_PICTURE = "gear_pair.png", "gear_load.png"
-_OVERSAMPLING = 4
-"""As `mesh_stiffness` has it; the mesh is needed besides, for the load on its flanks."""
 _READERS = (".toml", ".rexs", ".xml")
 
 
@@ -29,7 +28,7 @@ def gear(
     file: Path,
     output: Path | None = None,
     *,
-    method: str = "slices",
+    method: str | None = None,
     torque: float | None = None,
     stage: str | None = None,
     halves: int | None = None,
@@ -42,7 +41,7 @@ def gear(
     Args:
         file: gear file (.toml) or REXS file (.rexs, .xml).
         output: folder; results/gear-NAME if None.
-        method: of the mesh stiffness.
+        method: of the mesh stiffness; the file's if None.
         torque: of the pinion [N m]; the file's if None.
         stage: of a REXS file.
         halves: of a REXS stage; 1 if None.
@@ -57,15 +56,13 @@ def gear(
         HerringboneError: see `read_gear_file`, `read_rexs`, `GearJob.task` and the method; or a
             file cannot be written.
     """
-    check_method(method)
+    check_method(method or AUTO)
     job = _job(file, stage, halves)
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})
-    task = job.task()
-    mesh = METHODS[method](task, progress)
-    fine = mesh.solve(task.loads, _OVERSAMPLING * task.phases)
-    stiffness = fine.resampled(task.phases)
-    loaded = loaded_figures(job, mesh, fine, conditions or Conditions())
+    stiffness = stiffness_for(job, method, progress)
+    mesh = METHODS[chosen_method(job.method if method is None else method)].mesh(job.task(), silent)
+    loaded = loaded_figures(job, mesh, stiffness, conditions or Conditions())
     folder = output or Path("results") / f"gear-{file.stem}"
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:

@@ -163,7 +163,7 @@ def _stiffness_table(stiffness: MeshStiffness, loaded: Loaded) -> str:
 def _impact(job: GearJob, stiffness: MeshStiffness, speed: float) -> Impact:
     """What the meshing impact may reach at the job's torque; an upper bound for helical teeth."""
     load = job.pair.tooth_forces(job.pinion_torque).normal
-    mesh = SliceMesh(job.pair, calibration=job.calibration)
+    mesh = SliceMesh(job.pair, calibration=job.task().calibration_of("slices"))
     deflection = load / stiffness.mean(load)
     return meshing_impact(job.pair, speed, deflection, mesh.single_pair_stiffness(load))
 

@@ -42,7 +42,7 @@ _SCENES = ("loaded", "separation")
 ITEMS: dict[str, Item] = {
     "gear-table": Item(
         "stiffness table of the gear pair, in its resources in fmus",
-        "seconds",
+        "half a minute on two idle cores, once; extra 'fe'",
         ("-m herringbone.gears.files.shipped_table",),
         usual=True,
     ),

@@ -11,6 +11,10 @@ tip_relief = ["5 um", "5 um"]
 
 [table]                          # optional; see `GearJob`
 torque = "200 N m"
+method = "fe"                    # or "coupled-slices", "slices"; "auto": the best there is
+
+[table.calibration]              # optional: factors on the compliance of the teeth, by method
+slices = 0.88
 """
 
 import tomllib
@@ -92,7 +96,13 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
     }
 
 
-def _value(name: str, value: object, where: str) -> float | bool:
+def _value(name: str, value: object, where: str) -> Any:  # noqa: ANN401 (by the name)
+    if name == "method":
+        if not isinstance(value, str):
+            raise ResourceError(f"{where} = {value!r} must be a text")
+        return value
+    if name == "calibration":
+        return _calibration(value, where)
     if name in _FLAGS:
         if not isinstance(value, bool):
             raise ResourceError(f"{where} = {value!r} must be true or false")
@@ -102,3 +112,11 @@ def _value(name: str, value: object, where: str) -> float | bool:
             raise ResourceError(f"{where} = {value!r} must be an integer")
         return value
     return quantity(value, _KINDS.get(name, "number"), where)
+
+
+def _calibration(value: object, where: str) -> dict[str, float]:
+    if not isinstance(value, dict):
+        raise ResourceError(
+            f"{where} = {value!r} belongs to a method; write [table.calibration], slices = {value}"
+        )
+    return {name: quantity(item, "number", f"{where} {name}") for name, item in value.items()}

@@ -50,6 +50,19 @@ def origin(stiffness: MeshStiffness) -> list[str]:
         f"Tip relief of pinion and wheel {relief} um over {1e3 * modification.relief_length:g} mm, "
         f"helix crowning {1e6 * modification.helix_crowning:g} um.",
         f"Method: {stiffness.method}.",
+        *_uncertainty(stiffness),
+    ]
+
+
+def _uncertainty(stiffness: MeshStiffness) -> list[str]:
+    """How far the table may be from finite elements without limit of resolution."""
+    bounds = stiffness.uncertainty
+    if bounds is None:
+        return []
+    harmonics = " ".join(f"{value:.2g}" for value in bounds.harmonics.max(axis=0))
+    return [
+        f"Uncertainty over the mean stiffness, against finite elements refined without end: mean "
+        f"{bounds.mean:g}, mesh harmonics 1 to {bounds.harmonics.shape[1]} at most {harmonics}."
     ]
 
 

@@ -35,6 +35,8 @@ class Resolution:
         root: along the fillet from Q to the middle of the tooth space.
         layers: along the face width; None: one per 0.6 normal modules, at least 8.
         growth: ratio of neighbouring elements towards the bore.
+        others: across half a neighbouring tooth, and along its root; the ring beyond gets finer
+            with it.
     """
 
     profile: int = 8
@@ -42,9 +44,10 @@ class Resolution:
     root: int = 2
     layers: int | None = None
     growth: float = _DEPTH_GROWTH
+    others: int = 1
 
     def __post_init__(self) -> None:
-        for name in ("profile", "thickness", "root", "layers"):
+        for name in ("profile", "thickness", "root", "layers", "others"):
             count = getattr(self, name)
             if count is not None and count < 1:
                 raise ParameterError(f"resolution: {name} = {count} elements must be at least 1")
@@ -85,7 +88,7 @@ class Blocks:
     """
 
     def __init__(self, profile: Profile, resolution: Resolution) -> None:
-        self.profile = profile
+        self.profile, self.resolution = profile, resolution
         x, y = profile.flank
         length = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
         q = _corner(profile)
@@ -106,7 +109,9 @@ class Blocks:
 
     def rest(self, start: float) -> np.ndarray:
         """Ring from an angle to the side opposite of the fine tooth."""
-        steps = _graded(np.pi - start, 2.0 * self.half, _RING_GROWTH)
+        finer = self.resolution.others
+        growth = _RING_GROWTH ** (1.0 / finer)
+        steps = _graded(np.pi - start, 2.0 * self.half / finer, growth)
         angles = start + (np.pi - start) * steps
         r_f, bore = self.profile.root_radius, self.profile.bore_radius
         return _ruled(_arc(r_f, angles), _arc(bore, angles), self.depth)

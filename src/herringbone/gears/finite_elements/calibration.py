@@ -24,7 +24,7 @@ from scipy.optimize import brentq
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements.mesh import FiniteElementMesh
 from herringbone.gears.geometry.gear_pair import GearPair
-from herringbone.gears.job import GearJob
+from herringbone.gears.stiffness.calibration import full_torque
 from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.slices import PHASES, SliceMesh
@@ -103,5 +103,5 @@ def calibration_factor(
         ParameterError: see `calibrate` and `FiniteElementMesh`.
     """
     if load is None:
-        load = pair.tooth_forces(GearJob(pair).pinion_torque).normal
+        load = pair.tooth_forces(full_torque(pair)).normal
     return calibrate(FiniteElementMesh(pair), load, model).factor

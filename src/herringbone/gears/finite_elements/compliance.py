@@ -44,7 +44,7 @@ from herringbone.gears.geometry.gear_pair import GearPair
 
 STATIONS = 9
 """Candidate points along the path of contact."""
-UNKNOWNS = 150_000
+UNKNOWNS = 100_000
 """Degrees of freedom of one gear that the default number of layers does not exceed."""
 _LAYER = 0.6
 """Default thickness of a layer, in normal modules."""
@@ -98,7 +98,7 @@ class ToothCompliance:
 def layer_count(pair: GearPair, resolution: Resolution, section: Section) -> int:
     """Layers along the face width.
 
-    As given, or one per 0.6 normal modules, at least 8, at most 150 000 degrees of freedom.
+    As given, or one per 0.6 normal modules, at least 8, at most 100 000 degrees of freedom.
     """
     if resolution.layers is not None:
         return resolution.layers

@@ -19,12 +19,8 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.gears.finite_elements.blocks import Resolution
-from herringbone.gears.finite_elements.compliance import (
-    ToothCompliance,
-    teeth_ahead,
-    tooth_compliance,
-    tooth_mesh,
-)
+from herringbone.gears.finite_elements.both_teeth import both_teeth
+from herringbone.gears.finite_elements.compliance import ToothCompliance, teeth_ahead, tooth_mesh
 from herringbone.gears.finite_elements.layer import scikit_fem
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
@@ -67,12 +63,9 @@ class FiniteElementMesh(PointMesh):
     @cached_property
     def teeth(self) -> tuple[ToothCompliance, ToothCompliance]:
         """Compliance of a tooth of pinion and wheel."""
-        return self._tooth(0, "pinion"), self._tooth(1, "wheel")
-
-    def _tooth(self, gear: int, name: str) -> ToothCompliance:
         ahead = teeth_ahead(self.pair) if self.coupled_teeth else 0
-        return tooth_compliance(
-            self.pair, gear, self.resolution, ahead, lambda done: self.progress(name, done)
+        return both_teeth(
+            self.pair, self.resolution, ahead, lambda done: self.progress("teeth", done)
         )
 
     @cached_property
@@ -100,10 +93,14 @@ class FiniteElementMesh(PointMesh):
 
     def describe(self) -> str:
         """The model in one line."""
+        mesh = self.resolution
         gears = " and ".join(
             f"{tooth.face.size - 1} layers with {tooth.unknowns} degrees of freedom"
             for tooth in self.teeth
         )
         corner = ", corner contact" if self.corner_contact else ""
         coupled = ", teeth coupled by the body" if self.coupled_teeth else ""
-        return f"finite elements, {gears}, {self.slices} points across the face{corner}{coupled}"
+        return (
+            f"finite elements, {mesh.profile} x {mesh.thickness} x {mesh.root} (profile, half "
+            f"thickness, root), {gears}, {self.slices} points across the face{corner}{coupled}"
+        )

@@ -67,7 +67,7 @@ def mesh_section(
     blocks = Blocks(profile, resolution)
     pitch = 2.0 * np.pi / profile.number_of_teeth
     fine = blocks.pitch(resolution.thickness, resolution.profile, resolution.root)
-    coarse = blocks.pitch(1, 2, 1)
+    coarse = blocks.pitch(resolution.others, 2 * resolution.others, resolution.others)
     others = [turned(g, q * pitch) for q in range(-left, right + 1) if q for g in coarse]
     rest = [mirrored(blocks.rest((left + 0.5) * pitch)), blocks.rest((right + 0.5) * pitch)]
     grids = [*fine, *others, *rest]

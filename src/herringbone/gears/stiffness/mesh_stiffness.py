@@ -13,6 +13,21 @@ from herringbone.gears.geometry.modification import Modification
 
 
 @dataclass(frozen=True)
+class Uncertainty:
+    """How far a table may be from that of finite elements without limit of resolution.
+
+    What all methods leave out is not in it: teeth that move each other by the gear's body.
+
+    Attributes:
+        mean: of the mean stiffness, over it [1].
+        harmonics: (n, 4) of the amplitudes of mesh harmonics 1 to 4 at n loads, over the mean [1].
+    """
+
+    mean: float
+    harmonics: np.ndarray
+
+
+@dataclass(frozen=True)
 class MeshStiffness:
     """Mesh stiffness of one half of a pair; both halves have the same.
 
@@ -25,6 +40,7 @@ class MeshStiffness:
         deflection: (n, m) approach of the gears normal to the flank [m].
         tangent: (n, m) tangent stiffness d(load)/d(deflection) [N/m].
         zero_load_secant: (m,) limit of load / deflection at zero load [N/m].
+        uncertainty: of mean and harmonics; None: not known.
     """
 
     pair: GearPair
@@ -35,6 +51,7 @@ class MeshStiffness:
     deflection: np.ndarray
     tangent: np.ndarray
     zero_load_secant: np.ndarray
+    uncertainty: Uncertainty | None = None
 
     @cached_property
     def secant(self) -> np.ndarray:

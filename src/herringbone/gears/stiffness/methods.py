@@ -1,19 +1,28 @@
 """Methods of computing the mesh stiffness, by name."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+import importlib.util
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.stiffness.calibration import default_calibration
 from herringbone.gears.stiffness.contact_slices import SLICES
 from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
-from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, Uncertainty
 from herringbone.gears.stiffness.point_mesh import PointMesh, Progress, silent
 from herringbone.gears.stiffness.slices import PHASES, SliceMesh
 
+AUTO = "auto"
+"""The best method that this installation has."""
 _OVERSAMPLING = 4
 """Phases that the slices are solved at, over those of the table."""
+_STATED = 4
+"""Mesh harmonics whose uncertainty is stated."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +34,8 @@ class Task:
         loads: normal forces of one half [N], ascending from zero.
         modification: of the flanks.
         phases: number of equidistant phases.
-        calibration: factor on the compliance of teeth and foundations; of both slice methods.
+        calibration: factors on the compliance of teeth and bodies, by method; of a method that is
+            not named: see `calibration`.
         slices: across the face; of the method "slices".
         corner_contact: follow tip corners outside the path of contact.
     """
@@ -34,63 +44,146 @@ class Task:
     loads: Sequence[float]
     modification: Modification = field(default_factory=Modification)
     phases: int = PHASES
-    calibration: float = 1.0
+    calibration: Mapping[str, float] = field(default_factory=dict)
     slices: int = SLICES
     corner_contact: bool = False
 
+    def calibration_of(self, method: str) -> float:
+        """Factor of a method."""
+        given = self.calibration.get(method)
+        return default_calibration(self.pair, method) if given is None else given
 
-def _slices(task: Task, progress: Progress | None) -> SliceMesh:
+
+def _slices(task: Task, progress: Progress) -> SliceMesh:
     return SliceMesh(
         task.pair,
         task.modification,
-        calibration=task.calibration,
+        calibration=task.calibration_of("slices"),
         slices=task.slices,
         corner_contact=task.corner_contact,
     )
 
 
-def _coupled_slices(task: Task, progress: Progress | None) -> PointMesh:
+def _coupled_slices(task: Task, progress: Progress) -> PointMesh:
     return CoupledSliceMesh(
         task.pair,
         task.modification,
-        calibration=task.calibration,
+        calibration=task.calibration_of("coupled-slices"),
         corner_contact=task.corner_contact,
     )
 
 
-def _finite_elements(task: Task, progress: Progress | None) -> PointMesh:
+def _finite_elements(task: Task, progress: Progress) -> PointMesh:
     from herringbone.gears.finite_elements import FiniteElementMesh  # noqa: PLC0415 (uses METHODS)
 
     return FiniteElementMesh(
-        task.pair,
-        task.modification,
-        corner_contact=task.corner_contact,
-        progress=progress or silent,
+        task.pair, task.modification, corner_contact=task.corner_contact, progress=progress
     )
 
 
-METHODS: dict[str, Callable[[Task, Progress | None], SliceMesh | PointMesh]] = {
-    "slices": _slices,
-    "coupled-slices": _coupled_slices,
-    "fe": _finite_elements,
+@dataclass(frozen=True)
+class Accuracy:
+    """How far tables of a method were found from those of finer and finer finite elements.
+
+    Attributes:
+        mean: of the mean stiffness, over it [1].
+        share: of a mesh harmonic's amplitude, over the amplitude [1].
+        floor: of a harmonic's amplitude at least, over the mean stiffness [1].
+    """
+
+    mean: float
+    share: float
+    floor: float
+
+    def of_harmonics(self, stiffness: MeshStiffness) -> np.ndarray:
+        """(n, 4) bounds of the amplitudes of mesh harmonics 1 to 4, over the mean."""
+        return np.maximum(self.share * stiffness.harmonics()[:, :_STATED], self.floor)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method.
+
+    Attributes:
+        title: for people.
+        mesh: what makes its mesh.
+        accuracy: of its tables; of plain slices: of what they are measured by, coupled slices.
+        calibrated: it takes a calibration.
+    """
+
+    title: str
+    mesh: Callable[[Task, Progress], SliceMesh | PointMesh]
+    accuracy: Accuracy
+    calibrated: bool = True
+
+
+_COUPLED = Accuracy(mean=0.03, share=0.15, floor=0.0006)
+METHODS = {
+    "slices": Method("plain slices", _slices, _COUPLED),
+    "coupled-slices": Method("coupled slices", _coupled_slices, _COUPLED),
+    "fe": Method("finite elements", _finite_elements, Accuracy(0.01, 0.03, 0.0001), False),
 }
-"""What makes the mesh of each method."""
+"""Methods by name. Evidence: `finite_elements.calibration` and `finite_elements.convergence`."""
 
 
 def check_method(method: str) -> None:
     """Raises ParameterError if there is no such method."""
-    if method not in METHODS:
-        raise ParameterError(f"method '{method}' is none of {', '.join(METHODS)}")
+    if method != AUTO and method not in METHODS:
+        raise ParameterError(f"method '{method}' is none of {', '.join(METHODS)}, {AUTO}")
+
+
+def check_calibration(calibration: Mapping[str, float]) -> None:
+    """Raises ParameterError if a calibration names no method, or one that takes none."""
+    allowed = [name for name, method in METHODS.items() if method.calibrated]
+    for name in calibration:
+        if name not in allowed:
+            raise ParameterError(
+                f"calibration of method '{name}' is unknown; it is of {' or '.join(allowed)}"
+            )
+
+
+def has_finite_elements() -> bool:
+    """True if the extra 'fe' is installed."""
+    return importlib.util.find_spec("skfem") is not None
+
+
+def chosen_method(method: str = AUTO) -> str:
+    """The method of a name: "auto" is finite elements, coupled slices without the extra 'fe'.
+
+    Raises:
+        ParameterError: there is no such method.
+    """
+    check_method(method)
+    if method != AUTO:
+        return method
+    return "fe" if has_finite_elements() else "coupled-slices"
 
 
 def mesh_stiffness(
-    task: Task, method: str = "slices", progress: Progress | None = None
+    task: Task, method: str = AUTO, progress: Progress | None = None
 ) -> MeshStiffness:
-    """Mesh stiffness of one half over phase and load.
+    """Mesh stiffness of one half over phase and load, on one thread of BLAS.
 
     Raises:
         ParameterError: the method is unknown, or see the method.
     """
-    check_method(method)
-    mesh = METHODS[method](task, progress)
-    return mesh.solve(task.loads, _OVERSAMPLING * task.phases).resampled(task.phases)
+    name = chosen_method(method)
+    with threadpool_limits(limits=1, user_api="blas"):
+        found, solved = _table(task, name, progress or silent)
+        bounds = METHODS[name].accuracy.of_harmonics(found)
+        if name == "slices":
+            better, _ = _table(task, "coupled-slices", silent)
+            apart = (found.harmonics() - better.harmonics())[:, :_STATED]
+            bounds = _COUPLED.of_harmonics(better) + np.abs(apart)
+    return replace(
+        found,
+        method=f"{found.method}, {task.phases} phases out of {solved}",
+        uncertainty=Uncertainty(METHODS[name].accuracy.mean, bounds),
+    )
+
+
+def _table(task: Task, method: str, progress: Progress) -> tuple[MeshStiffness, int]:
+    """Table of a method, and the number of phases that it was solved at."""
+    solved = _OVERSAMPLING * task.phases
+    mesh = METHODS[method].mesh(task, progress)
+    return mesh.solve(task.loads, solved).resampled(task.phases), solved

@@ -1,0 +1,85 @@
+"""The stiffness table of a job: out of the cache, or computed and put there."""
+
+import logging
+
+import numpy as np
+
+from herringbone.core.activity import activity
+from herringbone.gears.job import GearJob
+from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, Uncertainty
+from herringbone.gears.stiffness.methods import (
+    AUTO,
+    METHODS,
+    Task,
+    chosen_method,
+    mesh_stiffness,
+)
+from herringbone.gears.stiffness.point_mesh import Progress
+from herringbone.gears.stored import Arrays, content_key, stored_arrays
+
+_LOG = logging.getLogger("herringbone")
+_ARRAYS = ("loads", "phases", "deflection", "tangent", "zero_load_secant")
+_BOUNDS = ("mean", "harmonics")
+
+
+def stiffness_for(
+    job: GearJob, method: str | None = None, progress: Progress | None = None
+) -> MeshStiffness:
+    """Mesh stiffness of one half of a pair, as a job asks for it.
+
+    A line says what takes long, and what is missing for the best method.
+
+    Args:
+        job: pair, modification, load and table.
+        method: other than the job's.
+        progress: called with what is done and the share of the work, 0 to 1.
+
+    Raises:
+        ParameterError: see `GearJob.task` and the method.
+        ResourceError: the cache folder cannot be made.
+    """
+    asked = job.method if method is None else method
+    name, task = chosen_method(asked), job.task()
+    chosen = METHODS[name]
+    if asked == AUTO and name != "fe":
+        _LOG.warning(
+            "the stiffness table of z %d/%d is made by %s, its mean within %g %% and its harmonics "
+            "within %g %%, because the extra 'fe' is missing: pip install 'herringbone[fe]'",
+            *job.pair.number_of_teeth,
+            chosen.title,
+            100.0 * chosen.accuracy.mean,
+            100.0 * chosen.accuracy.share,
+        )
+
+    def make() -> Arrays:
+        found = mesh_stiffness(task, name, progress)
+        return {
+            "method": np.array(found.method),
+            **{name: getattr(found, name) for name in _ARRAYS},
+            **{name: np.asarray(getattr(found.uncertainty, name)) for name in _BOUNDS},
+        }
+
+    with activity(f"making the stiffness table by {chosen.title}", "once for each pair and load"):
+        arrays = stored_arrays("mesh_stiffness", _key(task, name), make)
+    return MeshStiffness(
+        job.pair,
+        job.modification,
+        str(arrays["method"]),
+        *(arrays[name] for name in _ARRAYS),
+        Uncertainty(float(arrays["mean"]), arrays["harmonics"]),
+    )
+
+
+def _key(task: Task, method: str) -> str:
+    calibration = task.calibration_of(method) if METHODS[method].calibrated else None
+    return content_key(
+        "herringbone.gears.stiffness.methods",
+        method,
+        task.pair,
+        [float(load) for load in task.loads],
+        task.modification,
+        task.phases,
+        calibration,
+        task.slices,
+        task.corner_contact,
+    )

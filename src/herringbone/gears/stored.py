@@ -1,0 +1,54 @@
+"""Arrays that take long to compute, kept in the cache folder by what they follow from."""
+
+import io
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.paths import cache_folder
+
+_LIBRARIES = ("numpy", "scipy", "scikit-fem")
+
+Arrays = dict[str, np.ndarray]
+
+
+def content_key(module: str, *values: object) -> str:
+    """Key of what a module of the package computes from values.
+
+    Args:
+        module: whose syntax, and that of all modules that it imports, decides.
+        values: whose `repr` gives all of their digits.
+    """
+    return digest_of(kernels_key(module), *_versions(), *map(repr, values))
+
+
+def _versions() -> list[str]:
+    found = []
+    for library in _LIBRARIES:
+        with suppress(PackageNotFoundError):
+            found.append(f"{library} {version(library)}")
+    return found
+
+
+def stored_arrays(kind: str, key: str, make: Callable[[], Mapping[str, np.ndarray]]) -> Arrays:
+    """Arrays out of the cache, or made and put there.
+
+    Args:
+        kind: folder of the cache.
+        key: see `content_key`.
+        make: computes them.
+
+    Raises:
+        ResourceError: the cache folder cannot be made.
+    """
+    file = cache_folder(kind) / f"{key}.npz"
+    if not is_stored(file):
+        buffer = io.BytesIO()
+        np.savez(buffer, **make())
+        store(file, buffer.getvalue())
+    with np.load(file, allow_pickle=False) as found:
+        return dict(found)
