@@ -21,6 +21,7 @@ ALLOWED: dict[str, set[str]] = {
     "running": {
         "core",
         "components",
+        "gears",
         "housing",
         "fmi",
         "cosim",

@@ -1,8 +1,7 @@
 """The speed-accuracy chart of a system's scene: runs, table, picture, files."""
 
 import json
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +22,9 @@ from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
-from herringbone.running.loading import load_scene, load_system, open_parts
-from herringbone.running.start import started
+from herringbone.running.gears import Gear
+from herringbone.running.loading import open_parts
+from herringbone.running.prepared import Named, Wishes, prepared
 
 LEVELS = (1e-2, 1e-3)
 """Errors at which steps are compared [1]."""
@@ -39,6 +39,9 @@ def measure(
     steps: Sequence[float] = STEPS,
     tolerances: Sequence[float] = (),
     t_end: float | None = None,
+    values: Mapping[str, float | str] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
     fmu: str = AUTO_FMU,
     progress: Progress = lambda algorithm, step: None,
 ) -> WorkPrecision:
@@ -51,6 +54,7 @@ def measure(
         steps: communication step sizes [s].
         tolerances: relative errors for which li adapts its step, one more curve; none if not given.
         t_end: duration of each run [s]; the scene's if not given.
+        values, gear, housing: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         progress: called before each run with the algorithm and the step [s].
 
@@ -66,10 +70,8 @@ def measure(
         raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
     refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
     chosen = [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
-    structure, folder = load_system(system)
-    options = load_scene(folder, scene)
-    options = replace(options, t_end=options.t_end if t_end is None else t_end)
-    structure, notes = started(structure, options)
+    wishes = Wishes(t_end=t_end, values=values or {}, gear=gear, housing=housing)
+    structure, options, notes = prepared(system, scene, wishes)
     fmu, why = choose_kind(fmu)
     notes = (*notes, *why)
     grids = ladder(steps, options.t_end)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from herringbone.commands.build import add_platform_options, chosen_platforms, untested
-from herringbone.commands.options import add_scene
+from herringbone.commands.options import add_scene, files_of_parts
 from herringbone.commands.output import check_writable
 
 
@@ -45,7 +45,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     name = Path(options.system).stem
     if options.output:
         check_writable(options.output.parent, options.output)
-    platforms = chosen_platforms(options)
+    platforms, files = chosen_platforms(options), files_of_parts(options)
     if options.as_fmu:
         if options.step is not None:
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
@@ -55,6 +55,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
             outside=options.outside,
             scene=options.scene,
             values=values,
+            gear=files.gear,
+            housing=files.housing,
             platforms=platforms,
             fmi=options.fmi,
         )
@@ -69,6 +71,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         scene=options.scene,
         step=PARALLEL_STEP if options.step is None else options.step,
         values=values,
+        gear=files.gear,
+        housing=files.housing,
         native=options.native,
         platforms=platforms,
     )

@@ -21,6 +21,7 @@ from herringbone.commands.options import (
     add_kind,
     add_scene,
     add_start_values,
+    files_of_parts,
     start_values,
 )
 from herringbone.commands.output import check_writable, logged, say, show, terminable
@@ -106,6 +107,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
+    add_start_values(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
     )
@@ -153,12 +155,16 @@ def _chart(options: argparse.Namespace) -> int:
     check_writable(options.output or Path("results"))
     given = {"algorithms": options.algorithm, **vars(options)}
     given = {name: given[name] for name in ("algorithms", "steps", "tolerances", "t_end")}
+    files = files_of_parts(options)
     text, outcome = chart(
         options.system,
         options.output,
         as_json=options.json,
         scene=options.scene,
         fmu=options.fmu,
+        values=start_values(options.set),
+        gear=files.gear,
+        housing=files.housing,
         **{name: value for name, value in given.items() if value is not None},
     )
     show(text)

@@ -2,7 +2,8 @@
 
 import argparse
 from collections.abc import Callable, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from herringbone.core import ParameterError
 
@@ -37,7 +38,16 @@ def add_kind(sub: argparse.ArgumentParser) -> None:
 
 
 def add_start_values(sub: argparse.ArgumentParser) -> None:
-    """Declare start values; `start_values` reads them."""
+    """Declare start values, gears and housings; see `start_values`, `files_of_parts`."""
+    sub.add_argument(
+        "--gear", action="append", default=[], metavar="[PATH=]FILE",
+        help="gear file (.toml, .rexs) of the gear pair, or of the one at PATH; sets all parts "
+        "that belong to it",
+    )  # fmt: skip
+    sub.add_argument(
+        "--housing", action="append", default=[], metavar="[PATH=]DATA",
+        help="folder of modal data, dimensions of a welded housing (.toml) or FMU of the housing",
+    )  # fmt: skip
     sub.add_argument(
         "--set",
         action="append",
@@ -60,6 +70,33 @@ def start_values(items: Sequence[str]) -> dict[str, float | str]:
         except ValueError:
             found[name] = text
     return found
+
+
+class PartFiles(NamedTuple):
+    """Files of gear pairs and housings by path of their part; "": of the only one."""
+
+    gear: dict[str, Path]
+    housing: dict[str, Path]
+
+
+def files_of_parts(options: argparse.Namespace) -> PartFiles:
+    """What --gear and --housing give.
+
+    Raises:
+        ParameterError: two for the same part.
+    """
+    found: dict[str, dict[str, Path]] = {}
+    for name in ("gear", "housing"):
+        files: dict[str, Path] = {}
+        for item in getattr(options, name):
+            path, equals, file = item.partition("=")
+            path, file = (path, file) if equals and not Path(item).exists() else ("", item)
+            if path in files:
+                where = f"'{path}'" if path else "without a path"
+                raise ParameterError(f"--{name} {item}: it is given twice {where}; write PATH=FILE")
+            files[path] = Path(file)
+        found[name] = files
+    return PartFiles(**found)
 
 
 def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:

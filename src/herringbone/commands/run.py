@@ -11,6 +11,7 @@ from herringbone.commands.options import (
     add_scene,
     add_start_values,
     assignments,
+    files_of_parts,
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
@@ -68,6 +69,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
         if (value := getattr(options, name)) is not None
     }
+    files = files_of_parts(options)
     with closing(Bar(always=False)) as bar:
         report = _Report(options, bar)
         result = api.run(
@@ -76,6 +78,8 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             fmu=options.fmu,
             replace_parts=assignments(options.replace, "--replace", _REPLACE),
             values=start_values(options.set),
+            gear=files.gear,
+            housing=files.housing,
             slow=_multiples(options.slow),
             reference=options.reference,
             progress=bar.show,

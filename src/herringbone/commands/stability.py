@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from herringbone.commands.options import files_of_parts
 from herringbone.commands.output import check_writable, say
 from herringbone.core import ParameterError
 
@@ -38,7 +39,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.running import loading, start  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
     from herringbone.scenes import Start  # noqa: PLC0415
 
     output = options.output or (Path("results") if options.atlas else None)
@@ -47,13 +48,17 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
-    structure, folder = loading.load_system(options.system)
-    scene = loading.load_scene(folder, options.scene)
-    values = {**scene.values, **values}
-    scene = replace(scene, start=Start.EQUILIBRIUM, start_offset={}, values=values)
-    for note in structure.notes:
+    given = files_of_parts(options)
+    wishes = Wishes(
+        values=values,
+        start=Start.EQUILIBRIUM,
+        start_offset={},
+        gear=given.gear,
+        housing=given.housing,
+    )
+    structure, scene, notes = prepared(options.system, options.scene, wishes)
+    for note in notes:
         say(note)
-    structure, _ = start.started(structure, scene)
     with tqdm(unit=" matrices", disable=None) as bar:
 
         def show(algorithm: str) -> None:

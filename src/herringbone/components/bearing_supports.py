@@ -25,11 +25,14 @@ damping 2 % of the local critical damping of a half-body, a choice of this proje
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
 from herringbone.components.ports import HALVES, journals, seats
+from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Component, Declaration, Kernels, Variable, input_, output, parameter
+from herringbone.core.pair_values import PairValues
 from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.elementary import cosine, sine
@@ -37,13 +40,23 @@ from herringbone.kernels.jit import kernel
 
 _RADIAL_STIFFNESS = 6.34e8
 _AXIAL_STIFFNESS = {"pinion": 0.0, "wheel": 2.03e8}
-_HALF_MASS = {"pinion": 6.500, "wheel": 47.739}
-_DAMPING_RATIO = 0.02
-_PRESSURE_ANGLE = math.atan(math.tan(math.radians(20.0)) / math.cos(math.radians(30.0)))
 
 
-def _damping(stiffness: float, mass: float) -> float:
-    return 2.0 * _DAMPING_RATIO * math.sqrt(stiffness * mass)
+def _of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:
+    """Line of action, and damping of the pair's halves on the bearings; see `Component.of_pair`."""
+    found = {"pressure_angle": pair.working_pressure_angle}
+    for gear, name in enumerate(GEARS):
+        for q in ("radial", "axial"):
+            stiffness = own[f"{name}.{q}_stiffness"]
+            found[f"{name}.{q}_damping"] = pair.bearing_damping(gear, stiffness)
+    return found
+
+
+_SHIPPED = _of_pair(
+    SHIPPED_PAIR,
+    {f"{g}.radial_stiffness": _RADIAL_STIFFNESS for g in GEARS}
+    | {f"{g}.axial_stiffness": _AXIAL_STIFFNESS[g] for g in GEARS},
+)
 
 
 def _ports(half: str) -> list[Variable]:
@@ -74,7 +87,7 @@ def _ports(half: str) -> list[Variable]:
 
 
 def _parameters(gear: str) -> list[Variable]:
-    mass, axial = _HALF_MASS[gear], _AXIAL_STIFFNESS[gear]
+    axial = _AXIAL_STIFFNESS[gear]
     return [
         parameter(
             f"{gear}.radial_stiffness",
@@ -89,7 +102,7 @@ def _parameters(gear: str) -> list[Variable]:
             f"{gear}.radial_damping",
             "N.s/m",
             "per half",
-            _damping(_RADIAL_STIFFNESS, mass),
+            _SHIPPED[f"{gear}.radial_damping"],
             minimum=0,
             quantity=Quantity.DAMPING,
             place=gear,
@@ -107,7 +120,7 @@ def _parameters(gear: str) -> list[Variable]:
             f"{gear}.axial_damping",
             "N.s/m",
             "as axial_stiffness",
-            _damping(axial, mass),
+            _SHIPPED[f"{gear}.axial_damping"],
             minimum=0,
             quantity=Quantity.DAMPING,
             place=gear,
@@ -136,9 +149,10 @@ _d = Declaration(
             "pressure_angle",
             "rad",
             "working transverse pressure angle alpha_wt",
-            _PRESSURE_ANGLE,
+            _SHIPPED["pressure_angle"],
             minimum=-math.pi,
             maximum=math.pi,
+            quantity=Quantity.WORKING_PRESSURE_ANGLE,
         ),
         parameter(
             "flank",
@@ -228,4 +242,4 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, int(b[_DEGREE]))
 
 
-BEARING_SUPPORTS = Component(_d, Kernels(_step, _rhs, _out), __doc__)
+BEARING_SUPPORTS = Component(_d, Kernels(_step, _rhs, _out), __doc__, of_pair=_of_pair)

@@ -12,11 +12,14 @@ Source: the test control of the thesis, chapter 5 (TCT1000).
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
 from herringbone.components.resources.loader import Refusal, ResourceLoader
+from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
+from herringbone.core.pair_values import PairValues
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel, seldom
@@ -33,7 +36,14 @@ _d = Declaration(
     [
         output("speed_setpoint", "rad/s", "for the drive motor", nodes=True),
         output("torque_setpoint", "N.m", "for the load motor", nodes=True),
-        parameter("gear_ratio", "1", "load torque per pinion torque", 3.0, minimum=1e-6),
+        parameter(
+            "gear_ratio",
+            "1",
+            "load torque per pinion torque",
+            SHIPPED_PAIR.gear_ratio,
+            minimum=1e-6,
+            quantity=Quantity.GEAR_RATIO,
+        ),
         parameter("speed_factor", "1", "multiplies the cycle's speed", 1.0),
         parameter("torque_factor", "1", "multiplies the cycle's torque", 1.0),
         parameter(
@@ -124,10 +134,17 @@ def _breakpoints(block: np.ndarray) -> tuple[float, ...]:
     return (*times.tolist(), float(block[_RAMP]))
 
 
+def _of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:
+    """The gear ratio; see `Component.of_pair`."""
+    del own
+    return {"gear_ratio": pair.gear_ratio}
+
+
 BENCH_CONTROLLER = Component(
     _d,
     Kernels(_step, _rhs, _out),
     __doc__,
     load=ResourceLoader(_d.texts, _load, _REFUSALS, scratch=1),
     breakpoints=_breakpoints,
+    of_pair=_of_pair,
 )

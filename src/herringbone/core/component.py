@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from herringbone.core.declaration import Declaration
+from herringbone.core.pair_values import PairValues
 from herringbone.core.paths import component_folder
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ class Kernels(NamedTuple):
     out: Callable[[np.ndarray, float], None]
 
 
+OfPair = Callable[[PairValues, Mapping[str, float]], dict[str, float]]
 Freeze = Callable[["Instance", Callable[[np.ndarray], float]], None]
 
 
@@ -81,6 +83,8 @@ class Component:
             lines through the operating point. It is given what makes one stiffness [N/m] of those
             of a mesh period (n,), and raises ParameterError if a mesh is open. None: no law needs
             it, or none can.
+        of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
+            given the pair and the part's parameters, as they are without the pair. None: none do.
         folder: where script, README and golden result lie, and `resources`; that of its name if
             not given.
     """
@@ -99,6 +103,7 @@ class Component:
     samples: bool = False
     longest_step: Callable[[np.ndarray], float] = unbounded
     freeze: Freeze | None = None
+    of_pair: OfPair | None = None
     folder: Path = field(default=Path())
 
     def __post_init__(self) -> None:

@@ -16,6 +16,18 @@ def is_folder(path: Path) -> bool:
     return os.path.isdir(path)  # noqa: PTH112 (pathlib's raises for such names)
 
 
+def beside(value: float | str, folder: Path) -> float | str:
+    """A value from a file in a folder, or from a command that runs there.
+
+    A text that is the relative name of a file there becomes its absolute path. Any other text stays
+    as it is: a name in the resources of a component.
+    """
+    if not isinstance(value, str) or not value or Path(value).is_absolute():
+        return value
+    file = folder / value
+    return str(file.absolute()) if is_file(file) else value
+
+
 def as_texts(values: Mapping[str, float | str | Path] | None) -> dict[str, float | str]:
     """Values by name, with paths as text; empty for None."""
     return {k: str(v) if isinstance(v, Path) else v for k, v in (values or {}).items()}

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.mesh_assumptions import MeshAssumptions
 from herringbone.gears.stiffness.calibration import full_torque
 from herringbone.gears.stiffness.contact_slices import SLICES
 from herringbone.gears.stiffness.methods import AUTO, Task, check_calibration
@@ -32,6 +33,7 @@ class GearJob:
             named: its own, see `stiffness.calibration`.
         slices: across the face, of the slice method.
         corner_contact: follow tip corners outside the path of contact.
+        mesh: what geometry does not tell, see `MeshAssumptions`; no table depends on it.
     """
 
     pair: GearPair
@@ -43,6 +45,7 @@ class GearJob:
     calibration: Mapping[str, float] = field(default_factory=dict)
     slices: int = SLICES
     corner_contact: bool = False
+    mesh: MeshAssumptions = field(default_factory=MeshAssumptions)
 
     @property
     def pinion_torque(self) -> float:

@@ -27,16 +27,11 @@ from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.loading import (
-    load_scene,
-    load_system,
-    open_parts,
-    with_options,
-    with_replacements,
-)
+from herringbone.running.gears import Gear
+from herringbone.running.loading import open_parts
+from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import decimated, make_result, twin_error
-from herringbone.running.start import started
+from herringbone.running.run_result import decimated, make_result, twin_error, with_misfits
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
@@ -57,6 +52,8 @@ def run(
     fmu: str = AUTO_FMU,
     replace_parts: Mapping[str, str | Path] | None = None,
     values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: str | Path | Mapping[str, str | Path] | None = None,
     reference: bool = False,
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
@@ -82,6 +79,10 @@ def run(
         replace_parts: FMU files by instance name; a housing is tested against the contract of
             housings first, and what it breaks becomes a note.
         values: variables to set, by `instance.variable`.
+        gear: gear file (TOML or REXS) or job of the gear pair, whose values all parts get that
+            belong to it; of several pairs: by path.
+        housing: folder of modal data, dimensions of a welded housing (TOML) or FMU; of several
+            housings: by path.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
@@ -94,16 +95,15 @@ def run(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
-    chosen = with_options(load_scene(folder, scene), t_end, record_step, start, values)
     coupling = _asked_for(algorithm, tolerance)
-    check_grid(chosen.t_end, step, chosen.record_step)
-    structure, broken = with_replacements(structure, replace_parts or {})
-    structure, notes = started(structure, chosen)
+    wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
+    structure, chosen, notes = prepared(
+        system, scene, wishes, check=lambda scene: check_grid(scene.t_end, step, scene.record_step)
+    )
     if reference:
         refuse_foreign_parts(structure)
     fmu, slower = choose_kind(fmu)
-    lines = [*notes, *broken, *slower]
+    lines = [*notes, *slower]
     with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as parts:
         if coupling is None:
             coupling, why = _chosen_for(parts, tolerance)
@@ -120,7 +120,7 @@ def run(
                 structure, parts, coupling, grid, tell, bond_frequency=bond, slow=slow
             )
         lines += _step_notes(asked, coupling, recording)
-        every = make_result(structure, chosen, coupling, fmu, recording, lines)
+        every = with_misfits(make_result(structure, chosen, coupling, fmu, recording, lines))
         _log_end(recording)
         result = decimated(every, chosen.record_step) if reference else every
         if recorded:

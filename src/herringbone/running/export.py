@@ -9,14 +9,13 @@ from pathlib import Path
 
 from herringbone.components.registry import component
 from herringbone.core import ParameterError, ResourceError
-from herringbone.core.files import as_texts
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
-from herringbone.running.loading import load_scene, load_system
-from herringbone.running.start import started
+from herringbone.running.gears import Gear
+from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
 
 PARALLEL_STEP = 2e-6
@@ -84,20 +83,21 @@ def build_fmus(
         ) from error
 
 
-def prepared(
+def ready(
     system: str | Path,
     scene: str | Path | Scene | None,
     values: Mapping[str, float | str | Path] | None,
+    gear: Gear | Mapping[str, Gear] | None,
+    housing: Named | None,
 ) -> tuple[System, Scene]:
     """A system with all values that are to be exported, and the scene that gives them.
 
     Raises:
         HerringboneError: system, scene or values are wrong.
     """
-    structure, folder = load_system(system)
-    chosen = load_scene(folder, scene)
-    chosen = replace(chosen, values={**chosen.values, **as_texts(values)})
-    structure, notes = started(structure, chosen)
+    structure, chosen, notes = prepared(
+        system, scene, Wishes(values=values or {}, gear=gear, housing=housing)
+    )
     for note in notes:
         _log.warning(note)
     return structure, chosen
@@ -122,6 +122,8 @@ def export_ssp(
     scene: str | Path | Scene | None = None,
     step: float = PARALLEL_STEP,
     values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
     native: bool = False,
     platforms: Sequence[str] = (),
 ) -> Path:
@@ -137,6 +139,7 @@ def export_ssp(
         scene: name or file of a scene; the system's default if not given.
         step: communication step size [s]; shortened so that a whole number makes the end time.
         values: variables to set, by `instance.variable`.
+        gear, housing: see `herringbone.run`.
         native: FMUs without Python, instead of Python FMUs.
         platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
 
@@ -149,25 +152,48 @@ def export_ssp(
     file = Path(file)
     if file.suffix != ".ssp":
         raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
-    structure, chosen = prepared(system, scene, values)
-    _check_texts(structure)
+    structure, chosen = ready(system, scene, values, gear, housing)
+    structure, files = _carried(structure, native=native)
     step = make_grid(chosen.t_end, step, step).step
     names = sorted({str(p.component) for p in structure.parts if not p.foreign})
-    fmus = build_native_fmus(names, platforms=platforms) if native else build_python_fmus(names)
+    fmus = (
+        build_native_fmus(names, platforms=platforms, files=files)
+        if native
+        else build_python_fmus(names)
+    )
     with written(file):
         write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)
     return file
 
 
-def _check_texts(system: System) -> None:
-    """Resources must lie in the FMUs: a file of this machine is not there on another one."""
+def _carried(system: System, *, native: bool) -> tuple[System, dict[str, Path]]:
+    """Files that native FMUs are to carry, by `component.parameter`, and the system that has them.
+
+    Resources must lie in the FMUs: a file of this machine is not there on another one.
+
+    Raises:
+        ParameterError: Python FMUs, or parts of one component with different files.
+    """
+    files: dict[str, Path] = {}
+    owners: dict[str, set[str]] = {}
     for part in system.parts:
-        if part.foreign:
-            continue
-        for text in component(str(part.component)).declaration.texts:
-            value = part.values.get(text.name, text.start)
-            if Path(str(value)).is_absolute():
-                raise ParameterError(
-                    f"{part.name}.{text.name} = '{value}': an .ssp file must not depend on files "
-                    "outside it; put the file into the component's resources folder"
+        for text in () if part.foreign else component(str(part.component)).declaration.texts:
+            value = str(part.values.get(text.name, text.start))
+            name = f"{part.component}.{text.name}"
+            owners.setdefault(name, set()).add(value)
+            if not Path(value).is_absolute():
+                continue
+            if not native or len(owners[name]) > 1:
+                why = (
+                    "FMUs of one component carry one file"
+                    if native
+                    else "an .ssp file must not depend on files outside it; add --native, whose "
+                    "FMUs carry it"
                 )
+                raise ParameterError(f"{part.name}.{text.name} = '{value}': {why}")
+            files[name] = Path(value)
+    parts = (
+        replace(p, values={v: x for v, x in p.values.items() if f"{p.component}.{v}" not in files})
+        for p in system.parts
+    )
+    return replace(system, parts=tuple(parts)), files

@@ -9,7 +9,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
-from herringbone.core.files import as_texts, is_file, same_folder
+from herringbone.core.files import as_texts, beside, is_file, same_folder
 from herringbone.core.part import Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
@@ -64,19 +64,21 @@ def with_options(
     start: str | None,
     values: Mapping[str, float | str | Path] | None,
 ) -> Scene:
-    """The scene with what the caller overrides.
+    """The scene with what the caller overrides; files by names relative to the working folder.
 
     Raises:
         ParameterError: there is no such start.
     """
     if start is not None and start not in list(Start):
         raise ParameterError(f"start = {start!r}; it must be one of {', '.join(Start)}")
+    here = Path.cwd()
+    given = {path: beside(value, here) for path, value in as_texts(values).items()}
     return replace(
         scene,
         t_end=scene.t_end if t_end is None else t_end,
         record_step=scene.record_step if record_step is None else record_step,
         start=scene.start if start is None else Start(start),
-        values={**scene.values, **as_texts(values)},
+        values={**scene.values, **given},
     )
 
 

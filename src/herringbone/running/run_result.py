@@ -8,6 +8,7 @@ import pandas as pd
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.roles import Quantity
@@ -17,6 +18,9 @@ from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import TIME, Result, RunInfo
 from herringbone.scenes import Scene
+
+_FEWEST = 2
+"""Records of which anything can be said."""
 
 
 def make_result(
@@ -69,6 +73,14 @@ def make_result(
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
     return Result(data, units, recording.outcome, info, system.channels)
+
+
+def with_misfits(result: Result) -> Result:
+    """The result with lines on what in the run does not fit together."""
+    if len(result.data) < _FEWEST or result.outcome.unstable:
+        return result
+    found = misfits(result.uniform())
+    return replace(result, info=replace(result.info, notes=(*result.info.notes, *found)))
 
 
 def _parameters(system: System) -> dict[str, float]:

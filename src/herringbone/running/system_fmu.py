@@ -9,7 +9,9 @@ from herringbone.analysis.twin.composite import make_composite
 from herringbone.core import ParameterError
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
-from herringbone.running.export import prepared, written
+from herringbone.running.export import ready, written
+from herringbone.running.gears import Gear
+from herringbone.running.prepared import Named
 from herringbone.scenes import Scene
 
 
@@ -20,6 +22,8 @@ def export_fmu(
     outside: Sequence[str] = (),
     scene: str | Path | Scene | None = None,
     values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
     platforms: Sequence[str] = (),
     fmi: int = 2,
 ) -> Path:
@@ -31,6 +35,7 @@ def export_fmu(
         outside: instances that stay outside; what they feed becomes inputs of the FMU.
         scene: name or file of the scene that gives start values; the system's default if not given.
         values: variables to set, by `instance.variable`.
+        gear, housing: see `herringbone.run`.
         platforms: see `herringbone.fmi.native.PLATFORMS`; this one if not given.
         fmi: FMI version, 2 or 3.
 
@@ -43,7 +48,7 @@ def export_fmu(
     file = Path(file)
     if file.suffix != ".fmu":
         raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
-    structure, _ = prepared(system, scene, values)
+    structure, _ = ready(system, scene, values, gear, housing)
     composite = make_composite(structure, tuple(outside))
     model = Model(
         composite.component,

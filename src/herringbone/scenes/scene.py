@@ -9,13 +9,14 @@ from typing import Any
 
 from herringbone.core import ParameterError
 from herringbone.core.facts import Facts
-from herringbone.core.files import is_file
+from herringbone.core.files import beside, is_file
 from herringbone.core.names import shown
-from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, read_toml
+from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files, read_toml
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
 _NUMBERS = {"t_end", "record_step"}
+_FILES = {"gear", "housing"}
 
 
 class Start(StrEnum):
@@ -40,6 +41,9 @@ class Scene(Facts):
         start: how the run starts.
         values: variables to set, by `instance.variable`.
         start_offset: added to start values of states after the start was computed.
+        gears: gear file by path of the gear pair's part, or of a system around it; "": the only
+            one.
+        housings: the same of housings: data, dimensions or FMU.
     """
 
     name: str
@@ -49,6 +53,8 @@ class Scene(Facts):
     start: Start = Start.EQUILIBRIUM
     values: Mapping[str, float | str] = field(default_factory=dict)
     start_offset: Mapping[str, float] = field(default_factory=dict)
+    gears: Mapping[str, Path] = field(default_factory=dict)
+    housings: Mapping[str, Path] = field(default_factory=dict)
 
     def _facts(self) -> dict[str, str]:
         return {
@@ -58,6 +64,8 @@ class Scene(Facts):
             "records": f"every {self.record_step:g} s",
             "start": self.start,
             "values": ", ".join(f"{k} = {v}" for k, v in self.values.items()),
+            "gears": ", ".join(map(str, self.gears.values())),
+            "housings": ", ".join(map(str, self.housings.values())),
             "start offset": ", ".join(f"{k} {v:+g}" for k, v in self.start_offset.items()),
         }
 
@@ -86,7 +94,7 @@ def read_scene(file: str | Path) -> Scene:
     """
     file = Path(file)
     data = read_toml(file)
-    known = {"description", "start", *_NUMBERS, *_TABLES}
+    known = {"description", "start", *_NUMBERS, *_TABLES, *_FILES}
     if unknown := set(data) - known:
         raise ParameterError(
             f"{file}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(known))}"
@@ -100,8 +108,10 @@ def read_scene(file: str | Path) -> Scene:
         file.stem,
         data.get("description", ""),
         start=Start(start),
-        values=data.get("set", {}),
+        values={path: beside(value, file.parent) for path, value in data.get("set", {}).items()},
         start_offset=data.get("start_offset", {}),
+        gears=part_files(data, "gear", file),
+        housings=part_files(data, "housing", file),
         **numbers,
     )
 

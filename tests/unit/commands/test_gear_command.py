@@ -44,10 +44,10 @@ def test_without_the_extra_coupled_slices_are_taken_and_said(tmp_path, capsys, m
     assert "table of z 27/51 is made by coupled slices, its mean within 3 %" in said.err
     assert "the extra 'fe' is missing: pip install 'herringbone[fe]'" in said.err
     assert "slices coupled over 1.3 (tooth)" in said.out
-    header = (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8").splitlines()[:6]
-    assert "# Method: slice method, 60 slices coupled" in header[4]
-    assert header[4].endswith("64 phases out of 256.")
-    assert "mean 0.03, mesh harmonics 1 to 4 at most" in header[5]
+    header = (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8").splitlines()[:7]
+    assert "# Method: slice method, 60 slices coupled" in header[5]
+    assert header[5].endswith("64 phases out of 256.")
+    assert "mean 0.03, mesh harmonics 1 to 4 at most" in header[6]
 
 
 def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
@@ -129,7 +129,7 @@ def test_loaded_pair(tmp_path, capsys):
     """Table, JSON, CSV and picture tell the same of a held pinion."""
     options = [
         "--symmetry-deviation", "10um", "--pinion-axial-stiffness", "1e8", "--speed", "1200",
-        "--accuracy", "5", "--load-factor", "1.25", "-o", str(tmp_path),
+        "--accuracy", "5", "--load-factor", "1.25", *PLAIN, "-o", str(tmp_path),
     ]  # fmt: skip
     assert main(["gear", str(THESIS), *options]) == 0
     text = capsys.readouterr().out

@@ -40,6 +40,12 @@ def _chart(scene: str) -> str:
 
 _SCENES = ("loaded", "separation")
 ITEMS: dict[str, Item] = {
+    "gear-pair": Item(
+        "values of the gear pair, in the components",
+        "seconds",
+        ("-m herringbone.gears.files.shipped_pair",),
+        usual=True,
+    ),
     "gear-table": Item(
         "stiffness table of the gear pair, in its resources in fmus",
         "half a minute on two idle cores, once; extra 'fe'",

@@ -136,6 +136,7 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.frozen import freeze_mesh
 from herringbone.components.gear_mesh.loading import LOADER
+from herringbone.components.gear_mesh.of_pair import of_pair
 from herringbone.components.resources import transmission_error
 from herringbone.core import Component, Kernels
 from herringbone.kernels import force_law, steppers
@@ -163,4 +164,5 @@ GEAR_MESH = Component(
     indicator_count=4,
     longest_step=steppers.longest_step(at.DECLARATION, "micro_step"),
     freeze=freeze_mesh,
+    of_pair=of_pair,
 )

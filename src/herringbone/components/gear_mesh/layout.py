@@ -6,7 +6,7 @@ from herringbone.components.gear_mesh.variables import VARIABLES
 from herringbone.components.ports import HALVES, flange, journals
 from herringbone.components.resources import stiffness_table, transmission_error
 from herringbone.core import Declaration, Text
-from herringbone.core.roles import GEARS, Role
+from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.kernels import force_law, steppers
 
 STATES = 24
@@ -26,6 +26,7 @@ DECLARATION = Declaration(
             "stiffness table of both meshes, CSV",
             "mesh_stiffness.csv",
             stiffness_table.COLUMNS,
+            Quantity.STIFFNESS_TABLE,
             header=stiffness_table.PAIR[0],
             header_count=stiffness_table.PAIR[1],
         ),

@@ -2,53 +2,16 @@
 
 import math
 
+from herringbone.components.gear_mesh.of_pair import of_pair
 from herringbone.components.ports import HALVES, flange_body
+from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Variable, input_, local, output, parameter, state
 from herringbone.core.roles import GEARS, SIDES, Quantity
 from herringbone.core.units import RATES
 
-_MODULE, _PRESSURE_ANGLE, _HELIX_ANGLE = 3.5e-3, math.radians(20.0), math.radians(30.0)
-_PINION_TEETH, _WHEEL_TEETH = 27, 81
-_TRANSVERSE_ANGLE = math.atan(math.tan(_PRESSURE_ANGLE) / math.cos(_HELIX_ANGLE))
-_BASE_HELIX_ANGLE = math.asin(math.sin(_HELIX_ANGLE) * math.cos(_PRESSURE_ANGLE))
-_BASE_RADIUS = tuple(
-    0.5 * z * _MODULE / math.cos(_HELIX_ANGLE) * math.cos(_TRANSVERSE_ANGLE)
-    for z in (_PINION_TEETH, _WHEEL_TEETH)
-)
-_FACE_WIDTH = 0.0473
-_BACKLASH = 180e-6
-
-
-def _coast_phase() -> float:
-    """Phase of the drive flank plus that of the coast flank, in [0, 1): see the equations."""
-    pitch = 2.0 * math.pi * _BASE_RADIUS[0] / _PINION_TEETH
-    tip = 0.5 * _WHEEL_TEETH * _MODULE / math.cos(_HELIX_ANGLE) + _MODULE
-    approach = math.sqrt(tip**2 - _BASE_RADIUS[1] ** 2)
-    approach -= _BASE_RADIUS[1] * math.tan(_TRANSVERSE_ANGLE)
-    thinned = 0.5 * _BACKLASH / math.cos(_BASE_HELIX_ANGLE)
-    overlap = _FACE_WIDTH * math.tan(_BASE_HELIX_ANGLE)
-    return (0.5 + (2.0 * approach - thinned + overlap) / pitch) % 1.0
-
-
-_SHAFT_DAMPING_RATIO = 0.02
+_SHIPPED = of_pair(SHIPPED_PAIR, {})
 _DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3
 """Nominal deflection [m, rad], shaft speed [rad/s] and angular frequency of vibration [rad/s]."""
-_MASS = {"pinion": 6.500, "wheel": 47.739}
-_INERTIA = {"pinion": 7.380e-3, "wheel": 0.5813}
-_SHAFT = {  # gap shaft: y [N/m], z [N/m], rotation [N m/rad]
-    "pinion": (4.192e9, 1.671e10, 7.637e6),
-    "wheel": (5.774e10, 1.732e11, 8.220e8),
-}
-
-
-def _shaft_damping(gear: str) -> tuple[float, float, float]:
-    """2 % of the local critical damping of the two halves against each other."""
-    bodies = (_MASS[gear], _MASS[gear], _INERTIA[gear])
-    radial, axial, torsional = (
-        2.0 * _SHAFT_DAMPING_RATIO * math.sqrt(k * m / 2.0)
-        for k, m in zip(_SHAFT[gear], bodies, strict=True)
-    )
-    return radial, axial, torsional
 
 
 def _states() -> list[Variable]:
@@ -122,22 +85,44 @@ def _results() -> list[Variable]:
     ]
 
 
-def _gear_parameters(gear: str, teeth: int, base_radius: float) -> list[Variable]:
-    k_y, k_z, k_t = _SHAFT[gear]
-    c_y, c_z, c_t = _shaft_damping(gear)
-    p = parameter
+def _of_pair(
+    name: str,
+    unit: str,
+    description: str,
+    *,
+    minimum: float = -math.inf,
+    maximum: float = math.inf,
+    quantity: Quantity | None = None,
+    place: str = "",
+) -> Variable:
+    """A parameter with the value of the shipped pair."""
+    return parameter(
+        name,
+        unit,
+        description,
+        _SHIPPED[name],
+        minimum=minimum,
+        maximum=maximum,
+        quantity=quantity,
+        place=place,
+    )
+
+
+def _gear_parameters(gear: str) -> list[Variable]:
+    of, p = _of_pair, parameter
     return [
-        p(f"{gear}.number_of_teeth", "1", "number of teeth", teeth, minimum=1,
-          quantity=Quantity.NUMBER_OF_TEETH, place=gear),
-        p(f"{gear}.base_radius", "m", "base radius", base_radius, minimum=1e-6),
-        p(f"{gear}.mass", "kg", "mass of one half", _MASS[gear], minimum=1e-9),
-        p(f"{gear}.inertia", "kg.m2", "inertia of one half", _INERTIA[gear], minimum=1e-12),
-        p(f"{gear}.shaft_stiffness_y", "N/m", "gap shaft, bending and shear", k_y, minimum=0),
-        p(f"{gear}.shaft_stiffness_z", "N/m", "gap shaft, tension", k_z, minimum=0),
-        p(f"{gear}.shaft_stiffness_t", "N.m/rad", "gap shaft, torsion", k_t, minimum=0),
-        p(f"{gear}.shaft_damping_y", "N.s/m", "gap shaft, bending and shear", c_y, minimum=0),
-        p(f"{gear}.shaft_damping_z", "N.s/m", "gap shaft, tension", c_z, minimum=0),
-        p(f"{gear}.shaft_damping_t", "N.m.s/rad", "gap shaft, torsion", c_t, minimum=0),
+        of(f"{gear}.number_of_teeth", "1", "number of teeth", minimum=1,
+           quantity=Quantity.NUMBER_OF_TEETH, place=gear),
+        of(f"{gear}.base_radius", "m", "base radius", minimum=1e-6,
+           quantity=Quantity.BASE_RADIUS, place=gear),
+        of(f"{gear}.mass", "kg", "mass of one half", minimum=1e-9),
+        of(f"{gear}.inertia", "kg.m2", "inertia of one half", minimum=1e-12),
+        of(f"{gear}.shaft_stiffness_y", "N/m", "gap shaft, bending and shear", minimum=0),
+        of(f"{gear}.shaft_stiffness_z", "N/m", "gap shaft, tension", minimum=0),
+        of(f"{gear}.shaft_stiffness_t", "N.m/rad", "gap shaft, torsion", minimum=0),
+        of(f"{gear}.shaft_damping_y", "N.s/m", "gap shaft, bending and shear", minimum=0),
+        of(f"{gear}.shaft_damping_z", "N.s/m", "gap shaft, tension", minimum=0),
+        of(f"{gear}.shaft_damping_t", "N.m.s/rad", "gap shaft, torsion", minimum=0),
         p(f"{gear}.torque_share_left", "1", "left half's share of the flange torque", 0.5,
           minimum=0, maximum=1),
         p(f"{gear}.unbalance", "kg.m", "unbalance of the gear, half of it at each half", 0.0,
@@ -147,22 +132,20 @@ def _gear_parameters(gear: str, teeth: int, base_radius: float) -> list[Variable
 
 
 def _mesh_parameters() -> list[Variable]:
-    p = parameter
+    of, p = _of_pair, parameter
     return [
-        p("base_helix_angle", "rad", "base helix angle beta_b", _BASE_HELIX_ANGLE,
-          minimum=-1.2, maximum=1.2),
-        p("face_width", "m", "face width of a half: whose table it is", _FACE_WIDTH,
-          minimum=1e-6),
-        p("mesh_damping_ratio", "1", "zeta of the mesh damping", 0.1, minimum=0),
+        of("base_helix_angle", "rad", "base helix angle beta_b", minimum=-1.2, maximum=1.2),
+        of("face_width", "m", "face width of a half: whose table it is", minimum=1e-6),
+        of("mesh_damping_ratio", "1", "zeta of the mesh damping", minimum=0),
         p("damping_transition", "m", "deflection over which the damping rises", 5e-7,
           minimum=1e-12),
         p("damping_gate", "1", "1: damping rises over damping_transition, 0: it always acts", 1.0,
           minimum=0, maximum=1, whole=True),
-        p("backlash", "m", "normal backlash", _BACKLASH, minimum=0),
+        of("backlash", "m", "normal backlash", minimum=0),
         p("flank", "1", "whose line of action y is: -1 coast, else drive", 1.0,
           minimum=-1, maximum=1, whole=True, quantity=Quantity.CARRYING_FLANK),
-        p("coast_phase", "1", "phase of the drive flank plus that of the coast flank, mesh periods",
-          _coast_phase()),
+        of("coast_phase", "1",
+           "phase of the drive flank plus that of the coast flank, mesh periods"),
         p("stagger", "1", "right half ahead of left half, mesh periods", 0.0),
         p("symmetry_deviation", "m", "f_A: axial offset of the chevron's apex", 0.0),
         p("symmetry_constant", "1", "c0: constant share of f_A", 0.4),
@@ -187,7 +170,7 @@ VARIABLES = (
     *_states(),
     *_ports(),
     *_results(),
-    *_gear_parameters("pinion", _PINION_TEETH, _BASE_RADIUS[0]),
-    *_gear_parameters("wheel", _WHEEL_TEETH, _BASE_RADIUS[1]),
+    *_gear_parameters("pinion"),
+    *_gear_parameters("wheel"),
     *_mesh_parameters(),
 )

@@ -63,6 +63,8 @@ class System(Facts):
         ports: ports that the system offers to an outer one, as paths of inner ports.
         channels: named groups of result columns (patterns), on which errors are measured.
         notes: lines to read about how the system was read, such as names that were changed.
+        gears: gear file by path of a gear pair's part, or of a system around it; "": the only one.
+        housings: the same of housings: data, dimensions or FMU.
 
     Raises:
         StructureError: a name is no identifier, or stands twice.
@@ -75,6 +77,8 @@ class System(Facts):
     ports: Mapping[str, str] = field(default_factory=dict)
     channels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    gears: Mapping[str, Path] = field(default_factory=dict)
+    housings: Mapping[str, Path] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_name(self.name, "system")
@@ -127,6 +131,8 @@ class System(Facts):
             connections=tuple((inside(a), inside(b)) for a, b in self.connections),
             ports={name: inside(path) for name, path in self.ports.items()},
             channels={name: tuple(map(inside, p)) for name, p in self.channels.items()},
+            gears={inside(p).removesuffix("."): file for p, file in self.gears.items()},
+            housings={inside(p).removesuffix("."): file for p, file in self.housings.items()},
         )
 
     def with_values(self, values: Mapping[str, float | str | Path]) -> "System":

@@ -4,6 +4,8 @@ name = "gearbox"
 description = "..."
 
 connections = [["gear_mesh.pinion_left", "bearing_supports.shaft.pinion_left"], ...]
+gear = "my_pair.toml"            # optional: of the gear pair; or { PATH = "FILE", ... } of several
+housing = "my_housing"           # optional, likewise: folder of data, dimensions, or FMU
 
 [parts.gear_mesh]
 component = "gear_mesh"          # or fmu = "file.fmu", or system = "name or folder"
@@ -22,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import StructureError, reason
-from herringbone.core.files import is_file
+from herringbone.core.files import beside, is_file
 from herringbone.core.names import check_name, identifier_for, shown
 from herringbone.core.part_path import PartPath
 from herringbone.core.paths import systems_folder
@@ -36,6 +38,7 @@ _KEYS: dict[str, type] = {
 }  # fmt: skip
 _TYPE_NAMES: dict[type, str] = {str: "a text", list: "a list", dict: "a table"}
 _KINDS = ("component", "fmu", "system")
+_FILES = ("gear", "housing")
 
 
 VALUE_HINT = 'it takes a number or a text; quote a name that has dots: "a.b" = 1.0'
@@ -85,7 +88,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
         raise StructureError(f"system '{reference}' contains itself")
     file = folder / FILE_NAME
     data = read_toml(file)
-    unknown = set(data) - set(_KEYS)
+    unknown = set(data) - {*_KEYS, *_FILES}
     if unknown:
         raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
     for key, kind in _KEYS.items():
@@ -105,7 +108,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
             parts.append(spec)
         else:
             inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
-            nested[name] = inner.with_values(table.get("set", {})).nested_as(name)
+            nested[name] = inner.with_values(_set(table, folder)).nested_as(name)
     return _assemble(data, file, parts, nested)
 
 
@@ -141,11 +144,30 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
     for variable, value in values.items():
         if not is_value(value):
             raise StructureError(f"{file}: {name}.{variable} = {value!r}: {VALUE_HINT}")
+    values = _set(table, folder)
     if kinds[0] == "system":
         return None
     if kinds[0] == "fmu":
         return PartSpec(PartPath(name), fmu=(folder / table["fmu"]).resolve(), values=values)
     return PartSpec(PartPath(name), component=table["component"], values=values)
+
+
+def _set(table: Mapping[str, Any], folder: Path) -> dict[str, float | str]:
+    """Values that a part is given; files beside this one by their whole names."""
+    return {name: beside(value, folder) for name, value in table.get("set", {}).items()}
+
+
+def part_files(data: Mapping[str, Any], key: str, file: Path) -> dict[str, Path]:
+    """Files of a key, by path of the part: one text, for the only such part, or a table of them.
+
+    Raises:
+        StructureError: it is neither.
+    """
+    given = data.get(key, {})
+    found = given if isinstance(given, dict) else {"": given}
+    for path, name in found.items():
+        _check_type(name, str, f"{key} of {path}" if path else key, file)
+    return {path: (file.parent / name).absolute() for path, name in found.items()}
 
 
 def _nested_reference(reference: str, folder: Path) -> str | Path:
@@ -181,6 +203,11 @@ def _assemble(
             raise StructureError(f"{file}: a connection is a pair of paths, not {pair!r}")
         connections.append((resolve(pair[0]), resolve(pair[1])))
     channels |= {name: tuple(p) for name, p in data.get("channels", {}).items()}
+    gears, housings = (
+        {p: f for inner in nested.values() for p, f in getattr(inner, f"{key}s").items()}
+        | part_files(data, key, file)
+        for key in _FILES
+    )
     own_name = data.get("name", file.parent.name)
     name = identifier_for(own_name)
     renamed = (f"{file}: the system is called {name} here",) if name != own_name else ()
@@ -193,4 +220,6 @@ def _assemble(
         {name: resolve(path) for name, path in data.get("ports", {}).items()},
         channels,
         (*inner_notes, *renamed),
+        gears,
+        housings,
     )

@@ -15,6 +15,9 @@ method = "fe"                    # or "coupled-slices", "slices"; "auto": the be
 
 [table.calibration]              # optional: factors on the compliance of the teeth, by method
 slices = 0.88
+
+[mesh]                           # optional; see `MeshAssumptions`
+backlash = "180 um"
 """
 
 import tomllib
@@ -28,11 +31,12 @@ from herringbone.gears.files.quantity import quantity
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
+from herringbone.gears.mesh_assumptions import MeshAssumptions
 
 _LENGTHS = {
     "normal_module", "face_width", "center_distance", "tip_radius", "tooth_thickness_allowance",
     "bore_diameter", "gap_width", "groove_diameter", "shaft_diameter", "stub_length",
-    "relief_length", "helix_crowning", "tip_relief",
+    "relief_length", "helix_crowning", "tip_relief", "backlash",
 }  # fmt: skip
 _KINDS = {
     **dict.fromkeys(_LENGTHS, "length"),
@@ -45,7 +49,7 @@ _KINDS = {
 }
 _INTEGERS = {"number_of_teeth", "halves", "phases", "slices"}
 _FLAGS = {"corner_contact"}
-_TABLE_KEYS = {field.name for field in fields(GearJob)} - {"pair", "modification"}
+_TABLE_KEYS = {field.name for field in fields(GearJob)} - {"pair", "modification", "mesh"}
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
 
@@ -65,6 +69,7 @@ def read_gear_file(file: str | Path) -> GearJob:
         "gear_pair": {field.name for field in fields(GearPair)},
         "modification": {field.name for field in fields(Modification)},
         "table": _TABLE_KEYS,
+        "mesh": {field.name for field in fields(MeshAssumptions)},
     }
     for section, keys in content.items():
         if section not in known or not isinstance(keys, dict):
@@ -83,6 +88,7 @@ def read_gear_file(file: str | Path) -> GearJob:
     return GearJob(
         GearPair(**values["gear_pair"]),
         Modification(**values["modification"]),
+        mesh=MeshAssumptions(**values["mesh"]),
         **values["table"],
     )
 

@@ -1,0 +1,42 @@
+"""A gear job from a file of any kind."""
+
+from pathlib import Path
+
+from herringbone.core import ParameterError
+from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.job import GearJob
+
+_READERS = (".toml", ".rexs", ".xml")
+
+
+def read_job(file: Path, *, stage: str | None = None, halves: int | None = None) -> GearJob:
+    """Read a gear file (.toml) or a REXS file (.rexs, .xml).
+
+    Args:
+        file: the file.
+        stage: of a REXS file of several.
+        halves: of a REXS stage; 1 if None.
+
+    Raises:
+        ParameterError: another kind of file, an option that its kind does not have, or an
+            impossible value.
+        ResourceError: it cannot be read.
+    """
+    suffix = file.suffix.lower()
+    if suffix not in _READERS:
+        raise ParameterError(f"{file}: a gear file ends with one of {', '.join(_READERS)}")
+    if suffix != ".toml":
+        return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
+    for option, value in (("stage", stage), ("halves", halves)):
+        if value is not None:
+            raise ParameterError(f"{file}: --{option} is of REXS files only")
+    return read_gear_file(file)
+
+
+def read_mounted_job(file: Path) -> GearJob:
+    """As `read_job`, of a pair that is mounted in a gearbox: a REXS stage stands for both halves.
+
+    A stage of REXS has one face width, here that of one half.
+    """
+    return read_job(file) if file.suffix.lower() == ".toml" else read_job(file, halves=2)

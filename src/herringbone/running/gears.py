@@ -1,0 +1,133 @@
+"""A gear pair put into a system: what follows from its file, in all parts that it touches.
+
+What a scene, a system or the caller sets by name holds over the pair's file, with a line.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import ParameterError
+from herringbone.core.anatomy import Anatomy
+from herringbone.core.part_path import PartPath
+from herringbone.core.roles import GEARS, PortKind, Quantity, Role
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.gears.files.read_job import read_mounted_job
+from herringbone.gears.job import GearJob
+from herringbone.gears.pair_values import pair_values
+from herringbone.gears.table_cache import cached_table
+from herringbone.running.chosen_parts import part_for
+
+Gear = str | Path | GearJob
+"""A gear file (TOML or REXS), or what it would give."""
+
+
+def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple[str, ...]]:
+    """The system with gear pairs in it, and lines that the user should read.
+
+    Args:
+        system: with what is set by name, which holds.
+        gears: file or job by path of the gear pair's part, or of a system around it; "": the
+            only one.
+
+    Raises:
+        ParameterError: no such gear pair, or several; a pair that its component cannot be.
+        ResourceError: a file cannot be read.
+    """
+    notes: list[str] = []
+    for asked, gear in gears.items():
+        option = f"--gear {gear}" if isinstance(gear, str | Path) else "gear"
+        part = part_for(system, Role.GEAR_PAIR, asked, option)
+        if system.part(part).foreign:
+            raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
+        job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
+        values, said = _values(system, part, job)
+        system, kept = _fitted(system, values)
+        notes += (*said, *kept)
+    return system, tuple(notes)
+
+
+def _fitted(system: System, values: Mapping[str, float | str]) -> tuple[System, list[str]]:
+    """The system with values where nothing is set by name, and what is kept instead."""
+    own = {f"{p.name}.{v}": value for p in system.parts for v, value in p.values.items()}
+    kept = [path for path in values if path in own and own[path] != values[path]]
+    lines = [f"{p} = {own[p]}: set by name, kept over the pair's {values[p]}" for p in kept]
+    return system.with_values({p: v for p, v in values.items() if p not in own}), lines
+
+
+def _values(
+    system: System, gear: PartPath, job: GearJob
+) -> tuple[dict[str, float | str], list[str]]:
+    """What a pair gives to the parts that it touches, by `part.variable`; and lines."""
+    known = anatomy(system)
+    pair, assumed = pair_values(job)
+    notes = list(assumed)
+    values: dict[str, float | str] = {}
+    for part in _touched(system, known, gear):
+        component = COMPONENTS.get(part.component or "")
+        if component is None:
+            notes.append(f"{part.name}: a foreign FMU, nothing of the pair is set in it")
+        elif component.of_pair is not None:
+            declared = component.declaration.parameters
+            own = {v.name: float(part.values.get(v.name, v.start)) for v in declared}
+            found = component.of_pair(pair, own)
+            values |= {f"{part.name}.{variable}": value for variable, value in found.items()}
+    if table := known.column(gear, Quantity.STIFFNESS_TABLE):
+        values[table] = str(cached_table(job))
+    pairs = known.with_role(Role.GEAR_PAIR)
+    if len(pairs) > 1:
+        notes += [
+            f"{part}: its gear ratio is not set, as there are {len(pairs)} gear pairs"
+            for part in known.with_role(Role.CONTROLLER)
+        ]
+    return values, notes
+
+
+def _touched(system: System, known: Anatomy, gear: PartPath) -> Iterator[PartSpec]:
+    """The pair's part, what carries it, and the controller if there is but one pair to control."""
+    carriers = [part for part, _ in known.joined(gear, PortKind.JOURNAL)]
+    alone = len(known.with_role(Role.GEAR_PAIR)) == 1
+    controllers = known.with_role(Role.CONTROLLER) if alone else ()
+    for name in dict.fromkeys([str(gear), *carriers, *controllers]):
+        yield system.part(name)
+
+
+def balanced(system: System) -> System:
+    """The system, with the torques that balance the given ones at open flanges.
+
+    Of a gear pair at whose flanges nothing is joined, and of which one torque is given: the other
+    one becomes -T r_b,wheel / r_b,pinion at the wheel, or -T r_b,pinion / r_b,wheel at the pinion.
+    """
+    known = anatomy(system)
+    joined = {system.split(path) for pair in system.connections for path in pair}
+    for gear in known.with_role(Role.GEAR_PAIR):
+        part = system.part(gear)
+        if part.foreign:
+            continue
+        ports = [port for g in GEARS for port in known.ports(gear, PortKind.FLANGE, g)]
+        torques = [f"{port.name}.tau" for port in ports]
+        ends = {(part.name, x) for x in (*torques, *(port.name for port in ports))}
+        given = [part.values.get(torque) for torque in torques]
+        if len(ports) != len(GEARS) or ends & joined or given.count(None) != 1:
+            continue
+        wanted = given.index(None)
+        radii = [_value(system, known, gear, Quantity.BASE_RADIUS, g) for g in GEARS]
+        other = float(given[1 - wanted] or 0.0)
+        torque = -other * radii[wanted] / radii[1 - wanted]
+        system = system.with_values({f"{gear}.{torques[wanted]}": torque})
+    return system
+
+
+def _value(
+    system: System, known: Anatomy, part: str, quantity: Quantity, place: str | None = None
+) -> float:
+    """Value of a parameter of a known part; NaN if it has none."""
+    column = known.column(part, quantity, place)
+    spec = system.part(part)
+    if column is None or spec.component is None:
+        return math.nan
+    variable = column[len(part) + 1 :]
+    start = COMPONENTS[spec.component].declaration.variable(variable).start
+    return float(spec.values.get(variable, start))

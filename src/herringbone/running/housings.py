@@ -1,0 +1,81 @@
+"""A housing put into a system: modal data, a welded housing's dimensions, or an FMU."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.core import ParameterError, ResourceError
+from herringbone.core.activity import activity
+from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.files import is_file, is_folder
+from herringbone.core.paths import cache_folder
+from herringbone.core.roles import Quantity, Role
+from herringbone.cosim.structure.system import System
+from herringbone.housing import read_housing, write_housing
+from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
+from herringbone.housing.welded.build import build_housing
+from herringbone.housing.welded.design import read_design
+from herringbone.running.chosen_parts import part_for
+
+_FILES = {Quantity.MODES: MODES, Quantity.SHAPES: SHAPES}
+_FMU, _DIMENSIONS = ".fmu", ".toml"
+
+
+def split_housings(
+    system: System, housings: Mapping[str, str | Path]
+) -> tuple[dict[str, Path], dict[str, Path]]:
+    """Housings that are data, and those that are FMUs, by the path of their part.
+
+    Raises:
+        ParameterError: there is no such housing, or there are several.
+        ResourceError: a file or folder is not there, or none of these.
+    """
+    data: dict[str, Path] = {}
+    fmus: dict[str, Path] = {}
+    for asked, given in housings.items():
+        file, option = Path(given), f"--housing {given}"
+        part = part_for(system, Role.HOUSING, asked, option)
+        if not is_file(file) and not is_folder(file):
+            raise ResourceError(f"{option}: there is no file or folder {file}")
+        if file.suffix.lower() == _FMU:
+            fmus[part] = file
+        elif is_folder(file) or file.suffix.lower() == _DIMENSIONS:
+            data[part] = file
+        else:
+            raise ResourceError(
+                f"{option}: it takes a folder with {HEAD}, the dimensions of a welded housing "
+                f"({_DIMENSIONS}) or an FMU ({_FMU}); unpack a zip file first"
+            )
+    return data, fmus
+
+
+def with_housing_data(system: System, data: Mapping[str, Path]) -> System:
+    """The system with modal data in housings; what else is set by name holds.
+
+    Raises:
+        ParameterError: the part takes no modal data.
+        ResourceError: the data cannot be read, or the housing cannot be made.
+    """
+    known = anatomy(system)
+    for part, given in data.items():
+        folder = given if is_folder(given) else _built(given)
+        read_housing(folder)
+        columns = {known.column(part, quantity): file for quantity, file in _FILES.items()}
+        if None in columns:
+            raise ParameterError(f"--housing {given}: {part} takes no modal data; give an FMU")
+        files = {str(column): str((folder / file).absolute()) for column, file in columns.items()}
+        system = system.with_values(files)
+    return system
+
+
+def _built(file: Path) -> Path:
+    """Folder of the modal data of a welded housing, made of its dimensions once."""
+    design = read_design(file)
+    key = digest_of(file.read_bytes(), kernels_key("herringbone.housing.welded.build"))
+    folder = cache_folder("welded-housings") / f"{file.stem}-{key}"
+    if not is_stored(folder / HEAD):
+        with activity(f"making the housing of {file.name}", "once for these dimensions"):
+            write_housing(build_housing(design).model, folder)
+        store(folder / HEAD, (folder / HEAD).read_bytes())
+    return folder

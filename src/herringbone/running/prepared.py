@@ -1,0 +1,110 @@
+"""A system made ready for a run: its scene, its gears and housings, its start values."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from herringbone.core import ParameterError
+from herringbone.core.roles import Role
+from herringbone.cosim.ssp.format import is_ssp
+from herringbone.cosim.structure.system import System
+from herringbone.running.chosen_parts import part_for
+from herringbone.running.gears import Gear, balanced, with_gears
+from herringbone.running.housings import split_housings, with_housing_data
+from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
+from herringbone.running.start import started
+from herringbone.scenes import Scene
+
+Named = str | Path | Mapping[str, str | Path]
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What a caller asks for besides system and scene; None: as these have it.
+
+    Attributes:
+        t_end, record_step: durations [s].
+        start: see `scenes.Start`.
+        values: variables to set, by `instance.variable`.
+        gear: file or job of the gear pair, or of each by path.
+        housing: data, dimensions or FMU of the housing, or of each by path.
+        replace_parts: FMU files by instance.
+        start_offset: in place of the scene's.
+    """
+
+    t_end: float | None = None
+    record_step: float | None = None
+    start: str | None = None
+    values: Mapping[str, float | str | Path] = field(default_factory=dict)
+    gear: Gear | Mapping[str, Gear] | None = None
+    housing: Named | None = None
+    replace_parts: Mapping[str, str | Path] = field(default_factory=dict)
+    start_offset: Mapping[str, float] | None = None
+
+
+class Prepared(NamedTuple):
+    """A system with all values, the scene that gave them, and lines that the user should read."""
+
+    system: System
+    scene: Scene
+    notes: tuple[str, ...]
+
+
+def prepared(
+    system: str | Path | System,
+    scene: str | Path | Scene | None,
+    wishes: Wishes,
+    check: Callable[[Scene], None] = lambda scene: None,
+) -> Prepared:
+    """Load a system and a scene, and set what is wished.
+
+    The order in which values hold: those of the caller, those of the scene, those of the system by
+    name, those of the gear pair, those that components declare.
+
+    Args:
+        system, scene: see `api.run`.
+        wishes: over these.
+        check: called with the scene before anything takes long.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    w = wishes
+    chosen = with_options(load_scene(folder, scene), w.t_end, w.record_step, w.start, w.values)
+    if w.start_offset is not None:
+        chosen = replace(chosen, start_offset=w.start_offset)
+    check(chosen)
+    gears: dict[str, Gear] = _merged(
+        structure, Role.GEAR_PAIR, structure.gears, chosen.gears, _by_path(w.gear)
+    )
+    housings: dict[str, str | Path] = _merged(
+        structure, Role.HOUSING, structure.housings, chosen.housings, _by_path(w.housing)
+    )
+    if (gears or housings) and is_ssp(Path(folder)):
+        raise ParameterError(
+            f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
+        )
+    data, fmus = split_housings(structure, housings)
+    structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
+    structure = with_housing_data(structure, data).with_values(chosen.values)
+    structure, said = with_gears(structure, gears)
+    structure, notes = started(balanced(structure), chosen)
+    return Prepared(structure, chosen, (*said, *notes, *broken))
+
+
+def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
+    """What is given for parts of a role, by their whole paths; a later level holds."""
+    return {
+        part_for(system, role, path, f"{role} {given}"): given
+        for level in levels
+        for path, given in level.items()
+    }
+
+
+def _by_path(given: object) -> dict:
+    """What is given for each part by its path; "": for the only one."""
+    if given is None:
+        return {}
+    return dict(given) if isinstance(given, Mapping) else {"": given}
