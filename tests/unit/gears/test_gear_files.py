@@ -97,7 +97,7 @@ def test_loads_follow_from_the_torque():
     assert loads[0] == 0.0
     assert loads[-1] == pytest.approx(25.0 * 2252.228)
     forces = gear_pair(THESIS).tooth_forces(GearJob(gear_pair(THESIS)).pinion_torque)
-    assert forces.tangential / (2 * 47.3) == pytest.approx(100.0)
+    assert forces.pair.tangential_reference / (2 * 47.3) == pytest.approx(100.0)
 
 
 @pytest.mark.parametrize(
