@@ -130,6 +130,16 @@ def test_largest_pressure_does_not_depend_on_the_slices(model):
     assert largest[0] == pytest.approx(largest[1], rel=5e-3)
 
 
+def test_corner_contact_is_not_on_the_map():
+    """Corners before and behind the path take load off its ends; the map has none of theirs."""
+    plain, corner = (
+        flank_load(mesh, PAIR, PHASES, np.full(32, LOAD))
+        for mesh in (SliceMesh(PAIR), SliceMesh(PAIR, corner_contact=True))
+    )
+    assert corner.line_load[0].max() < plain.line_load[0].mean()
+    assert corner.line_load[0].min() > 0.9 * plain.line_load[0].min()
+
+
 def test_curvature_at_the_pitch_point():
     """r_b1 tan(alpha_wt) u / (u + 1) / cos(beta_b)."""
     pitch = PAIR.path_of_contact.pitch - PAIR.path_of_contact.start

@@ -138,13 +138,17 @@ def _strips(
 
 
 def _table(grid: np.ndarray, strips: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Mean load around each place of the grid, shape (m, k); linear where no point lies."""
+    """Mean load around each place of the grid, shape (m, k); linear where no point lies.
+
+    Corners that touch outside the path of contact are not on the map.
+    """
     columns = []
     for path, load in strips:
         step = grid[1] - grid[0]
-        bins = np.clip(np.rint(path / step).astype(int), 0, grid.size - 1)
-        count = np.bincount(bins, minlength=grid.size)
-        total = np.bincount(bins, weights=load, minlength=grid.size)
+        bins = np.rint(path / step).astype(int)
+        on_path = (bins >= 0) & (bins < grid.size)
+        count = np.bincount(bins[on_path], minlength=grid.size)
+        total = np.bincount(bins[on_path], weights=load[on_path], minlength=grid.size)
         seen = count > 0
         columns.append(np.interp(grid, grid[seen], total[seen] / count[seen]))
     return np.stack(columns, axis=1)
