@@ -26,10 +26,10 @@ def coarse(data: dict, torque: float, layers: int, model: type) -> Calibration:
 
 
 def test_spur_slices_against_finite_elements():
-    """Mean 3 %, first two mesh harmonics 15 %; the slice method's own factor."""
+    """Mean 3 %, first two mesh harmonics 15 %; the slice method's own factor, b 3.1 m_n."""
     found = coarse(SPUR, 200.0, 8, SliceMesh)
     assert found.slices.secant.mean() == pytest.approx(found.elements.secant.mean(), rel=1e-4)
-    assert found.factor == pytest.approx(0.934, abs=0.01)
+    assert found.factor == pytest.approx(0.899, abs=0.01)
     np.testing.assert_allclose(found.harmonic_ratio[:2], 1.0, atol=0.05)
 
 

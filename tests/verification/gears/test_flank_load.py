@@ -110,6 +110,36 @@ def test_relief_takes_the_load_off_the_ends():
     assert relieved.line_load[middle] > 1.1 * plain.line_load[middle]
 
 
+def test_few_slices():
+    """Strips of the face are as many as there are points of whole slices for."""
+    for slices, columns in ((120, 48), (30, 24)):
+        found = flank_load(SliceMesh(PAIR, slices=slices), PAIR, PHASES, np.full(32, LOAD))
+        assert found.face.size == columns
+    single = flank_load(SliceMesh(PAIR, slices=1), PAIR, PHASES, np.full(32, LOAD))
+    assert np.all(np.isfinite(single.pressure))
+
+
+@pytest.mark.parametrize("model", [SliceMesh, CoupledSliceMesh])
+def test_largest_pressure_does_not_depend_on_the_slices(model):
+    modification = Modification((5e-6, 5e-6), 3e-3, helix_crowning=3e-6)
+    found = [
+        flank_load(model(PAIR, modification, slices=slices), PAIR, PHASES, np.full(32, LOAD))
+        for slices in (60, 120)
+    ]
+    largest = [flank.largest_pressure for flank in found]
+    assert largest[0] == pytest.approx(largest[1], rel=5e-3)
+
+
+def test_corner_contact_is_not_on_the_map():
+    """Corners before and behind the path take load off its ends; the map has none of theirs."""
+    plain, corner = (
+        flank_load(mesh, PAIR, PHASES, np.full(32, LOAD))
+        for mesh in (SliceMesh(PAIR), SliceMesh(PAIR, corner_contact=True))
+    )
+    assert corner.line_load[0].max() < plain.line_load[0].mean()
+    assert corner.line_load[0].min() > 0.9 * plain.line_load[0].min()
+
+
 def test_curvature_at_the_pitch_point():
     """r_b1 tan(alpha_wt) u / (u + 1) / cos(beta_b)."""
     pitch = PAIR.path_of_contact.pitch - PAIR.path_of_contact.start

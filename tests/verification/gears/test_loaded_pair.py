@@ -65,6 +65,8 @@ def test_one_half_carries_all():
     """
     found = loaded_pair(TABLE, 200.0, Symmetry(20e-6, RIGID))
     shift = 20e-6 * math.tan(PAIR.base_helix_angle) / PAIR.transverse_base_pitch
+    for half, sign in zip(found.halves, (1.0, -1.0), strict=True):
+        assert half.phases - found.phases == pytest.approx(np.full(64, sign * shift), abs=1e-15)
     law = MESH.law(found.phases + shift)
     deflection = COSINE * found.transmission_error + SINE * 20e-6
     assert law(deflection)[0] == pytest.approx(np.full(64, 2.0 * LOAD), rel=5e-4)

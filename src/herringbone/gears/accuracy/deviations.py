@@ -10,8 +10,9 @@ transverse plane, positive where there is more material than the ideal flank has
              along the base tangent
 
 **Run-out is no deviation of its own.** Teeth whose centre lies e beside the axis have a run-out
-e cos(theta_j) and a cumulative pitch -e sin(theta_j - alpha_t) / cos(alpha_t): the pitch, measured
-about the gear's axis, holds it. Who adds both counts it twice.
+e cos(theta_j) and a cumulative pitch -s e sin(theta_j - s alpha_t) / cos(alpha_t), theta counted as
+the teeth are; s = 1 for the wheel, whose carrying flanks face that way, -1 for the pinion. The
+pitch, measured about the gear's axis, holds the run-out: who adds both counts it twice.
 
 **Gears of a class.** Cumulative pitch is the eccentric part and a random one of each tooth, in the
 shares at which both the single pitch deviation and the range of the cumulative one are those of the
@@ -39,7 +40,7 @@ _COMMON = 0.5
 class ToothDeviations:
     """Deviations of the teeth of one half of one gear [m], each of shape (z,).
 
-    Teeth are counted against the rotation in which the pinion drives: the order in which they mesh.
+    Teeth are counted in the order in which they mesh when the pinion drives: against the rotation.
 
     Attributes:
         cumulative_pitch: of each tooth; only differences count.
@@ -84,6 +85,7 @@ def deviations(
             pair.transverse_pressure_angle,
             flank_tolerances(pair, gear, grades[gear]),
             _Random([seed, half, gear]),
+            (-1.0, 1.0)[gear],
         )
         for gear in range(2)
     )
@@ -102,11 +104,12 @@ class _Random:
 
 
 def _gear(
-    teeth: int, pressure_angle: float, tolerances: FlankTolerances, random: _Random
+    teeth: int, pressure_angle: float, tolerances: FlankTolerances, random: _Random, faces: float
 ) -> ToothDeviations:
     angle = 2.0 * np.pi * np.arange(teeth) / teeth + np.pi * random(1)
     scatter = random(teeth)
-    cumulative, share = _cumulative_pitch(-np.sin(angle - pressure_angle), scatter, tolerances)
+    eccentric = -faces * np.sin(angle - faces * pressure_angle)
+    cumulative, share = _cumulative_pitch(eccentric, scatter, tolerances)
     run_out = (1.0 - share) * np.cos(angle) + share * random(teeth)
     return ToothDeviations(
         cumulative,

@@ -17,7 +17,7 @@ from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
 _RPM = math.pi / 30.0
 _USUAL_CLASS = 6
-_FLANK_PHASES = 64
+_FLANK_PHASES = 32
 """Phases of the load on the flanks; of all of them only some if there are more."""
 
 

@@ -8,6 +8,10 @@ A line load w normal to the flank presses with the largest pressure of a line co
 both gears of one material; rho_1 and rho_2 are the distances of the contact from the base tangent
 points. Roughness, the film of oil and the edges of the contact are left out.
 
+Largest values of relieved flanks do not depend on the number of slices (0.5 %). Without relief the
+teeth's corners enter at full load: coupled slices show 490 to 590 MPa there, by their number (27/81
+pair, 200 N m).
+
 The map is what passes over the flank in a mesh period: the phases of the line that stands there.
 """
 
@@ -21,6 +25,8 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.contact_slices import LineLoad
 
 _PATHS, _FACES = 49, 48
+_FEW = 0.4
+"""Points of a strip, over the mean, that are only those of slices cut by the ends of the path."""
 
 
 class LoadedLines(Protocol):
@@ -91,8 +97,9 @@ def flank_load(
     pressure = contact_pressure(pair, path, load)
     worst = int(np.argmax(pressure))
     grid = np.linspace(0.0, pair.length_of_path_of_contact, _PATHS)
-    faces = (np.arange(_FACES) + 0.5) * pair.face_width / _FACES
-    table = _table(grid, _strips(path, face, load, pair.face_width))
+    columns = _columns(face / pair.face_width)
+    faces = (np.arange(columns) + 0.5) * pair.face_width / columns
+    table = _table(grid, _strips(path, face / pair.face_width, load, columns))
     return FlankLoad(
         grid,
         faces,
@@ -104,24 +111,44 @@ def flank_load(
     )
 
 
+def _columns(face: np.ndarray) -> int:
+    """Strips of the face (0 to 1), so many that each has points of whole slices."""
+    columns = _FACES
+    while columns > 1:
+        count = np.bincount(_strip(face, columns), minlength=columns)
+        if count.min() > _FEW * count.mean():
+            break
+        columns //= 2
+    return columns
+
+
+def _strip(face: np.ndarray, columns: int) -> np.ndarray:
+    """Number of the strip that points are in."""
+    return np.minimum((face * columns).astype(int), columns - 1)
+
+
 def _strips(
-    path: np.ndarray, face: np.ndarray, load: np.ndarray, width: float
+    path: np.ndarray, face: np.ndarray, load: np.ndarray, columns: int
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Path and load of the points in each strip of the face, sorted by the path."""
-    strip = np.minimum((face / width * _FACES).astype(int), _FACES - 1)
+    strip = _strip(face, columns)
     order = np.lexsort((path, strip))
-    ends = np.searchsorted(strip[order], np.arange(1, _FACES))
+    ends = np.searchsorted(strip[order], np.arange(1, columns))
     return list(zip(np.split(path[order], ends), np.split(load[order], ends), strict=True))
 
 
 def _table(grid: np.ndarray, strips: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Mean load around each place of the grid, shape (m, k); linear where no point lies."""
+    """Mean load around each place of the grid, shape (m, k); linear where no point lies.
+
+    Corners that touch outside the path of contact are not on the map.
+    """
     columns = []
     for path, load in strips:
         step = grid[1] - grid[0]
-        bins = np.clip(np.rint(path / step).astype(int), 0, grid.size - 1)
-        count = np.bincount(bins, minlength=grid.size)
-        total = np.bincount(bins, weights=load, minlength=grid.size)
+        bins = np.rint(path / step).astype(int)
+        on_path = (bins >= 0) & (bins < grid.size)
+        count = np.bincount(bins[on_path], minlength=grid.size)
+        total = np.bincount(bins[on_path], weights=load[on_path], minlength=grid.size)
         seen = count > 0
         columns.append(np.interp(grid, grid[seen], total[seen] / count[seen]))
     return np.stack(columns, axis=1)
