@@ -548,7 +548,7 @@ def test_apex_shifts_the_contact_lines():
     found = forces_over_a_period(gear)
     plain = gear_pair(SHIPPED)
     expected = forces_over_a_period(plain, shift)[0], forces_over_a_period(plain, -shift)[1]
-    np.testing.assert_allclose(found, expected, rtol=1e-9)  # digits of p_bt on 20 % per period
+    np.testing.assert_allclose(found, expected, rtol=3e-9)  # digits of p_bt on 80 % per period
     assert np.ptp(found[0]) > 0.02 * found[0].mean()
 
 

@@ -134,17 +134,12 @@ def test_convergence_of_contact_and_phases():
     job = read_gear_file(GEAR_FILE)
     mesh = FiniteElementMesh(job.pair)
     load = job.pair.tooth_forces(job.pinion_torque).normal
-    loads = [load, 10.0 * load]
-    found = solved(mesh, loads)
-    for finer, phases in (
-        (mesh, 2 * PHASES),
-        (replace(mesh, slices=2 * SLICES), PHASES),
-        (replace(mesh, slices=4 * SLICES), PHASES),
-    ):
-        error = np.abs(difference(found, solved(finer, loads, phases)))
-        assert np.all(error[:, 0] < 1e-3)
-        assert np.all(error[:, 1:5] < 0.03)
-        assert np.all(error[:, 5] < 2e-4)
+    found = solved(mesh, [load])
+    for finer, phases in ((mesh, 2 * PHASES), (replace(mesh, slices=2 * SLICES), PHASES)):
+        error = np.abs(difference(found, solved(finer, [load], phases)))[0]
+        assert error[0] < 1e-3
+        assert np.all(error[1:5] < 0.03)
+        assert error[5] < 2e-4
 
 
 def test_teeth_coupled_by_the_body_are_softer():
