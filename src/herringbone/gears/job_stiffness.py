@@ -59,7 +59,8 @@ def stiffness_for(
             **{name: np.asarray(getattr(found.uncertainty, name)) for name in _BOUNDS},
         }
 
-    with activity(f"making the stiffness table by {chosen.title}", "once for each pair and load"):
+    note = "; ".join(filter(None, (chosen.takes, "once for each pair and load")))
+    with activity(f"making the stiffness table by {chosen.title}", note):
         arrays = stored_arrays("mesh_stiffness", _key(task, name), make)
     return MeshStiffness(
         job.pair,

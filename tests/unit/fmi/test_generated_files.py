@@ -23,6 +23,7 @@ def test_script(name):
     assert committed == script(COMPONENTS[name]), "run python -m herringbone.fmi.generate"
 
 
+@pytest.mark.slow
 def test_stiffness_table():
     """The shipped table is that of its gear file; last digits depend on the platform."""
     stiffness = shipped_stiffness()

@@ -574,8 +574,8 @@ def test_axial_place_shifts_the_contact_lines(apex):
             found.append(gear[f"mesh_{side}.force"])
         expected = [mesh_force(plain, 4e-6, 0.0, 2 * math.pi * (p / 27 + s * shift / 27))
                     for p in np.arange(40) / 40]  # fmt: skip
-        # Digits of p_bt on 20 % per period; a deflection of eps * 20 um.
-        np.testing.assert_allclose(found, expected, rtol=1e-9)
+        # Digits of p_bt on 80 % per period; a deflection of eps * 20 um.
+        np.testing.assert_allclose(found, expected, rtol=3e-9)
         assert np.ptp(found) > 0.02 * np.mean(found)
 
 

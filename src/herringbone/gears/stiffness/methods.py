@@ -19,7 +19,7 @@ from herringbone.gears.stiffness.slices import PHASES, SliceMesh
 
 AUTO = "auto"
 """The best method that this installation has."""
-_OVERSAMPLING = 4
+OVERSAMPLING = 4
 """Phases that the slices are solved at, over those of the table."""
 _STATED = 4
 """Mesh harmonics whose uncertainty is stated."""
@@ -109,21 +109,29 @@ class Method:
         mesh: what makes its mesh.
         accuracy: of its tables; of plain slices: of what they are measured by, coupled slices.
         calibrated: it takes a calibration.
+        takes: how long, for people, if it takes long.
     """
 
     title: str
     mesh: Callable[[Task, Progress], SliceMesh | PointMesh]
     accuracy: Accuracy
     calibrated: bool = True
+    takes: str = ""
 
 
 _COUPLED = Accuracy(mean=0.03, share=0.15, floor=0.0006)
 METHODS = {
     "slices": Method("plain slices", _slices, _COUPLED),
     "coupled-slices": Method("coupled slices", _coupled_slices, _COUPLED),
-    "fe": Method("finite elements", _finite_elements, Accuracy(0.01, 0.03, 0.0001), False),
+    "fe": Method(
+        "finite elements",
+        _finite_elements,
+        Accuracy(mean=0.01, share=0.03, floor=0.0001),
+        calibrated=False,
+        takes="less than a minute on two idle cores",
+    ),
 }
-"""Methods by name. Evidence: `finite_elements.calibration` and `finite_elements.convergence`."""
+"""Methods by name. Evidence: `finite_elements.calibration` and `finite_elements.compliance`."""
 
 
 def check_method(method: str) -> None:
@@ -184,6 +192,6 @@ def mesh_stiffness(
 
 def _table(task: Task, method: str, progress: Progress) -> tuple[MeshStiffness, int]:
     """Table of a method, and the number of phases that it was solved at."""
-    solved = _OVERSAMPLING * task.phases
+    solved = OVERSAMPLING * task.phases
     mesh = METHODS[method].mesh(task, progress)
     return mesh.solve(task.loads, solved).resampled(task.phases), solved
