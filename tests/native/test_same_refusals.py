@@ -1,8 +1,9 @@
 """Native and Python FMUs take the same resource files, and refuse others with the same words."""
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -48,28 +49,35 @@ def files_of(component: str, text: str, file: Path) -> dict[str, str]:
     return files | {text: str(file)}
 
 
-def python_refusal(component: str, text: str, file: Path) -> str:
+def python_refusal(
+    component: str, text: str, file: Path, parameters: Mapping[str, float] = MappingProxyType({})
+) -> str:
     instance = Instance(COMPONENTS[component], "part")
-    for name, value in files_of(component, text, file).items():
+    for name, value in {**files_of(component, text, file), **parameters}.items():
         instance.set(name, value)
     try:
-        instance.load_resources()
+        instance.initialise()
     except ResourceError as error:
         return str(error)
     return ""
 
 
 @pytest.fixture
-def native_refusal(native_fmus: dict[str, Path]) -> Callable[[str, str, Path], str]:
+def native_refusal(native_fmus: dict[str, Path]) -> Callable[..., str]:
     hosts: dict[str, Host] = {}
 
-    def refusal(component: str, text: str, file: Path) -> str:
+    def refusal(
+        component: str,
+        text: str,
+        file: Path,
+        parameters: Mapping[str, float] = MappingProxyType({}),
+    ) -> str:
         if component not in hosts:
             hosts[component] = Host("part", native_fmus[component])
         host = hosts[component]
         host.slave.reset()
         try:
-            host.initialise(files_of(component, text, file))
+            host.initialise({**files_of(component, text, file), **parameters})
         except HerringboneError as error:
             return str(error).partition("does not initialise: ")[2].removesuffix(" (t = 0 s)")
         return ""
@@ -84,7 +92,7 @@ def test_same_refusals(
     component: str,
     text: str,
     start: str,
-    native_refusal: Callable[[str, str, Path], str],
+    native_refusal: Callable[..., str],
     tmp_path: Path,
 ) -> None:
     lines = (component_folder(component) / "resources" / start).read_text().splitlines()
@@ -98,3 +106,52 @@ def test_same_refusals(
         assert told[:LENGTH] == wanted[:LENGTH]
         refused += bool(wanted)
     assert CASES // 5 < refused < CASES
+
+
+PAIR = "27 81 0.05029800641 0.1508940192 0.4891166664 0.0473"
+TAKEN = f"'# pair:' takes {len(PAIR.split())} finite numbers"
+OTHER_PAIR = {
+    "pinion.number_of_teeth": 23.0,
+    "wheel.number_of_teeth": 57.0,
+    "wheel.base_radius": 0.05029800641062931 * 57 / 23,
+}
+
+
+@pytest.mark.parametrize(
+    ("line", "parameters", "said"),
+    [
+        (f"# pair: {PAIR}", {}, ""),
+        ("# no pair", {"face_width": 0.1}, ""),
+        (f"# pair: {PAIR}", {"face_width": 0.0473 * (1 + 0.5e-4)}, ""),
+        (f"# pair: {PAIR}", {"face_width": 0.0473 * (1 + 2e-4)}, "face width 0.04730946 m; set"),
+        (f"# pair: {PAIR}", {"base_helix_angle": -0.4891166664}, ""),
+        (f"# pair: {PAIR}", {"base_helix_angle": 0.4893}, "angle 0.4893 rad, face"),
+        (f"# pair: {PAIR}", OTHER_PAIR, "pair z 27/81"),
+        (f"# pair: {PAIR}", OTHER_PAIR, "the parameters are of z 23/57"),
+        ("# pair: 23 57 0.05 0.15 0.5 0.05", {}, "pair z 23/57"),
+        (f"# pair: {PAIR}", {"wheel.number_of_teeth": 80.0}, "27/80 do not fit base radii"),
+        ("# no pair", {"pinion.base_radius": 0.051}, "(ratio 3 against 2.958706)"),
+        ("# pair:", {}, f"line 2: {TAKEN}"),
+        (f"# pair: {PAIR} 1", {}, TAKEN),
+        (f"# pair: {PAIR[:-6]}", {}, TAKEN),
+        (f"# pair: {PAIR[:-6]}nan", {}, TAKEN),
+        (f"# pair: {PAIR[:-6]}b", {}, TAKEN),
+    ],
+)
+def test_table_of_another_pair(
+    line: str,
+    parameters: Mapping[str, float],
+    said: str,
+    native_refusal: Callable[..., str],
+    tmp_path: Path,
+) -> None:
+    """Refused with both pairs named; a table that tells no pair is taken."""
+    [(component, text, start)] = [f for f in FILES if f[1] == "stiffness_table"]
+    lines = (component_folder(component) / "resources" / start).read_text().splitlines()
+    assert lines[1] == f"# pair: {PAIR}"
+    file = tmp_path / "table.csv"
+    file.write_text("\n".join([lines[0], line, *lines[2:]]))
+    wanted = python_refusal(component, text, file, parameters)
+    assert said in wanted
+    assert bool(said) == bool(wanted)
+    assert native_refusal(component, text, file, parameters) == wanted

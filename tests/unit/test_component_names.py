@@ -12,7 +12,7 @@ from herringbone.core.paths import PACKAGE
 NAME = re.compile(rf"(?<![A-Za-z_])({'|'.join(COMPONENTS)})(?![a-z_])")
 MODULES = {
     f"herringbone.components.{file.stem}"
-    for file in (PACKAGE / "components").glob("*")
+    for file in (PACKAGE / "components").iterdir()
     if file.stem.startswith(tuple(COMPONENTS))
 }
 FILES = sorted(f for f in PACKAGE.rglob("*.py") if "components" not in f.relative_to(PACKAGE).parts)

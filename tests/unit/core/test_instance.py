@@ -103,7 +103,8 @@ def test_missing_resource_names_both_ways_out(tmp_path):
 
 
 def test_bad_resource_names_the_instance(tmp_path):
-    (tmp_path / "mesh_stiffness.csv").write_text("nothing\n")
+    for text in GEAR_MESH.declaration.texts:
+        (tmp_path / text.start).write_text("nothing\n")
     gear = Instance(GEAR_MESH, "gear", resources=tmp_path)
     with pytest.raises(ResourceError, match=r"^gear: .*mesh_stiffness\.csv: the first line must"):
         gear.initialise()

@@ -4,11 +4,11 @@ from herringbone.components import (
     bearing_supports,
     bench_controller,
     drive_motor,
-    gear_mesh,
     load_motor,
     shaft_coupling,
     velocity_sensor,
 )
+from herringbone.components.gear_mesh import motion as gear_mesh
 
 MODULES = (
     bearing_supports, bench_controller, drive_motor, gear_mesh, load_motor, shaft_coupling,
@@ -24,4 +24,5 @@ def test_each_component_has_a_stepper_of_its_own_name():
     names = [module._advance.py_func.__qualname__ for module in MODULES]
     assert len(set(names)) == len(MODULES)
     for module, name in zip(MODULES, names, strict=True):
-        assert name.startswith(module._d.name + ".")
+        declaration = module.at.DECLARATION if module is gear_mesh else module._d
+        assert name.startswith(declaration.name + ".")

@@ -80,7 +80,7 @@ class SecondProcess:
         while self._reader.is_alive():
             self._reader.join(_POLL)
             progress(self.done)
-        return self._found or tooth_compliance(*self._job, progress)
+        return self._found or tooth_compliance(*self._job, progress=progress)
 
 
 def _send(content: object) -> None:
@@ -92,7 +92,7 @@ def main() -> None:
     """What the process does."""
     job = pickle.load(sys.stdin.buffer)
     with threadpool_limits(limits=1, user_api="blas"):
-        _send(tooth_compliance(*job, _send))
+        _send(tooth_compliance(*job, progress=_send))
 
 
 if __name__ == "__main__":
