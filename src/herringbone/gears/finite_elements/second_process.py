@@ -12,13 +12,16 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
-from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 from herringbone.core.paths import PACKAGE
+from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import ToothCompliance, tooth_compliance
+from herringbone.gears.geometry.gear_pair import GearPair
 
+Job = tuple[GearPair, int, Resolution, int]
+"""Arguments of `tooth_compliance`, without `progress`."""
 _MODULE = "herringbone.gears.finite_elements.second_process"
 _POLL = 0.3
 """Time between two calls of `progress` [s]."""
@@ -34,7 +37,7 @@ class SecondProcess:
         done: share of the work done.
     """
 
-    def __init__(self, job: tuple[Any, ...]) -> None:
+    def __init__(self, job: Job) -> None:
         self._job = job
         self.done = 0.0
         self._found: ToothCompliance | None = None
@@ -80,7 +83,7 @@ class SecondProcess:
         while self._reader.is_alive():
             self._reader.join(_POLL)
             progress(self.done)
-        return self._found or tooth_compliance(*self._job, progress=progress)
+        return self._found or tooth_compliance(*self._job, progress)
 
 
 def _send(content: object) -> None:
@@ -90,9 +93,9 @@ def _send(content: object) -> None:
 
 def main() -> None:
     """What the process does."""
-    job = pickle.load(sys.stdin.buffer)
+    job: Job = pickle.load(sys.stdin.buffer)
     with threadpool_limits(limits=1, user_api="blas"):
-        _send(tooth_compliance(*job, progress=_send))
+        _send(tooth_compliance(*job, _send))
 
 
 if __name__ == "__main__":
