@@ -22,7 +22,7 @@ from herringbone.core import Column, Component, Declaration, Kernels, Text, outp
 from herringbone.core.pair_values import PairValues
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel, seldom
+from herringbone.kernels.jit import kernel
 
 ROWS = 256
 """Most rows of a cycle."""
@@ -107,7 +107,7 @@ _REFUSALS = (
 )
 
 
-@seldom
+@kernel
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:

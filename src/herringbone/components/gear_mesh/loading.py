@@ -6,7 +6,7 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.resources import stiffness_table, transmission_error
 from herringbone.components.resources.loader import NO_FILE, Refusal, ResourceLoader
 from herringbone.kernels import force_law
-from herringbone.kernels.jit import kernel, seldom
+from herringbone.kernels.jit import kernel
 
 _SAME, _SAME_RATIO = 1e-4, 1e-3  # relative
 _NUMBERS = stiffness_table.PAIR[1]
@@ -28,7 +28,7 @@ _REFUSALS = (
 )
 
 
-@seldom
+@kernel
 def _load(
     values: np.ndarray, shape: np.ndarray, b: np.ndarray, s: np.ndarray, report: np.ndarray
 ) -> int:
