@@ -14,6 +14,7 @@ from herringbone.commands import build as build_command
 from herringbone.commands import export as export_command
 from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
+from herringbone.commands import template as template_command
 from herringbone.commands.gear import command as gear_command
 from herringbone.commands.housing import command as housing_command
 from herringbone.commands.options import (
@@ -88,6 +89,8 @@ def _parser() -> argparse.ArgumentParser:
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
     export_command.add_options(sub)
     add_start_values(sub)
+    sub = add("template", template_command.run, "a file to begin with: gear, housing, system ...")
+    template_command.add_options(sub)
     gear_command.register(commands)
     housing_command.register(commands)
     return parser

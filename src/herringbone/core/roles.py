@@ -68,6 +68,7 @@ class Quantity(StrEnum):
     BASE_RADIUS = "base radius"
     WORKING_PRESSURE_ANGLE = "working pressure angle"
     STIFFNESS_TABLE = "stiffness table"
+    TOOTH_ERRORS = "tooth errors"
     MESH_FORCE = "mesh force"
     MESH_DEFLECTION = "mesh deflection"
     ELECTRICAL_POWER = "electrical power"

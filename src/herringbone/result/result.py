@@ -19,6 +19,7 @@ from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any, shown
 from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
+from herringbone.result.budget import BudgetRow
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,6 +87,7 @@ class Result(Facts):
         channels: column patterns by group, such as "bearing_force".
         error: error against the monolithic twin by group, if it was asked for.
         files: files that were written, if any.
+        budget: how far the run may be from the gearbox that is meant, by source of error.
     """
 
     data: pd.DataFrame
@@ -95,6 +97,7 @@ class Result(Facts):
     channels: Mapping[str, Sequence[str]] = field(default_factory=dict)
     error: Mapping[str, float] | None = None
     files: tuple[str, ...] = ()
+    budget: tuple[BudgetRow, ...] = ()
 
     def columns(self, *patterns: str) -> list[str]:
         """Columns that match any of the patterns (`*`, `?`), in the order of the table.
@@ -218,6 +221,8 @@ class Result(Facts):
             found |= {"message": self.outcome.message, "culprit": self.outcome.culprit}
         if self.error is not None:
             found["error"] = dict(self.error)
+        if self.budget:
+            found["error_budget"] = [asdict(row) for row in self.budget]
         return found
 
     def to_json(self) -> str:

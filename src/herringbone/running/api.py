@@ -31,7 +31,7 @@ from herringbone.running.gears import Gear
 from herringbone.running.loading import open_parts
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import decimated, make_result, twin_error, with_misfits
+from herringbone.running.run_result import compared, decimated, judged, make_result
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
@@ -120,13 +120,13 @@ def run(
                 structure, parts, coupling, grid, tell, bond_frequency=bond, slow=slow
             )
         lines += _step_notes(asked, coupling, recording)
-        every = with_misfits(make_result(structure, chosen, coupling, fmu, recording, lines))
+        every = judged(make_result(structure, chosen, coupling, fmu, recording, lines), bond)
         _log_end(recording)
         result = decimated(every, chosen.record_step) if reference else every
         if recorded:
             recorded(result)
     if reference:
-        result = replace(result, error=twin_error(every, structure))
+        result = compared(result, every, structure)
     if _unstable(recording):
         with activity(f"looking for what grows in {structure.name}, and for remedies"):
             why_unstable = diagnose(structure, coupling, recording.step)

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, error_budget
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.twin.monolithic import Twin
@@ -75,12 +76,36 @@ def make_result(
     return Result(data, units, recording.outcome, info, system.channels)
 
 
-def with_misfits(result: Result) -> Result:
-    """The result with lines on what in the run does not fit together."""
+def judged(result: Result, bond_frequency: float | None) -> Result:
+    """The result with its error budget, and lines on what in the run does not fit together.
+
+    Args:
+        result: of a run.
+        bond_frequency: the highest of all bonds together [rad/s]; None if it is not known.
+    """
     if len(result.data) < _FEWEST or result.outcome.unstable:
         return result
-    found = misfits(result.uniform())
-    return replace(result, info=replace(result.info, notes=(*result.info.notes, *found)))
+    even = result.uniform()
+    notes = (*result.info.notes, *misfits(even))
+    budget = error_budget(even, bond_frequency or 0.0)
+    return replace(result, info=replace(result.info, notes=notes), budget=budget)
+
+
+def compared(result: Result, every: Result, system: System) -> Result:
+    """The result with its errors against the twin at all communication points.
+
+    Args:
+        result: as it is shown.
+        every: with all communication points.
+        system: of the run.
+    """
+    error = twin_error(every, system)
+    result = replace(result, error=error)
+    if not result.budget:
+        return result
+    coupling = coupling_row(result, 0.0)
+    rows = [coupling if row.source == coupling.source else row for row in result.budget]
+    return replace(result, budget=by_size(rows))
 
 
 def _parameters(system: System) -> dict[str, float]:

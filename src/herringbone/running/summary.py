@@ -131,7 +131,7 @@ def _figures(result: Result) -> Iterator[Iterable[str]]:
             title = f"Gearbox {name}".rstrip()
             yield [title, "-" * len(title), *_gear_pairs(box)]
             yield from (section(box) for section in (_seats, _spectral_lines, _radiation))
-    yield from (section(result) for section in (_unknown, _signals, _errors))
+    yield from (section(result) for section in (_unknown, _signals, _errors, _budget))
 
 
 def _steady(result: Result) -> Iterator[str]:
@@ -270,3 +270,15 @@ def _errors(result: Result) -> Iterator[str]:
             f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in result.error.items()
         )
         yield _line("Error against twin", errors)
+
+
+def _budget(result: Result) -> Iterator[str]:
+    """How far the run may be from what is meant, the largest row first; then what is unknown."""
+    known = [row for row in result.budget if row.value is not None]
+    for k, row in enumerate(known):
+        label = "" if k else "Error budget"
+        text = f"{100.0 * (row.value or 0.0):.2g} % {row.source} ({row.known}; {row.quantity})"
+        yield _line(label, text)
+    unknown = [f"{row.source} ({row.how})" for row in result.budget if row.value is None]
+    if unknown:
+        yield _line("" if known else "Error budget", f"unknown: {'; '.join(unknown)}")

@@ -35,6 +35,7 @@ DECLARATION = Declaration(
             "given transmission error, CSV of harmonics",
             "perfect_teeth.csv",
             transmission_error.COLUMNS,
+            Quantity.TOOTH_ERRORS,
         ),
     ],
     tables=_TABLES + STATES + _DERIVED + _RESULTS,

@@ -12,15 +12,19 @@ tells of which pair the table is: teeth, base radii [m], base helix angle [rad],
 """
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.components.resources.flat_csv import read_header
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column
 from herringbone.kernels.force_law import LOADS, PHASES
 from herringbone.kernels.jit import kernel
 
 SIDES = ("left", "right")
+STATED_HARMONICS = 4
+"""Mesh harmonics of which a table may state the uncertainty, in a line `# uncertainty:`."""
 COLUMNS = (
     Column("side", words=SIDES),
     Column("load", ("N",)),
@@ -223,3 +227,32 @@ def read_stiffness_table(file: Path) -> tuple[tuple[np.ndarray, np.ndarray], ...
             raise REFUSALS[refusal - 1].error([file], report)
         tables.append((s[:loads].copy(), s[GRID : GRID + loads * phases].reshape(loads, phases)))
     return tuple(tables)
+
+
+class Uncertainty(NamedTuple):
+    """What a table states of itself, over its mean stiffness [1].
+
+    Attributes:
+        mean: uncertainty of the mean.
+        harmonics: (4,) of the amplitudes of mesh harmonics 1 to 4, at most.
+        amplitudes: (4,) these amplitudes, at the load asked about.
+    """
+
+    mean: float
+    harmonics: np.ndarray
+    amplitudes: np.ndarray
+
+
+def read_uncertainty(file: Path, load: float) -> Uncertainty | None:
+    """What a table states of its uncertainty, with its harmonics at a load [N]; None if nothing.
+
+    Raises:
+        ResourceError: see `read_stiffness_table`.
+    """
+    stated = read_header(file, "uncertainty", 1 + STATED_HARMONICS)
+    if np.isnan(stated).any():
+        return None
+    loads, stiffness = read_stiffness_table(file)[0]
+    row = stiffness[np.abs(loads - load).argmin()]
+    amplitudes = np.abs(np.fft.rfft(row))[1 : 1 + STATED_HARMONICS] * 2.0 / row.size
+    return Uncertainty(float(stated[0]), stated[1:], amplitudes / row.mean())

@@ -15,6 +15,7 @@ def table_text(stiffness: MeshStiffness) -> str:
     lines = [
         "# units: load N, phase 1, stiffness N/m",
         f"# pair: {_fingerprint(stiffness.pair)}",
+        *_uncertainty(stiffness),
         *(f"# {line}" for line in origin(stiffness)),
     ]
     lines.append("side,load,phase,stiffness")
@@ -50,7 +51,6 @@ def origin(stiffness: MeshStiffness) -> list[str]:
         f"Tip relief of pinion and wheel {relief} um over {1e3 * modification.relief_length:g} mm, "
         f"helix crowning {1e6 * modification.helix_crowning:g} um.",
         f"Method: {stiffness.method}.",
-        *_uncertainty(stiffness),
     ]
 
 
@@ -59,10 +59,11 @@ def _uncertainty(stiffness: MeshStiffness) -> list[str]:
     bounds = stiffness.uncertainty
     if bounds is None:
         return []
-    harmonics = " ".join(f"{value:.2g}" for value in bounds.harmonics.max(axis=0))
+    numbers = (bounds.mean, *bounds.harmonics.max(axis=0))
     return [
-        f"Uncertainty over the mean stiffness, against finite elements refined without end: mean "
-        f"{bounds.mean:g}, mesh harmonics 1 to {bounds.harmonics.shape[1]} at most {harmonics}."
+        f"# uncertainty: {' '.join(f'{value:.2g}' for value in numbers)}",
+        "# Uncertainty: of the mean, and at most of mesh harmonics 1 to "
+        f"{bounds.harmonics.shape[1]}, over the mean, against finite elements refined without end.",
     ]
 
 

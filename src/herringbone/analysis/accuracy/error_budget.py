@@ -1,0 +1,180 @@
+"""How far a run may be from the gearbox that is meant: one row per source of error.
+
+    table           uncertainty of the mesh harmonics of the stiffness table, over their amplitudes,
+                    weighted with the lines that the run's bearing forces have at these harmonics:
+                    sqrt(sum (a_k u_k / h_k)^2) / sqrt(sum a_k^2), k = 1 ... 4; where the response
+                    is linear, a line follows its harmonic
+    coupling        error against the monolithic twin if it was solved, else by the rule of
+                    `analysis.stability.recommendation`
+    inner steps     floor of the gear's micro steps, by the same rule
+    housing         certified bound of a reduction up to the end of its band
+    dampings        assumed ones: nobody has measured them
+    tooth errors    none are given: perfect teeth
+
+Rows are sorted by their value, the largest first, then those without.
+"""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.analysis.asked import group, signal
+from herringbone.analysis.figures.modal_response import housing_of
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.stability.recommendation import (
+    RULE_ERROR,
+    SOURCE,
+    contact_floor,
+    separation_floor,
+)
+from herringbone.components.resources.stiffness_table import read_uncertainty
+from herringbone.core.roles import Quantity, Role
+from herringbone.cosim.algorithms import parse_algorithm
+from herringbone.result.budget import BudgetRow, Known
+from herringbone.result.result import TIME, Result
+
+_FORCE = "bearing force, alternating part"
+_CHANNEL = "bearing_force"
+_FEWEST_PERIODS = 4.0
+
+
+def error_budget(result: Result, bond_frequency: float = 0.0) -> tuple[BudgetRow, ...]:
+    """Rows of a run, the largest first.
+
+    Args:
+        result: of the run.
+        bond_frequency: the highest of all bonds together [rad/s]; 0 if unknown.
+    """
+    rows = [
+        *_tables(result),
+        coupling_row(result, bond_frequency),
+        *_inner_steps(result),
+        *_housings(result),
+        *_assumptions(result),
+    ]
+    return by_size(rows)
+
+
+def by_size(rows: Iterable[BudgetRow]) -> tuple[BudgetRow, ...]:
+    """The rows with a value, the largest first, then the others."""
+    return tuple(sorted(rows, key=lambda row: 0.0 if row.value is None else -row.value))
+
+
+def _tables(result: Result) -> Iterator[BudgetRow]:
+    anatomy = result.info.anatomy
+    for gear in result.parts_with(Role.GEAR_PAIR):
+        source = f"stiffness table of {gear}"
+        column = anatomy.column(gear, Quantity.STIFFNESS_TABLE)
+        name, folder = result.info.resources.get(column or "", ""), anatomy.parts[gear].resources
+        if not name or folder is None:
+            yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, "a part whose table is not known")
+            continue
+        stated = read_uncertainty(folder / name, _mean_force(result, gear))
+        if stated is None:
+            yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, "the table states no uncertainty")
+            continue
+        lines = _lines(result, gear, len(stated.harmonics))
+        if lines is None:
+            why = "no steady mesh frequency, or too few mesh periods, to weigh the harmonics with"
+            yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, why)
+            continue
+        share = stated.harmonics / np.maximum(stated.amplitudes, stated.harmonics)
+        value = float(np.linalg.norm(lines * share) / np.linalg.norm(lines))
+        how = (
+            "the table's uncertainty at mesh harmonics 1 to 4, weighted with the run's lines there"
+        )
+        yield BudgetRow(source, _FORCE, value, Known.ESTIMATED, how)
+
+
+def _mean_force(result: Result, gear: str) -> float:
+    """Mean normal force [N] of the left mesh; 0 if it is not recorded."""
+    force = signal(result, Role.GEAR_PAIR, Quantity.MESH_FORCE, "left", part=gear)
+    return 0.0 if force is None else float(force[steady_part(result).rows].mean())
+
+
+def _lines(result: Result, gear: str, count: int) -> np.ndarray | None:
+    """Amplitudes (count,) of the bearing forces at mesh harmonics, over all channels."""
+    columns, frequency = group(result, _CHANNEL), run_mesh_frequency(result, gear=gear)
+    part = steady_part(result)
+    time = result.data[TIME].to_numpy()[part.rows]
+    if not columns or not frequency or time.size < 2:
+        return None
+    periods = int((time[-1] - time[0]) * frequency)
+    if periods < _FEWEST_PERIODS:
+        return None
+    used = time - time[0] <= periods / frequency
+    forces = result.data[columns].to_numpy()[part.rows][used]
+    forces = forces - forces.mean(axis=0)
+    turns = np.exp(-2j * np.pi * frequency * np.outer(np.arange(1, count + 1), time[used]))
+    found = np.abs(turns @ forces) * 2.0 / forces.shape[0]
+    lines = np.linalg.norm(found, axis=1)
+    return lines if lines.any() else None
+
+
+def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
+    """What the coupling errs; see `error_budget`."""
+    if result.error:
+        name, value = max(result.error.items(), key=lambda item: item[1])
+        quantity = f"{name.replace('_', ' ')}, alternating part"
+        how = "against the monolithic solution of the same equations"
+        return BudgetRow("coupling", quantity, value, Known.MEASURED, how)
+    algorithm = parse_algorithm(result.info.algorithm)
+    if algorithm.adaptive:
+        how = "the tolerance of its steps; --reference measures"
+        tolerance = getattr(algorithm, "tolerance", None)
+        return BudgetRow("coupling", _FORCE, tolerance, Known.ESTIMATED, how)
+    rule = algorithm.accurate_step
+    if rule is None or not bond_frequency or result.info.slow:
+        how = "no rule for this algorithm and system; --reference measures"
+        return BudgetRow("coupling", _FORCE, None, Known.UNKNOWN, how)
+    step = result.info.communication_step * bond_frequency / rule
+    value = RULE_ERROR * step**algorithm.convergence_order
+    return BudgetRow("coupling", _FORCE, value, Known.ESTIMATED, f"{SOURCE}; --reference measures")
+
+
+def _inner_steps(result: Result) -> Iterator[BudgetRow]:
+    for part, step in result.info.micro_steps.items():
+        if Role.GEAR_PAIR not in result.info.anatomy.parts[part].roles:
+            continue
+        apart = _separates(result, part)
+        value = separation_floor(step) if apart else contact_floor(step)
+        how = (
+            f"micro steps of {1e6 * step:g} us {'where teeth separate' if apart else 'in contact'}"
+        )
+        yield BudgetRow(
+            f"inner steps of {part}", _FORCE, value, Known.ESTIMATED, f"{how}, as on the test rig"
+        )
+
+
+def _separates(result: Result, gear: str) -> bool:
+    forces = (
+        signal(result, Role.GEAR_PAIR, Quantity.MESH_FORCE, side, part=gear)
+        for side in ("left", "right")
+    )
+    return any(force is not None and not np.all(force != 0.0) for force in forces)
+
+
+def _housings(result: Result) -> Iterator[BudgetRow]:
+    for part in result.parts_with(Role.HOUSING):
+        source, quantity = f"reduction of {part}", "receptance at the seats, over statics"
+        housing = housing_of(result, part)
+        bound = housing.certificate.get("error_bound") if housing else None
+        if housing is None or bound is None:
+            how = "its data carry no certificate"
+            yield BudgetRow(source, quantity, None, Known.UNKNOWN, how)
+            continue
+        how = f"certified bound up to {housing.certificate.get('band_hz', 0.0):g} Hz"
+        yield BudgetRow(source, quantity, float(bound), Known.ESTIMATED, how)
+
+
+def _assumptions(result: Result) -> Iterator[BudgetRow]:
+    for gear in result.parts_with(Role.GEAR_PAIR):
+        column = result.info.anatomy.column(gear, Quantity.TOOTH_ERRORS)
+        file = result.info.resources.get(column or "", "")
+        if file and not Path(file).is_absolute():
+            how = "none are given: perfect teeth"
+            yield BudgetRow(f"tooth errors of {gear}", _FORCE, None, Known.UNKNOWN, how)
+    if result.parts_with(Role.GEAR_PAIR):
+        how = "damping ratios are assumed; the height of a resonance goes with their reciprocal"
+        yield BudgetRow("dampings", "resonances", None, Known.UNKNOWN, how)

@@ -1,0 +1,92 @@
+"""The command `template`: a file to begin with, such as the pair's or the housing's."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from herringbone.commands.output import check_writable, show
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.paths import systems_folder
+from herringbone.core.roles import Role
+
+
+class Template(NamedTuple):
+    """A file to begin with.
+
+    Attributes:
+        file: the shipped one.
+        use: what it is for, in a line.
+    """
+
+    file: Callable[[], Path]
+    use: str
+
+
+def _of(role: Role, name: str) -> Callable[[], Path]:
+    def file() -> Path:
+        from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
+
+        return component_for(role).folder / name
+
+    return file
+
+
+TEMPLATES = {
+    "gear": Template(
+        _of(Role.GEAR_PAIR, "gear_pair.toml"),
+        "A gear pair: herringbone gear FILE; herringbone run SYSTEM --gear FILE",
+    ),
+    "housing": Template(
+        _of(Role.HOUSING, "welded_housing.toml"),
+        "A welded housing: herringbone housing build FILE; herringbone run SYSTEM --housing FILE",
+    ),
+    "seats": Template(
+        _of(Role.HOUSING, "seats.toml"),
+        "Seats of a housing of another program: herringbone housing import MODEL --seats FILE",
+    ),
+    "system": Template(
+        lambda: systems_folder() / "gearbox" / "system.toml",
+        "A system: FOLDER/system.toml, its scenes in FOLDER/scenes; herringbone run FOLDER",
+    ),
+    "scene": Template(
+        lambda: systems_folder() / "gearbox" / "scenes" / "loaded.toml",
+        "A scene of the gearbox: herringbone run SYSTEM --scene FILE",
+    ),
+}
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    sub.add_argument("kind", help=", ".join(TEMPLATES))
+    sub.add_argument("-o", "--output", type=Path, help="file to write; shown if not given")
+
+
+def template(kind: str, output: Path | None) -> str:
+    """Text of a template; if a file is given it is written, and what is returned says so.
+
+    Raises:
+        ParameterError: there is no such template, or the file is there.
+        HerringboneError: it cannot be written.
+    """
+    if kind not in TEMPLATES:
+        raise ParameterError(f"there is no template '{kind}': give one of {', '.join(TEMPLATES)}")
+    found = TEMPLATES[kind]
+    text = f"# {found.use}\n#\n{found.file().read_text(encoding='utf-8')}"
+    if output is None:
+        return text.rstrip("\n")
+    if output.exists():
+        raise ParameterError(f"{output} is there already; give another name with -o")
+    check_writable(output.parent, output)
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise HerringboneError(f"cannot write {output}: {error.strerror}") from error
+    return f"{output}: {found.use}"
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show or write a template."""
+    show(template(options.kind, options.output))
+    return 0
