@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
 from herringbone.core.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
+from herringbone.running.carrying_flank import loaded_start
 from herringbone.scenes import Scene, Start
 
 LOAD_RAMP_TIME = 0.02
@@ -37,7 +37,8 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
         system = system.with_values(_ramps(system))
     if start is not Start.REST:
         try:
-            system = system.with_values(_equilibrium_values(system))
+            values, lines = _equilibrium_values(system)
+            system, notes = system.with_values(values), (*notes, *lines)
         except EquilibriumError:
             if not system.foreign_parts:
                 raise
@@ -58,7 +59,7 @@ def _ramps(system: System) -> Values:
     }
 
 
-def _equilibrium_values(system: System) -> Values:
+def _equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
     foreign = set(system.foreign_parts)
     known = replace(
@@ -71,7 +72,7 @@ def _equilibrium_values(system: System) -> Values:
         ),
     )
     with activity(f"looking for the steady rotation of {system.name}"):
-        return equilibrium(known).values
+        return loaded_start(known)
 
 
 def _offsets(system: System, offsets: Values) -> Values:

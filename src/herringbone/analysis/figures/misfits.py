@@ -16,7 +16,7 @@ from herringbone.components.resources.stiffness_table import read_stiffness_tabl
 from herringbone.core import ResourceError
 from herringbone.core.roles import GEARS, PortKind, Quantity, Role
 from herringbone.housing import ModalHousing
-from herringbone.result.result import Result
+from herringbone.result.result import TIME, Result
 
 _RATIO, _DISTANCE = 1e-3, 1e-3
 """Relative deviation of a ratio, and deviation of a centre distance [m], that is noted."""
@@ -29,7 +29,8 @@ def misfits(result: Result) -> tuple[str, ...]:
     return tuple(
         line
         for gear in result.parts_with(Role.GEAR_PAIR)
-        for line in (*_of_pair(result, gear), *_of_housing(result, gear), *_of_table(result, gear))
+        for of in (_of_pair, _of_housing, _of_table, _of_flank)
+        for line in of(result, gear)
     )
 
 
@@ -124,3 +125,22 @@ def _of_table(result: Result, gear: str) -> Iterator[str]:
                 f"{gear}: the {side} mesh carries up to {largest:.4g} N, its stiffness table ends "
                 f"at {loads[-1]:.4g} N: above that the law goes on as a straight line"
             )
+
+
+def _of_flank(result: Result, gear: str) -> Iterator[str]:
+    """Time with the teeth pressed on the flank whose line of action y is not."""
+    flank = _value(result, gear, Quantity.CARRYING_FLANK)
+    forces = [column for column in mesh_forces(result, gear).values() if column in result.data]
+    if flank is None or not forces:
+        return
+    carries = -1.0 if flank < 0.0 else 1.0
+    other = (carries * result.data[forces].to_numpy() < 0.0).any(axis=1)
+    time = result.data[TIME].to_numpy()
+    if other.any():
+        share = float(other.mean()) * (time[-1] - time[0])
+        name, opposite = ("drive", "coast") if carries > 0.0 else ("coast", "drive")
+        yield (
+            f"{gear}: the {opposite} flank is loaded for {1e3 * share:.4g} ms of "
+            f"{1e3 * (time[-1] - time[0]):.4g} ms; y is the line of action of the {name} flank, so "
+            "that the separating part of the force has the wrong direction then"
+        )

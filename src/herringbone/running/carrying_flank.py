@@ -1,0 +1,73 @@
+"""The flank that carries the load: its line of action is the y of gear pairs and their bearings.
+
+A pair is searched for steady rotation on the drive flank first. Where there is none, or the teeth
+touch on the coast flank there, y becomes that of the coast flank, in the pair and in what carries
+it. A flank that is set by name stays.
+"""
+
+import numpy as np
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.equilibrium import equilibrium
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import EquilibriumError
+from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.cosim.structure.system import System, Values
+
+_COAST = -1.0
+
+
+def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
+    """Start values of steady rotation with the flanks that carry, and lines on these.
+
+    Args:
+        system: of known parts.
+
+    Raises:
+        EquilibriumError: there is no steady rotation on either flank.
+    """
+    flanks = _free_flanks(system)
+    try:
+        values = equilibrium(system).values
+    except EquilibriumError:
+        if not flanks:
+            raise
+        coasting = list(flanks)
+    else:
+        coasting = [gear for gear in flanks if _coasts(system.with_values(values), gear)]
+        if not coasting:
+            return values, ()
+    chosen = {path: _COAST for gear in coasting for path in flanks[gear]}
+    try:
+        found = equilibrium(system.with_values(chosen)).values
+    except EquilibriumError:
+        if set(coasting) == set(flanks):
+            equilibrium(system)  # what is wrong on the drive flank is what the user can tell
+        raise
+    lines = [f"{g}: the coast flank carries; y is its line of action" for g in coasting]
+    return {**chosen, **found}, tuple(lines)
+
+
+def _free_flanks(system: System) -> dict[str, list[str]]:
+    """Paths of the flank's parameters by gear pair: its own, and those of what carries it."""
+    known = anatomy(system)
+    found: dict[str, list[str]] = {}
+    for gear in known.with_role(Role.GEAR_PAIR):
+        parts = [gear, *(part for part, _ in known.joined(gear, PortKind.JOURNAL))]
+        paths = [known.column(p, Quantity.CARRYING_FLANK) for p in dict.fromkeys(parts)]
+        given = [system.part(p).values for p in dict.fromkeys(parts)]
+        named = any(
+            path and path[len(part) + 1 :] in values
+            for part, path, values in zip(dict.fromkeys(parts), paths, given, strict=True)
+        )
+        if paths[0] and not named:
+            found[gear] = [path for path in paths if path]
+    return found
+
+
+def _coasts(system: System, gear: str) -> bool:
+    """True if the meshes of a pair are pressed on the coast flank, where the system stands."""
+    columns = anatomy(system).columns(gear, Quantity.MESH_FORCE)
+    twin = Twin(system)
+    forces = twin.observe(np.zeros(1), twin.state[:, None], columns)[0]
+    return bool(np.sum(forces) < 0.0)
