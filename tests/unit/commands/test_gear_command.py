@@ -1,7 +1,6 @@
 """The gear command: its table, its files, and what it refuses."""
 
 import json
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 from herringbone.commands.gear.report import gear
 from herringbone.commands.main import main
-from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core.paths import component_folder
 from herringbone.gears.files.gear_file import read_gear_file
@@ -44,10 +42,11 @@ def test_without_the_extra_coupled_slices_are_taken_and_said(tmp_path, capsys, m
     assert "table of z 27/51 is made by coupled slices, its mean within 3 %" in said.err
     assert "the extra 'fe' is missing: pip install 'herringbone[fe]'" in said.err
     assert "slices coupled over 1.3 (tooth)" in said.out
-    header = (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8").splitlines()[:7]
-    assert "# Method: slice method, 60 slices coupled" in header[5]
-    assert header[5].endswith("64 phases out of 256.")
-    assert "mean 0.03, mesh harmonics 1 to 4 at most" in header[6]
+    header = (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8").splitlines()[:9]
+    (method,) = (line for line in header if line.startswith("# Method: slice method, 60 slices"))
+    assert method.endswith("64 phases out of 256.")
+    (stated,) = (line for line in header if line.startswith("# uncertainty: "))
+    assert [float(x) for x in stated.split()[2:]][0] == 0.03
 
 
 def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
@@ -62,22 +61,11 @@ def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):
     assert all(Path(file).is_file() for file in found["files"])
 
 
-def test_component_values_are_those_of_the_component(tmp_path):
-    """The gear_mesh component declares the values of its gear file, to the digits it gives."""
-    gear(THESIS, tmp_path, method="slices")
-    values = tomllib.loads((tmp_path / "gear_mesh.toml").read_text(encoding="utf-8"))["set"]
-    assert len(values) == 15
-    declared = {v.name: v.start for v in GEAR_MESH.declaration.variables}
-    for name, value in values.items():
-        assert declared[name.removeprefix("gear_mesh.")] == pytest.approx(value, rel=3e-4), name
-
-
 def test_rexs_with_torque_and_halves(tmp_path):
     text = gear(STAGE, tmp_path, method="slices", torque=567.0, halves=2)
     assert "Forces at 567 N m" in text
-    assert (tmp_path / "gear_mesh.toml").is_file()
-    gear(STAGE, tmp_path / "single", method="slices")
-    assert not (tmp_path / "single" / "gear_mesh.toml").exists()
+    assert text.endswith(f"In a gearbox: herringbone run SYSTEM --gear {STAGE}")
+    assert "In a gearbox" not in gear(STAGE, tmp_path / "single", method="slices")
 
 
 @pytest.mark.parametrize(

@@ -1,17 +1,13 @@
-"""What `herringbone gear` shows and writes: table, picture, stiffness table, component values."""
+"""What `herringbone gear` shows and writes: table, picture, stiffness table."""
 
 import json
 from pathlib import Path
 
 from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
-from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.roles import Role
-from herringbone.gears.files.component_values import component_values
-from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.gears.files.rexs import read_rexs
+from herringbone.core import HerringboneError
+from herringbone.gears.files.read_job import read_job
 from herringbone.gears.files.table_file import table_text
-from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.load.figures import Conditions, Loaded, loaded_figures
@@ -21,7 +17,6 @@ from herringbone.gears.stiffness.point_mesh import Progress, silent
 
 TABLE, FLANKS = "mesh_stiffness.csv", "flank_load.csv"
 PICTURE, LOAD_PICTURE = "gear_pair.png", "gear_load.png"
-_READERS = (".toml", ".rexs", ".xml")
 
 
 def gear(
@@ -53,11 +48,11 @@ def gear(
         The table as text, and where the files are.
 
     Raises:
-        HerringboneError: see `read_gear_file`, `read_rexs`, `GearJob.task` and the method; or a
+        HerringboneError: see `read_job`, `GearJob.task` and the method; or a
             file cannot be written.
     """
     check_method(method or AUTO)
-    job = _job(file, stage, halves)
+    job = read_job(file, stage=stage, halves=halves)
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})
     stiffness = stiffness_for(job, method, progress)
@@ -67,30 +62,18 @@ def gear(
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:
         return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
-    return f"{gear_tables(job, stiffness, loaded)}\n\nFiles: {', '.join(written)}"
-
-
-def _job(file: Path, stage: str | None, halves: int | None) -> GearJob:
-    suffix = file.suffix.lower()
-    if suffix not in _READERS:
-        raise ParameterError(f"{file}: a gear file ends with one of {', '.join(_READERS)}")
-    if suffix == ".toml":
-        for option, value in (("stage", stage), ("halves", halves)):
-            if value is not None:
-                raise ParameterError(f"{file}: --{option} is of REXS files only")
-        return read_gear_file(file)
-    return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
+    lines = [gear_tables(job, stiffness, loaded), "", f"Files: {', '.join(written)}"]
+    if job.pair.halves == 2:
+        lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")
+    return "\n".join(lines)
 
 
 def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) -> list[Path]:
-    """Write tables, pictures and, of a double-helical pair, the component's values."""
+    """Write tables and pictures."""
     from herringbone.plotting.gear_load import write_gear_load_picture  # noqa: PLC0415 (lazy)
     from herringbone.plotting.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
 
     texts = {TABLE: table_text(stiffness), FLANKS: flank_text(stiffness.pair, loaded.flanks)}
-    if stiffness.pair.halves == 2:
-        component = _component()
-        texts[f"{component}.toml"] = _values_text(stiffness.pair, component)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file_name, text in texts.items():
@@ -102,21 +85,3 @@ def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) ->
             f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
         ) from error
     return [folder / file_name for file_name in (*texts, PICTURE, LOAD_PICTURE)]
-
-
-def _component() -> str:
-    """Name of the component that takes the values, and of its instance in the shipped systems."""
-    from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
-
-    return component_for(Role.GEAR_PAIR).name
-
-
-def _values_text(pair: GearPair, component: str) -> str:
-    """Values of the gear pair's component as the [set] table of a scene."""
-    lines = [
-        f"# Values of the {component} component for this pair: the [set] table of a scene.",
-        f"# A steady load of the wheel is {pair.gear_ratio:.6g} times the pinion's torque.",
-        "[set]",
-    ]
-    lines += [f'"{component}.{name}" = {value!r}' for name, value in component_values(pair).items()]
-    return "\n".join(lines) + "\n"
