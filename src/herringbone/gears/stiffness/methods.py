@@ -126,7 +126,7 @@ METHODS = {
     "fe": Method(
         "finite elements",
         _finite_elements,
-        Accuracy(mean=0.01, share=0.03, floor=0.0001),
+        Accuracy(mean=0.015, share=0.03, floor=0.0001),
         calibrated=False,
         takes="less than a minute on two idle cores",
     ),
