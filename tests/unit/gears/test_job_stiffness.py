@@ -103,7 +103,7 @@ def test_best_method_is_said_if_it_is_missing(monkeypatch, caplog):
     with caplog.at_level(logging.WARNING, logger="herringbone"):
         found = stiffness_for(replace(JOB, method="auto"))
     assert "slices coupled over" in found.method
-    assert "z 16/24 is made by coupled slices, its mean within 3 %" in caplog.text
+    assert "z 16/24 is made by coupled slices, its mean within 4 %" in caplog.text
 
 
 def test_finite_elements_are_refused_without_the_extra(monkeypatch):
@@ -149,8 +149,8 @@ def test_uncertainty_of_slices_is_their_distance_from_coupled_slices():
     job = GearJob(gear_pair(THESIS), torque=200.0, phases=32)
     plain, coupled = (stiffness_for(job, name) for name in ("slices", "coupled-slices"))
     h = coupled.harmonics()[:, :4]
-    own = np.maximum(0.15 * h, 6e-4)
+    own = np.maximum(0.15 * h, 3e-4)
     apart = np.abs(plain.harmonics()[:, :4] - h)
     np.testing.assert_allclose(coupled.uncertainty.harmonics, own, rtol=1e-12)
     np.testing.assert_allclose(plain.uncertainty.harmonics, own + apart, rtol=1e-12)
-    assert plain.uncertainty.mean == coupled.uncertainty.mean == 0.03
+    assert plain.uncertainty.mean == coupled.uncertainty.mean == 0.04

@@ -119,7 +119,7 @@ class Method:
     takes: str = ""
 
 
-_COUPLED = Accuracy(mean=0.03, share=0.15, floor=0.0006)
+_COUPLED = Accuracy(mean=0.04, share=0.15, floor=0.0003)
 METHODS = {
     "slices": Method("plain slices", _slices, _COUPLED),
     "coupled-slices": Method("coupled slices", _coupled_slices, _COUPLED),
