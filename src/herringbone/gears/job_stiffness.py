@@ -66,8 +66,8 @@ def stiffness_for(
         job.pair,
         job.modification,
         str(arrays["method"]),
-        *(arrays[name] for name in _ARRAYS),
-        Uncertainty(float(arrays["mean"]), arrays["harmonics"]),
+        **{name: arrays[name] for name in _ARRAYS},
+        uncertainty=Uncertainty(float(arrays["mean"]), arrays["harmonics"]),
     )
 
 

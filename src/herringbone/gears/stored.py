@@ -69,7 +69,7 @@ def stored_arrays(kind: str, key: str, make: Callable[[], Mapping[str, np.ndarra
     file = cache_folder(kind) / f"{key}.npz"
     if not is_stored(file):
         buffer = io.BytesIO()
-        np.savez(buffer, **make())
+        np.savez(buffer, allow_pickle=False, **make())
         store(file, buffer.getvalue())
     with np.load(file, allow_pickle=False) as found:
         return dict(found)

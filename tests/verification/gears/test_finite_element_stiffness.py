@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.gears import DRAWN_HELICAL, DRAWN_NARROW, HELICAL, SPUR, THESIS, gear_pair
+from support.gears import DRAWN_STEEP, DRAWN_WIDE, HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.files.gear_file import read_gear_file
@@ -69,8 +69,8 @@ def test_loads_have_the_same_calibration(helical, name, torques):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("data", "layers"),
-    [(SPUR, 8), (THESIS, 16), (HELICAL, 20), (DRAWN_HELICAL, 16), (DRAWN_NARROW, 12)],
-    ids=["spur", "thesis", "helical", "drawn helical", "drawn narrow"],
+    [(SPUR, 8), (THESIS, 16), (HELICAL, 20), (DRAWN_WIDE, 18), (DRAWN_STEEP, 12)],
+    ids=["spur", "thesis", "helical", "drawn wide", "drawn steep"],
 )
 def test_methods_with_their_own_calibration(data, layers):
     """Means within 3 %; harmonics 1 to 4 within what the tables state as their uncertainty.

@@ -25,9 +25,11 @@ slices' harmonics over theirs.
     never used for fitting:
     24/58   29.6  14.3    2.88  0.67  0.72  0.05   -0.2  1.09 1.05 0.99 0.83  1.03 1.85 0.07 0.55
     34/91   19.4   8.7    1.40  2.63  0.48  1.04   +0.4  1.09 0.99 1.03 1.00  1.95 0.11 1.58 0.29
+    38/88   19.3  17.5    1.05  1.30  0.33  0.32   +0.5  1.06 0.98 0.97 1.03  2.70 0.23 1.74 0.54
+    24/30   32.0   8.7    7.20  1.00  0.33  0.73   +0.7  1.02 0.99 1.05 0.99  0.77 0.40 1.73 0.05
 
 The coupled slices keep to 3 % of the mean (4 % with large bores), and to 15 % of a harmonic but for
-two of 72, below 0.2 % of the mean, which they miss by 0.03 % of it.  Plain slices have the same
+two of 80, below 0.2 % of the mean, which they miss by 0.03 % of it.  Plain slices have the same
 means and miss harmonics by up to 8 % of them.  At 0.4 of the load it is the same.
 """
 

@@ -12,29 +12,34 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
-from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 from herringbone.core.paths import PACKAGE
+from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import ToothCompliance, tooth_compliance
+from herringbone.gears.geometry.gear_pair import GearPair
 
 _MODULE = "herringbone.gears.finite_elements.second_process"
 _POLL = 0.3
 """Time between two calls of `progress` [s]."""
 
 
+Job = tuple[GearPair, int, Resolution, int]
+"""Arguments of `tooth_compliance`, without `progress`."""
+
+
 class SecondProcess:
     """Compliance of a tooth, computed elsewhere; a context, at whose end the process is gone.
 
     Args:
-        job: arguments of `tooth_compliance`, without `progress`.
+        job: what to compute.
 
     Attributes:
         done: share of the work done.
     """
 
-    def __init__(self, job: tuple[Any, ...]) -> None:
+    def __init__(self, job: Job) -> None:
         self._job = job
         self.done = 0.0
         self._found: ToothCompliance | None = None
@@ -90,7 +95,7 @@ def _send(content: object) -> None:
 
 def main() -> None:
     """What the process does."""
-    job = pickle.load(sys.stdin.buffer)
+    job: Job = pickle.load(sys.stdin.buffer)
     with threadpool_limits(limits=1, user_api="blas"):
         _send(tooth_compliance(*job, _send))
 
