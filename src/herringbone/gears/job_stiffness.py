@@ -52,16 +52,16 @@ def stiffness_for(
         )
 
     def make() -> Arrays:
-        found = mesh_stiffness(task, name, progress)
+        note = "; ".join(filter(None, (chosen.takes, "once for each pair and load")))
+        with activity(f"making the stiffness table by {chosen.title}", note):
+            found = mesh_stiffness(task, name, progress)
         return {
             "method": np.array(found.method),
             **{name: getattr(found, name) for name in _ARRAYS},
             **{name: np.asarray(getattr(found.uncertainty, name)) for name in _BOUNDS},
         }
 
-    note = "; ".join(filter(None, (chosen.takes, "once for each pair and load")))
-    with activity(f"making the stiffness table by {chosen.title}", note):
-        arrays = stored_arrays("mesh_stiffness", _key(task, name), make)
+    arrays = stored_arrays("mesh_stiffness", _key(task, name), make)
     return MeshStiffness(
         job.pair,
         job.modification,

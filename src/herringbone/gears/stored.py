@@ -3,7 +3,9 @@
 import io
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import fields, is_dataclass
 from importlib.metadata import PackageNotFoundError, version
+from numbers import Integral, Real
 
 import numpy as np
 
@@ -21,9 +23,28 @@ def content_key(module: str, *values: object) -> str:
 
     Args:
         module: whose syntax, and that of all modules that it imports, decides.
-        values: whose `repr` gives all of their digits.
+        values: numbers, texts, and sequences and dataclasses of such.
+
+    Raises:
+        TypeError: a value of another type.
     """
-    return digest_of(kernels_key(module), *_versions(), *map(repr, values))
+    return digest_of(kernels_key(module), *_versions(), _text(values))
+
+
+def _text(value: object) -> str:
+    """A value with all of its digits; unlike `repr`, which a class may shorten for people."""
+    if is_dataclass(value) and not isinstance(value, type):
+        named = (f"{field.name}={_text(getattr(value, field.name))}" for field in fields(value))
+        return f"{type(value).__name__}({','.join(named)})"
+    if isinstance(value, tuple | list):
+        return f"({','.join(map(_text, value))})"
+    if value is None or isinstance(value, bool | str):
+        return repr(value)
+    if isinstance(value, Integral):
+        return repr(int(value))
+    if isinstance(value, Real):
+        return repr(float(value))
+    raise TypeError(f"{value!r} of {type(value).__name__} has no place in a key")
 
 
 def _versions() -> list[str]:

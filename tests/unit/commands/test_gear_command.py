@@ -39,15 +39,15 @@ def test_without_the_extra_coupled_slices_are_taken_and_said(tmp_path, capsys, m
     monkeypatch.setattr(methods, "has_finite_elements", lambda: False)
     assert main(["gear", str(STAGE), "-o", str(tmp_path), "--halves", "2"]) == 0
     said = capsys.readouterr()
-    assert "table of z 27/51 is made by coupled slices, its mean within 3 %" in said.err
+    assert "table of z 27/51 is made by coupled slices, its mean within 4 %" in said.err
     assert "the extra 'fe' is missing: pip install 'herringbone[fe]'" in said.err
-    assert "slices coupled over 1.3 (tooth)" in said.out
+    assert "slices coupled over 1.15 (tooth)" in said.out
     header = (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8").splitlines()[:9]
     (method,) = (line for line in header if line.startswith("# Method: slice method, 60 slices"))
     assert method.endswith("64 phases out of 256.")
     (stated,) = (line for line in header if line.startswith("# uncertainty: "))
     mean, *_ = map(float, stated.split()[2:])
-    assert mean == 0.03
+    assert mean == 0.04
 
 
 def test_json_has_the_figures_of_the_table_in_si_units(tmp_path, capsys):

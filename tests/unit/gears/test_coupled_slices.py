@@ -1,5 +1,6 @@
 """Slices that support each other along the face: their limits."""
 
+import itertools
 import math
 
 import numpy as np
@@ -9,33 +10,64 @@ from support.gears import SPUR, THESIS, gear_pair
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness.coupled_slices import TILT, CoupledSliceMesh
-from herringbone.gears.stiffness.slices import SliceMesh
+from herringbone.gears.stiffness.tooth_compliance import tooth_compliance
 
 LOADS = [0.0, 1e3, 2e4]
-BARE = {"parts": (1.0, 1.0), "tilt": (0.0, 0.0)}
-"""Nothing of finite elements but the coupling."""
 
 
 def test_spur_gear_does_not_feel_the_coupling():
     """All its slices deflect alike, ends included: the influence has a unit integral."""
     pair = gear_pair(SPUR)
-    plain = SliceMesh(pair, calibration=0.9).solve(LOADS, 16)
-    for lengths in ((0.5, 0.5), (1.3, 6.0), (20.0, 2.5)):
-        mesh = CoupledSliceMesh(pair, calibration=0.9, lengths=lengths, **BARE)
-        coupled = mesh.solve(LOADS, 16)
-        np.testing.assert_allclose(coupled.secant, plain.secant, rtol=2e-3)
-        np.testing.assert_allclose(coupled.tangent, plain.tangent, rtol=2e-3)
+    usual = CoupledSliceMesh(pair).solve(LOADS, 16)
+    for lengths in ((0.5, 0.5), (2.5, 20.0)):
+        other = CoupledSliceMesh(pair, lengths=lengths).solve(LOADS, 16)
+        np.testing.assert_allclose(other.secant, usual.secant, rtol=2e-3)
+        np.testing.assert_allclose(other.tangent, usual.tangent, rtol=2e-3)
 
 
-def test_short_coupling_is_the_slice_method():
-    """The error goes with the length: 0.4 and 0.2 modules."""
+def test_evenly_loaded_spur_tooth():
+    """Its slices' compliance by parts, and the ring in shear by the torque: 1/h^2 - 1/r^2."""
+    pair = gear_pair(SPUR)
+    mesh = CoupledSliceMesh(pair, parts=(1.1, 0.7))
+    line = mesh.lines.lines(0.3)[0]
+    width, points = pair.face_width, pair.path_of_contact
+    reach = (points.start + line[0][0], points.tangent_length - points.start - line[0][0])
+    expected = 0.0
+    for gear in range(2):
+        base, root, hub = (
+            getattr(pair, f"{name}_radius")[gear] for name in ("base", "root", "hub")
+        )
+        part = tooth_compliance(pair, gear, np.array([math.hypot(base, reach[gear])]))
+        tooth, local = part.total - part.foundation, part.foundation - part.turning
+        shear = pair.youngs_modulus / 2.6
+        expected += (1.1 * tooth + 0.7 * local)[0] / width
+        expected += base**2 * (1 / hub**2 - 1 / root**2) / (4 * math.pi * shear * width)
+    even = np.full(line[1].size, 1.0 / line[1].size)
+    np.testing.assert_allclose(mesh.compliance([line]) @ even, expected, rtol=2e-3)
+
+
+def test_turning_is_what_goes_with_the_square_of_the_hub():
+    """The polynomials have it smaller than the ring in plane shear, by up to a half."""
+    found, ring = [], []
+    for bore in (0.02, 0.03):
+        pair = gear_pair(SPUR, bore_diameter=(bore, bore))
+        tooth = tooth_compliance(pair, 1, np.array([pair.pitch_radius[1]]))
+        found.append(tooth.turning[0])
+        shear = pair.youngs_modulus / 2.6
+        ring.append((pair.base_radius[1] / pair.hub_radius[1]) ** 2 / (4 * math.pi * shear))
+        assert 0.5 * ring[-1] < found[-1] < min(ring[-1], tooth.foundation[0])
+    assert found[0] / found[1] == pytest.approx(1.5**2, rel=1e-12)
+
+
+def test_short_coupling_converges():
+    """To slices without support; the error goes with the length: 0.4, 0.2 and 0.1 modules."""
     pair = gear_pair(THESIS)
-    plain = SliceMesh(pair).solve([2e4], 4)
-    errors = []
-    for length in (0.4, 0.2):
-        coupled = CoupledSliceMesh(pair, lengths=(length, length), **BARE).solve([2e4], 4)
-        errors.append(np.abs(coupled.secant / plain.secant - 1).max())
-    assert errors[1] < 0.6 * errors[0] < 0.04
+    found = [
+        CoupledSliceMesh(pair, lengths=(length, length)).solve([2e4], 4).secant
+        for length in (0.4, 0.2, 0.1)
+    ]
+    steps = [np.abs(a / b - 1.0).max() for a, b in itertools.pairwise(found)]
+    assert steps[1] < 0.6 * steps[0] < 0.02
 
 
 def test_relief_and_crowning_take_load_off_the_ends():

@@ -1,8 +1,10 @@
 """The table of a job: its method, its calibration, its place in the cache, its uncertainty."""
 
 import logging
+import math
 import sys
-from dataclasses import replace
+from copy import copy
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -10,11 +12,12 @@ from support.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.core.paths import CACHE_VARIABLE
-from herringbone.gears import GearJob, Modification, job_stiffness, stiffness_for
+from herringbone.gears import GearJob, GearPair, Modification, job_stiffness, stiffness_for
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.stiffness import methods
 from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.slices import SliceMesh
+from herringbone.gears.stored import content_key
 
 JOB = GearJob(gear_pair(SPUR), torque=200.0, phases=8, method="slices")
 
@@ -56,6 +59,29 @@ def test_other_jobs_have_other_tables(cache, changes):
     assert len(texts) == len(list(cache.glob("*.npz"))) == 2
 
 
+def _next(value: float) -> float:
+    """The next number of the same type."""
+    return value + 1 if isinstance(value, int) else math.nextafter(value, math.inf)
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(GearPair)])
+def test_every_value_of_the_pair_is_in_the_key(name):
+    """Also those that people are not shown."""
+    pair = gear_pair(SPUR)
+    other = copy(pair)
+    value = getattr(pair, name)
+    changed = (value[0], _next(value[1])) if isinstance(value, tuple) else _next(value)
+    object.__setattr__(other, name, changed)
+    keys = {content_key("herringbone.gears.job", p, 1, None, "text", (2.0, [True])) for p in
+            (pair, gear_pair(SPUR), other)}  # fmt: skip
+    assert len(keys) == 2
+
+
+def test_key_of_something_else_is_refused():
+    with pytest.raises(TypeError, match="has no place in a key"):
+        content_key("herringbone.gears.job", np.zeros(3))
+
+
 def test_what_is_not_asked_for_does_not_matter(cache):
     """The factor of another method."""
     stiffness_for(JOB)
@@ -77,7 +103,7 @@ def test_best_method_is_said_if_it_is_missing(monkeypatch, caplog):
     with caplog.at_level(logging.WARNING, logger="herringbone"):
         found = stiffness_for(replace(JOB, method="auto"))
     assert "slices coupled over" in found.method
-    assert "z 16/24 is made by coupled slices, its mean within 3 %" in caplog.text
+    assert "z 16/24 is made by coupled slices, its mean within 4 %" in caplog.text
 
 
 def test_finite_elements_are_refused_without_the_extra(monkeypatch):
@@ -123,8 +149,8 @@ def test_uncertainty_of_slices_is_their_distance_from_coupled_slices():
     job = GearJob(gear_pair(THESIS), torque=200.0, phases=32)
     plain, coupled = (stiffness_for(job, name) for name in ("slices", "coupled-slices"))
     h = coupled.harmonics()[:, :4]
-    own = np.maximum(0.15 * h, 6e-4)
+    own = np.maximum(0.15 * h, 3e-4)
     apart = np.abs(plain.harmonics()[:, :4] - h)
     np.testing.assert_allclose(coupled.uncertainty.harmonics, own, rtol=1e-12)
     np.testing.assert_allclose(plain.uncertainty.harmonics, own + apart, rtol=1e-12)
-    assert plain.uncertainty.mean == coupled.uncertainty.mean == 0.03
+    assert plain.uncertainty.mean == coupled.uncertainty.mean == 0.04

@@ -7,6 +7,7 @@
 | object code of a component or system | syntax of its modules and of the compiler; the wiring |
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
 | FMU | `packed_key`, its resources; a native one: its library |
+| stiffness table, teeth of finite elements | values; syntax as of a kernel; versions of libraries |
 
 Syntax: without comments, docstrings and layout, see `core.caching.syntax`. All sources are read
 before the modules that they make are imported: what is edited later in this process must not get

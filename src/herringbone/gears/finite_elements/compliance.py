@@ -16,12 +16,23 @@ The closed form is that of a half-space, while a tooth is twice as thick as its 
 plane-strain elements that resolve the contact's pressure (FZG C gears, 200 N/mm, ten contacts from
 root to tip) the deflection of one tooth comes out 1 to 2 % too small.
 
-What the mesh leaves (27/81 pair, m_n 3.5 mm, 30 deg, b 47.3 mm, at 22.5 kN per half):
+What mesh, contact and phases leave (27/81 pair, m_n 3.5 mm, 30 deg, b 47.3 mm; secant stiffness at
+2252 N per half, 200 N m, and ten times as much; last column: largest difference of harmonics above
+the tenth, of the mean), see `finite_elements.convergence`:
 
-    profile x thickness x root, layers    DOF of both gears    mean k error %    H1 error %
-    8 x 3 x 2,  12                              80 460               +0.5           -0.8
-    8 x 3 x 2,  23 (default)                   149 892               +0.05           0.0
-    12 x 4 x 3, 23                             204 606                0               0
+    default (8 x 3 x 2, 23 layers, 120 points) against   mean %    H1    H2    H3    H4 %   above %
+    46 layers                                  200 N m     0.24   0.43  0.44  0.20  0.22     0.009
+                                              2000 N m     0.27   0.76  0.90  0.35  1.35     0.012
+    128 phases                                2000 N m     0.00   0.00  0.03  0.01  0.07     0.004
+    240 points across the face                2000 N m     0.00  -0.04 -0.22  0.07  0.42     0.000
+    480 points across the face                2000 N m    -0.01  -0.04 -0.23  0.05  0.33     0.001
+    twice the elements in the section, both of 6 layers:
+                                               200 N m     0.43   0.34  0.53  0.00  0.57     0.000
+                                              2000 N m     0.47   0.40  0.71  0.15  1.62     0.000
+
+With half of the layers the mean moves by twice as much (0.43 %, then 0.24 %): the layers' error is
+of first order, that of the whole mesh about 1.3 %.  Harmonics above the tenth are there (0.07 %, at
+the eleventh): a line without corner contact enters at once.
 
 Twice the stations change the mean by 0.01 %.  The body is a full ring, held at the hub radius: a
 sector held at its cut sides depends on where it is cut (k +25 to +50 % for 3 to 5 teeth).

@@ -27,11 +27,15 @@ _POLL = 0.3
 """Time between two calls of `progress` [s]."""
 
 
+Job = tuple[GearPair, int, Resolution, int]
+"""Arguments of `tooth_compliance`, without `progress`."""
+
+
 class SecondProcess:
     """Compliance of a tooth, computed elsewhere; a context, at whose end the process is gone.
 
     Args:
-        job: arguments of `tooth_compliance`, without `progress`.
+        job: what to compute.
 
     Attributes:
         done: share of the work done.

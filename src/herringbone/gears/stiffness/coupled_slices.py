@@ -1,22 +1,26 @@
-r"""Slice method with slices that support each other along the face, and bodies that tilt.
+r"""Slice method with slices that support each other along the face, on bodies that turn and tilt.
 
 The slices of `slices` are springs of their own; those of a tooth are not.  Here a line load at z'
 deflects a tooth at z by what the slices at z and z' yield, spread along the face; the tooth proper
-(t: bending, shear, axial) over a short length, its foundation (f) over a long one:
+(t: bending, shear, axial) over a short length, its foundation (f) over a long one; besides, the
+body moves as a whole:
 
     delta(z) = integral sum over gears, parts i = t, f of a_i sqrt(c_i(z) c_i(z')) K_i(z, z') w dz'
-               + F sin(beta_b)^2/E sum over gears of (a_p (r_f - r_h)^2/b^3 + a_s ln(r_f/r_h)/b),
+               + F sum over gears of (C_turn + C_tilt),
     K(z, z') = cosh(z_min / L) cosh((b - z_max) / L) / (L sinh(b / L)),
+    C_turn = cos(beta_b)^2 r_b^2 (1/r_h^2 - 1/r_f^2) / (4 pi G b),
+    C_tilt = sin(beta_b)^2 (a_p (r_f - r_h)^2/b^3 + a_s ln(r_f/r_h)/b) / E.
 
 K is the influence of an elastic foundation (springs) under a layer that shears, with free ends: of
-unit integral, so that a uniform load deflects the part as before.  The last term is the gear's body
-under the axial force F sin(beta_b) of a tooth at its rim: a plate of width b that bends and shears
-between the hub r_h and the root circle r_f; it makes narrow helical gears softer than their slices.
-The numbers are of finite elements, the same for all pairs:
+unit integral, so that a uniform load deflects the part as before.  C_turn is the shear of the ring
+between hub r_h and root circle r_f by the torque of the tooth's force; it takes the place of what
+the foundation's polynomials have of it.  C_tilt is that ring as a plate of width b that bends and
+shears under the axial force F sin(beta_b) at its rim: it makes narrow helical gears softer than
+their slices.  The numbers are of finite elements, the same for all pairs:
 
-    L_t = 1.3 m_n, L_f = 6 m_n, a_t = 1.35, a_f = 0.66, a_p = 3.4, a_s = 3
+    L_t = 1.15 m_n, L_f = 3.1 m_n, a_t = 1.03, a_f = 0.76, a_p = 3.5, a_s = 2.75
 
-by least squares over means and harmonics of twelve pairs (see `finite_elements.calibration`).
+by least squares over means and harmonics of 16 pairs (see `finite_elements.calibration`).
 
 Harmonics above the tenth are stronger than those of plain slices, up to 0.1 % of the mean for the
 27/81 pair: the supported ends of a line take up load at once.  They do not depend on the number of
@@ -44,11 +48,11 @@ from herringbone.gears.stiffness.contact_slices import ContactSlices
 from herringbone.gears.stiffness.point_mesh import Line, PointMesh
 from herringbone.gears.stiffness.tooth_compliance import PLANES, tooth_compliance
 
-LENGTHS = (1.3, 6.0)
+LENGTHS = (1.15, 3.1)
 """Default lengths along the face of tooth and foundation, in normal modules."""
-PARTS = (1.35, 0.66)
+PARTS = (1.03, 0.76)
 """Default factors on the compliances of tooth and foundation."""
-TILT = (3.4, 3.0)
+TILT = (3.5, 2.75)
 """Default factors of the body's bending and shear under the axial force."""
 _FEWEST_SLICES = 60
 _SLICES_PER_LENGTH = 4
@@ -69,7 +73,8 @@ class CoupledSliceMesh(PointMesh):
         lengths: of tooth and foundation along the face, in normal modules.
         parts: factors on the compliances of tooth and foundation.
         tilt: factors of the body's bending and shear under the axial force.
-        plane: "by-width", "strain" or "stress" in the teeth; see `tooth_compliance`.
+        plane: "by-width", "strain" or "stress" in the teeth, see `tooth_compliance`; the other
+            constants were found for plane strain.
     """
 
     pair: GearPair
@@ -80,7 +85,7 @@ class CoupledSliceMesh(PointMesh):
     lengths: Pair = LENGTHS
     parts: Pair = PARTS
     tilt: Pair = TILT
-    plane: str = PLANES[0]
+    plane: str = PLANES[1]
 
     def __post_init__(self) -> None:
         for name, length in zip(("tooth", "foundation"), self.lengths, strict=True):
@@ -127,20 +132,23 @@ class CoupledSliceMesh(PointMesh):
         for gear in range(2):
             radius = np.hypot(self.pair.base_radius[gear], reach[gear])
             tooth = tooth_compliance(self.pair, gear, radius, self.plane)
-            proper = tooth.total - tooth.foundation
-            found.append((CubicSpline(s, proper), CubicSpline(s, tooth.foundation)))
+            proper, local = tooth.total - tooth.foundation, tooth.foundation - tooth.turning
+            found.append((CubicSpline(s, proper), CubicSpline(s, local)))
         return found
 
     @cached_property
     def _of_bodies(self) -> float:
-        """Compliance of both bodies under the axial force of a tooth, normal to its flank [m/N]."""
+        """Compliance of the turning and tilting bodies, normal to the flank [m/N]."""
         pair, (plate, shear) = self.pair, self.tilt
-        width, sine = pair.face_width, math.sin(pair.base_helix_angle)
-        bodies = (
-            plate * (root - hub) ** 2 / width**3 + shear * math.log(root / hub) / width
-            for root, hub in zip(pair.root_radius, pair.hub_radius, strict=True)
-        )
-        return sine**2 / pair.youngs_modulus * sum(bodies)
+        width, angle = pair.face_width, pair.base_helix_angle
+        shear_modulus = pair.youngs_modulus / (2.0 * (1.0 + pair.poissons_ratio))
+        turn = tilt = 0.0
+        for base, root, hub in zip(
+            pair.base_radius, pair.root_radius, pair.hub_radius, strict=True
+        ):
+            turn += base**2 * (hub**-2 - root**-2) / (4.0 * math.pi * shear_modulus * width)
+            tilt += plate * (root - hub) ** 2 / width**3 + shear * math.log(root / hub) / width
+        return math.cos(angle) ** 2 * turn + math.sin(angle) ** 2 * tilt / pair.youngs_modulus
 
     def _spread(self, face: np.ndarray, modules: float) -> np.ndarray:
         """K times the length of face per length of line [1/m]; by exponentials that do not grow."""

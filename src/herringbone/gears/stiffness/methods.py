@@ -119,14 +119,14 @@ class Method:
     takes: str = ""
 
 
-_COUPLED = Accuracy(mean=0.03, share=0.15, floor=0.0006)
+_COUPLED = Accuracy(mean=0.04, share=0.15, floor=0.0003)
 METHODS = {
     "slices": Method("plain slices", _slices, _COUPLED),
     "coupled-slices": Method("coupled slices", _coupled_slices, _COUPLED),
     "fe": Method(
         "finite elements",
         _finite_elements,
-        Accuracy(mean=0.01, share=0.03, floor=0.0001),
+        Accuracy(mean=0.015, share=0.03, floor=0.0001),
         calibrated=False,
         takes="less than a minute on two idle cores",
     ),

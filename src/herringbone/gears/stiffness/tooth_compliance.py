@@ -66,6 +66,8 @@ class LoadedPoints:
 
     Attributes:
         bending, shear, axial, foundation: (n,) parts.
+        turning: (n,) the share of the foundation that is the body's turning about its hub: what
+            its polynomials have with the square of root over hub radius.
         depth: (n,) distance [m] from the contact to the tooth's axis along the load.
     """
 
@@ -73,6 +75,7 @@ class LoadedPoints:
     shear: np.ndarray
     axial: np.ndarray
     foundation: np.ndarray
+    turning: np.ndarray
     depth: np.ndarray
 
     @property
@@ -133,11 +136,14 @@ def tooth_compliance(
     bending = arm**2 * integral(1.0 / moment) - 2.0 * arm * cos * integral(height / moment)
     bending += cos**2 * integral(height**2 / moment)
     area = integral(1.0 / width)
+    hub = pair.hub_radius[gear] + shift
+    foundation, turning = _foundation(profile, hub, y - x * np.tan(gamma), gamma)
     return LoadedPoints(
         bending / modulus,
         _SHEAR * cos**2 * area / shear_modulus,
         sin**2 * area / modulus,
-        _foundation(profile, pair.hub_radius[gear] + shift, y - x * np.tan(gamma), gamma) / modulus,
+        foundation / modulus,
+        turning / modulus,
         x / cos,
     )
 
@@ -151,8 +157,8 @@ def _virtual_tooth(pair: "GearPair", gear: int) -> tuple[ToothProfile, float]:
 
 def _foundation(
     profile: ToothProfile, hub: float, meets_axis: np.ndarray, gamma: np.ndarray
-) -> np.ndarray:
-    """Compliance of the gear's body, times E'."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Compliance of the gear's body, and of its turning about the hub, times E'."""
     theta = profile.root_half_angle
     ratio = min(max(profile.root_radius / hub, _HUB_RATIO[0]), _HUB_RATIO[1])
     factor = {}
@@ -161,4 +167,7 @@ def _foundation(
     height = meets_axis - profile.root_radius * math.cos(theta)
     relative = height / (2.0 * profile.root_radius * theta)
     shape = factor["L"] * relative**2 + factor["M"] * relative
-    return np.cos(gamma) ** 2 * (shape + factor["P"] * (1.0 + factor["Q"] * np.tan(gamma) ** 2))
+    square = {name: row[1] * ratio**2 for name, row in _FOUNDATION.items()}
+    turning = square["L"] * relative**2 + square["M"] * relative + square["P"]
+    whole = shape + factor["P"] * (1.0 + factor["Q"] * np.tan(gamma) ** 2)
+    return np.cos(gamma) ** 2 * whole, np.cos(gamma) ** 2 * turning
