@@ -14,9 +14,9 @@ VIBRATION = 0.05
 """For short runs of vibrations: they change with the coupling's error (0.2 %) and the window."""
 
 KNOWN = {
-    "01_first_run": ({"t_end": 0.02}, 9.36, VIBRATION),
+    "01_first_run": ({"t_end": 0.02}, 20.1, VIBRATION),
     "02_symmetry_deviation": ({"t_end": 0.02}, None, None),
-    "03_other_housing": ({"t_end": 0.02}, 0.859, VIBRATION),
+    "03_other_housing": ({"t_end": 0.02}, 1.004, VIBRATION),
     "04_own_drivetrain": ({"t_end": 0.02}, 600.0, WHOLE),
     "05_error_against_step": ({"t_end": 0.002}, None, None),
     "06_loop_benchmark": ({"steps": 200}, None, None),
@@ -68,10 +68,10 @@ def test_loop_benchmark(tmp_path, monkeypatch):
 
 
 def test_swap_the_housing(tmp_path, monkeypatch):
-    """Statics and modes below 1200 Hz stay, which hold nearly all of the motion; bound 5 %."""
+    """Statics and modes to 1500 Hz stay, which hold nearly all of the motion; bound 5 %."""
     found = run(tmp_path, monkeypatch, "08_swap_the_housing")
-    assert found["reduced_to_800_Hz"] == pytest.approx(found["default"], rel=0.1)
-    assert found["reduced_to_800_Hz"] != found["default"]
+    assert found["reduced_to_1500_Hz"] == pytest.approx(found["default"], rel=0.1)
+    assert found["reduced_to_1500_Hz"] != found["default"]
 
 
 def test_aliasing(tmp_path, monkeypatch):

@@ -27,10 +27,6 @@ _POLL = 0.3
 """Time between two calls of `progress` [s]."""
 
 
-Job = tuple[GearPair, int, Resolution, int]
-"""Arguments of `tooth_compliance`, without `progress`."""
-
-
 class SecondProcess:
     """Compliance of a tooth, computed elsewhere; a context, at whose end the process is gone.
 
