@@ -11,10 +11,10 @@ from herringbone.kernels import force_law, steppers
 
 STATES = 24
 INPUTS = 10
-_DERIVED = 14
+_DERIVED = 13
 _PAIR = 1 + stiffness_table.PAIR[1]
 _TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR
-_RESULTS = 18
+_RESULTS = 8
 
 DECLARATION = Declaration(
     "gear_mesh",
@@ -103,18 +103,12 @@ PHASE_RATE, AXIAL_PHASE, PER_PITCH = _derived + 3, _derived + 4, _derived + 5
 """Mesh periods per angle [1/rad] and axial shift [1/m] of a pinion half; transverse 1 / p_bt."""
 PATH_MASS, PER_TRANSITION, PER_WHEEL_RB = _derived + 6, _derived + 7, _derived + 8
 """Mass [kg] of both rotations along the path of contact; reciprocals."""
-CARRYING = _derived + 13
-"""1: the drive flank carries, -1: the coast flank."""
 PER_MASS, PER_INERTIA = (_derived + 9, _derived + 10), (_derived + 11, _derived + 12)
 
 _results = _derived + _DERIVED
-NORMAL, PATH, PUSH = _results, _results + 2, _results + 4
-"""By side [N]: normal force; its part along the path; the same with the energy's push."""
-LOADED = _results + 6
-"""By side: deflection [m] on the flank that carries."""
-DEPTH = _results + 8
+DEPTH = _results
 """By side, drive flank, then coast flank: how deep the flanks are in each other [m]."""
-TORQUE = _results + 12
+TORQUE = _results + 4
 """By body: torque [N m] of what moves the flanks by a rotation."""
 
 TWO_PI = 2.0 * math.pi
