@@ -70,7 +70,7 @@ def _flank(
     Open flanks have the damping that their contact begins with; it acts if it is not gated.
     """
     x = depth if depth > 0.0 else _OPEN
-    force, tangent, slope = force_law.law(b, at.TABLE[side], phase, x)
+    force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
     damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
     if depth <= 0.0:
         return damping * rate, 0.0

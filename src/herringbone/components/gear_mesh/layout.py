@@ -1,6 +1,7 @@
 """Declaration of the gear mesh, and where everything lies in its block."""
 
 import math
+from itertools import pairwise
 
 from herringbone.components.gear_mesh.variables import VARIABLES
 from herringbone.components.ports import HALVES, flange, journals
@@ -8,6 +9,13 @@ from herringbone.components.resources import stiffness_table, transmission_error
 from herringbone.core import Declaration, Text
 from herringbone.core.roles import GEARS, Role
 from herringbone.kernels import force_law, steppers
+
+
+def _apart(places: tuple[int, ...]) -> int:
+    """Distance of places that lie equally far apart."""
+    (found,) = {after - before for before, after in pairwise(places)}
+    return found
+
 
 STATES = 24
 INPUTS = 10
@@ -63,6 +71,9 @@ RB, MASSES, INERTIAS, K_Y, K_Z, K_T, C_Y, C_Z, C_T, SHARE, TEETH, UNBALANCE, UNB
         "unbalance", "unbalance_phase",
     )
 )  # fmt: skip
+# A tuple's index is checked wherever a loop is not unrolled; distances need no check.
+HALF, GEAR, FLANGE = _apart(F_Y), _apart(RB), _apart(TAU)
+"""How far apart lie the forces of the halves, the parameters of the gears, the flanges' torques."""
 FORCE = _d.indices("mesh_left.force", "mesh_right.force")
 DEFLECTION = _d.indices("mesh_left.deflection", "mesh_right.deflection")
 TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN = _d.indices(

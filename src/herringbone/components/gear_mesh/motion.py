@@ -20,12 +20,13 @@ def _drag(b: np.ndarray, w: float) -> float:
 @rare
 def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
     """Accelerations of y and theta of a half with unbalance, from those without."""
-    u, m, i = 0.5 * b[at.UNBALANCE[gear]], b[at.MASSES[gear]], b[at.INERTIAS[gear]]
+    own = gear * at.GEAR
+    u, m, i = 0.5 * b[at.UNBALANCE[0] + own], b[at.MASSES[0] + own], b[at.INERTIAS[0] + own]
     twist = at.TWIST_P + 2 * gear
     psi, w = b[at.ANGLE], b[at.ANGLE + at.RATE]
     if gear == 1:
         psi, w = wheel(b, 0), wheel(b, 1)
-    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[gear]])
+    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[0] + own])
     w += half * b[twist + at.RATE]
     force, torque = m * a + u * c * w * w, i * alpha
     us = u * s
@@ -50,19 +51,25 @@ def _derivatives(
     normal_right *= b[at.COS]
     for gear in range(2):
         sign = -1.0 if gear == 0 else 1.0
-        first = 2 * gear
-        per_mass, per_inertia, rb = b[at.PER_MASS[gear]], b[at.PER_INERTIA[gear]], b[at.RB[gear]]
+        first, own = 2 * gear, gear * at.GEAR
+        per_mass, per_inertia, rb = (
+            b[at.PER_MASS[0] + gear],
+            b[at.PER_INERTIA[0] + gear],
+            b[at.RB[0] + own],
+        )
         y, z, twist = at.Y + first, at.Z + first, at.TWIST_P + first
-        bend = b[at.K_Y[gear]] * (b[y] - b[y + 1])
-        bend += b[at.C_Y[gear]] * (b[y + at.RATE] - b[y + 1 + at.RATE])
-        stretch = b[at.K_Z[gear]] * (b[z] - b[z + 1])
-        stretch += b[at.C_Z[gear]] * (b[z + at.RATE] - b[z + 1 + at.RATE])
-        torsion = b[at.K_T[gear]] * b[twist] + b[at.C_T[gear]] * b[twist + at.RATE]
-        dx[y + at.RATE] = (b[at.F_Y[first]] - bend + sign * normal_left) * per_mass
-        dx[y + 1 + at.RATE] = (b[at.F_Y[first + 1]] + bend + sign * normal_right) * per_mass
-        force_left = b[at.F_Z[first]] - stretch + sign * thrust_left
-        force_right = b[at.F_Z[first + 1]] + stretch - sign * thrust_right
-        tau, share = b[at.TAU[gear]], b[at.SHARE[gear]]
+        bend = b[at.K_Y[0] + own] * (b[y] - b[y + 1])
+        bend += b[at.C_Y[0] + own] * (b[y + at.RATE] - b[y + 1 + at.RATE])
+        stretch = b[at.K_Z[0] + own] * (b[z] - b[z + 1])
+        stretch += b[at.C_Z[0] + own] * (b[z + at.RATE] - b[z + 1 + at.RATE])
+        torsion = b[at.K_T[0] + own] * b[twist] + b[at.C_T[0] + own] * b[twist + at.RATE]
+        dx[y + at.RATE] = (b[at.F_Y[0] + first * at.HALF] - bend + sign * normal_left) * per_mass
+        dx[y + 1 + at.RATE] = (
+            b[at.F_Y[0] + (first + 1) * at.HALF] + bend + sign * normal_right
+        ) * per_mass
+        force_left = b[at.F_Z[0] + first * at.HALF] - stretch + sign * thrust_left
+        force_right = b[at.F_Z[0] + (first + 1) * at.HALF] + stretch - sign * thrust_right
+        tau, share = b[at.TAU[0] + gear * at.FLANGE], b[at.SHARE[0] + own]
         turn_left = share * tau + torsion + b[at.TORQUE + first]
         turn_right = (1.0 - share) * tau - torsion + b[at.TORQUE + first + 1]
         if gear == 0:
@@ -82,7 +89,7 @@ def _derivatives(
         dx[z + 1 + at.RATE] = force_right * per_mass
         turn_left *= per_inertia
         turn_right *= per_inertia
-        if b[at.UNBALANCE[gear]] > 0.0:
+        if b[at.UNBALANCE[0] + own] > 0.0:
             y += at.RATE
             dx[y], turn_left = _swing(b, gear, 0, dx[y], turn_left)
             dx[y + 1], turn_right = _swing(b, gear, 1, dx[y + 1], turn_right)
@@ -177,7 +184,9 @@ def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     inside, carried = True, True
     for side in range(2):
         drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
-        inside = inside and force_law.inside(b, at.TABLE[side], max(drive, coast))
+        inside = inside and force_law.inside(
+            b, at.TABLE[0] + side * force_law.TABLE_SIZE, max(drive, coast)
+        )
         carried = carried and b[at.DEPTH + 2 * side + other] <= 0.0
     if not inside:
         b[at.OUTSIDE] += h
