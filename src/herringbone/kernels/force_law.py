@@ -43,6 +43,7 @@ LOADS = 64
 NODE = 6
 """Numbers of a node."""
 _LAST = DEFLECTIONS - 1
+_THIRD, _SIXTH, _SEVENTH = 1.0 / 3.0, 1.0 / 6.0, 1.0 / 7.0
 _ROW = DEFLECTIONS * NODE
 TABLE_SIZE = 2 + PHASES * _ROW
 """Length of the table part of one mesh."""
@@ -147,8 +148,8 @@ def _cubed(j: int, f: float, y0: float, y1: float, m0: float, m1: float) -> floa
     square, cube = 1.0 * j * j, 1.0 * j * j * j
     g0 = cube + f * (1.5 * square + f * (j + 0.25 * f))
     g1 = 0.5 * cube + f * (square + f * (0.75 * j + 0.2 * f))
-    g2 = cube / 3.0 + f * (0.75 * square + f * (0.6 * j + f / 6.0))
-    g3 = 0.25 * cube + f * (0.6 * square + f * (0.5 * j + f / 7.0))
+    g2 = _THIRD * cube + f * (0.75 * square + f * (0.6 * j + _SIXTH * f))
+    g3 = 0.25 * cube + f * (0.6 * square + f * (0.5 * j + _SEVENTH * f))
     return f * (y0 * g0 + f * (m0 * g1 + f * (c2 * g2 + f * c3 * g3)))
 
 

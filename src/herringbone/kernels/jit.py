@@ -8,7 +8,14 @@ from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
 from herringbone.kernels.cache import cached
-from herringbone.kernels.linking import LINKED, QUICK, WHOLE, CFunction, KernelDispatcher
+from herringbone.kernels.linking import (
+    LINKED,
+    QUICK,
+    RARE,
+    WHOLE,
+    CFunction,
+    KernelDispatcher,
+)
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -41,6 +48,12 @@ def allocating(function: Callable[P, T]) -> Callable[P, T]:
     return cached(
         KernelDispatcher(function, {**_OPTIONS, "_nrt": True}), function
     )  # whoever calls it
+
+
+def rare(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for what seldom happens: its callers call it, and keep their registers."""
+    options = {**_OPTIONS, "_nrt": False}
+    return cached(KernelDispatcher(function, options, piece_class=RARE), function)
 
 
 def seldom(function: Callable[P, T]) -> Callable[P, T]:

@@ -80,6 +80,17 @@ class Piece(JITCodeLibrary):
             yield from library.reached() if isinstance(library, Piece) else (library,)
 
 
+class Rare(Piece):
+    """As `Piece`, for what seldom happens in a kernel that often runs: it stays outside."""
+
+    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
+        super()._optimize_functions(ll_module)
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                function.add_function_attribute("noinline")
+                function.add_function_attribute("cold")
+
+
 class Whole(JITCodeLibrary):
     """Machine code of a function that is called from outside, with all pieces that it reaches."""
 
@@ -145,7 +156,7 @@ def _pipeline(library_class: type[JITCodeLibrary]) -> type[compiler.Compiler]:
     return Pipeline
 
 
-PIECE, WHOLE, QUICK, LINKED = map(_pipeline, (Piece, Whole, Quick, Linked))
+PIECE, RARE, WHOLE, QUICK, LINKED = map(_pipeline, (Piece, Rare, Whole, Quick, Linked))
 
 
 class _Flags(compiler.Flags):
@@ -195,9 +206,9 @@ class _WholeCompiler(_FunctionCompiler):
 class KernelDispatcher(CPUDispatcher):
     """Compiles a whole when it is called from Python, and gives pieces to other kernels."""
 
-    def __init__(self, py_func, targetoptions, pipeline_class=WHOLE) -> None:  # noqa: ANN001
+    def __init__(self, py_func, targetoptions, pipeline_class=WHOLE, piece_class=PIECE) -> None:  # noqa: ANN001
         super().__init__(py_func, {}, {**targetoptions, "no_cfunc_wrapper": True}, pipeline_class)
-        self.piece = _PieceDispatcher(py_func, {}, targetoptions)
+        self.piece = _PieceDispatcher(py_func, {}, targetoptions, piece_class)
         self._compiler = _WholeCompiler(
             py_func, self.targetdescr, self.targetoptions, self.locals, pipeline_class
         )

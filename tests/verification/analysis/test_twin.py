@@ -29,10 +29,12 @@ def rig(name, **more):
 
 @pytest.mark.parametrize(
     ("name", "t_end", "limit"),
-    [("loaded", 0.05, 1e-8), ("separation", 0.02, 1e-8), ("runup", 0.22, 1e-7)],
+    [("loaded", 0.05, 3e-8), ("separation", 0.02, 1e-8), ("runup", 0.22, 1e-7)],
 )
 def test_tolerance(name, t_end, limit):
-    """The default tolerance errs by less than 1e-8, 1e-5 of what co-simulation reaches.
+    """The default tolerance errs by less than 3e-8, 3e-5 of what co-simulation reaches.
+
+    The slope of the energy over phase has a kink in its derivative at every node of the table.
 
     In a run-up the teeth rattle before they are loaded, and every contact amplifies errors.
     """

@@ -8,7 +8,7 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.resources import transmission_error
 from herringbone.kernels import force_law
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import kernel, rare
 
 _OPEN = 1e-12
 """Depth [m] at which flanks that are open have their tangent stiffness."""
@@ -19,7 +19,6 @@ def derive(b: np.ndarray) -> None:
     """Write what follows from the parameters alone."""
     b[at.COS], b[at.SIN] = cosine(b[at.BETA]), sine(b[at.BETA])
     b[at.TAN] = b[at.SIN] / b[at.COS]
-    b[at.CARRYING] = -1.0 if b[at.FLANK] < 0.0 else 1.0
     b[at.PHASE_RATE] = b[at.TEETH[0]] / at.TWO_PI
     b[at.PER_PITCH] = b[at.PHASE_RATE] / b[at.RB[0]]
     b[at.AXIAL_PHASE] = b[at.TAN] * b[at.PER_PITCH]
@@ -55,7 +54,7 @@ def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
     return offset, rate, per_pinion, per_wheel
 
 
-@kernel
+@rare
 def _impact(b: np.ndarray, phase: float) -> float:
     """Force [N] of the meshing impact."""
     into = (phase - math.floor(phase)) / b[at.IMPACT_DURATION]
@@ -71,73 +70,100 @@ def _flank(
     Open flanks have the damping that their contact begins with; it acts if it is not gated.
     """
     x = depth if depth > 0.0 else _OPEN
-    force, tangent, slope = force_law.law(b, at.TABLE[side], phase, x)
+    force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
     damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
     if depth <= 0.0:
         return damping * rate, 0.0
     g = min(1.0, depth * b[at.PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
-    if b[at.IMPACT] > 0.0 and f == b[at.CARRYING]:
+    if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
         force += g * _impact(b, phase)
     if b[at.GATE] == 0.0:
         return force + damping * rate, slope
     return max(0.0, force + damping * g * rate), slope
 
 
+@rare
+def _error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, float]:
+    """e [m] of a side's flank, its rate, its slopes over the angles of pinion and wheel half."""
+    pinion, gear = b[at.ANGLE] + side * b[at.TWIST_P], wheel(b, 0) + side * b[at.TWIST_W]
+    errors = transmission_error.group(at.ERRORS, side, flank)
+    e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, gear)
+    rate = per_pinion * (b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE])
+    rate += per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
+    return e, rate, per_pinion, per_wheel
+
+
+@rare
+def _turn_errors(b: np.ndarray, side: int, flank: int, pressure: float) -> None:
+    """Add the torques on what moves the error under a pressure [N]."""
+    _, _, per_pinion, per_wheel = _error(b, side, flank)
+    b[at.TORQUE + side] += pressure * per_pinion
+    b[at.TORQUE + 2 + side] += pressure * per_wheel
+
+
 @kernel
-def _mesh(b: np.ndarray, side: int, eps: float, eps_rate: float) -> None:
-    """Write the results of mesh 0 (left) or 1 (right)."""
+def _approach(b: np.ndarray, side: int, eps: float, eps_rate: float) -> tuple[float, float, float]:
+    """delta [m], its rate [m/s] and the phase [mesh periods] of mesh 0 (left) or 1 (right)."""
     s = 1.0 - 2.0 * side
     y, z = at.Y + side, at.Z + side
     path = b[at.APPROACH] + side * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
     axial = b[z] - b[z + 2] + eps
     delta = b[at.COS] * (b[y] - b[y + 2] + path) + s * b[at.SIN] * axial
-    pinion = b[at.ANGLE] + side * b[at.TWIST_P]
-    phase = b[at.PHASE_RATE] * pinion
+    phase = b[at.PHASE_RATE] * (b[at.ANGLE] + side * b[at.TWIST_P])
     phase += s * b[at.AXIAL_PHASE] * axial + side * b[at.STAGGER]
     y, z = y + at.RATE, z + at.RATE
     path = b[at.APPROACH + at.RATE] + side * (
         b[at.RB[0]] * b[at.TWIST_P + at.RATE] - b[at.RB[1]] * b[at.TWIST_W + at.RATE]
     )
     rate = b[at.COS] * (b[y] - b[y + 2] + path) + s * b[at.SIN] * (b[z] - b[z + 2] + eps_rate)
-    normal, push = 0.0, 0.0
-    for flank in range(2):
-        f = 1.0 - 2.0 * flank
-        depth, depth_rate = f * delta - flank * b[at.BACKLASH], f * rate
-        per_pinion, per_wheel = 0.0, 0.0
-        errors = transmission_error.group(at.ERRORS, side, flank)
-        if b[errors] > 0.0:
-            angle = wheel(b, 0) + side * b[at.TWIST_W]
-            e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, angle)
-            depth -= e
-            depth_rate -= per_pinion * (b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE])
-            depth_rate -= per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
-        b[at.DEPTH + 2 * side + flank] = depth
-        if f == b[at.CARRYING]:
-            b[at.LOADED + side] = f * (depth + flank * b[at.BACKLASH])
-        pulled = b[at.GATE] == 0.0 and flank == 0 and depth > -b[at.BACKLASH]
-        if depth > 0.0 or pulled:
-            own = phase if flank == 0 else b[at.COAST_PHASE] - phase
-            pressure, slope = _flank(b, side, f, own, depth, depth_rate)
-            normal += f * pressure
-            push += f * slope * b[at.PER_PITCH]
-            b[at.TORQUE + side] += pressure * per_pinion
-            b[at.TORQUE + 2 + side] += pressure * per_wheel
-    b[at.NORMAL + side], b[at.PATH + side] = normal, b[at.COS] * normal
-    b[at.PUSH + side] = b[at.COS] * normal + push
+    return delta, rate, phase
 
 
 @kernel
-def meshes(b: np.ndarray) -> float:
-    """Write the results of both meshes, after `derive`; eps_z [m]."""
+def _mesh(
+    b: np.ndarray, side: int, delta: float, delta_rate: float, phase: float
+) -> tuple[float, float]:
+    """Normal force and push [N] of a mesh; writes its depths, adds the torques of its error."""
+    drive, coast = delta, -b[at.BACKLASH] - delta
+    rate, coast_rate = delta_rate, -delta_rate
+    if b[at.ERRORS] > 0.0:
+        e, e_rate, _, _ = _error(b, side, 0)
+        drive, rate = drive - e, rate - e_rate
+        e, e_rate, _, _ = _error(b, side, 1)
+        coast, coast_rate = coast - e, coast_rate - e_rate
+    b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1] = drive, coast
+    normal, push = 0.0, 0.0
+    first = 0 if drive > 0.0 or (b[at.GATE] == 0.0 and coast <= 0.0) else 1
+    last = 2 if coast > 0.0 else 1
+    for flank in range(first, last):
+        f, own, depth, depth_rate = 1.0, phase, drive, rate
+        if flank == 1:
+            f, own, depth, depth_rate = -1.0, b[at.COAST_PHASE] - phase, coast, coast_rate
+        pressure, slope = _flank(b, side, f, own, depth, depth_rate)
+        normal += f * pressure
+        push += f * slope
+        if b[at.ERRORS] > 0.0:
+            _turn_errors(b, side, flank, pressure)
+    return normal, b[at.COS] * normal + b[at.PER_PITCH] * push
+
+
+@kernel
+def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
+    """eps_z [m], normal forces and pushes [N] of both meshes, left before right, after `derive`.
+
+    Writes depths, and the torques of what is moved by a rotation.
+    """
     for i in range(4):
         b[at.TORQUE + i] = 0.0
     eps, eps_rate, per_pinion, per_wheel = _apex(b)
-    _mesh(b, 0, eps, eps_rate)
-    _mesh(b, 1, eps, eps_rate)
+    left, left_rate, left_phase = _approach(b, 0, eps, eps_rate)
+    right, right_rate, right_phase = _approach(b, 1, eps, eps_rate)
+    normal_left, push_left = _mesh(b, 0, left, left_rate, left_phase)
+    normal_right, push_right = _mesh(b, 1, right, right_rate, right_phase)
     if b[at.F_A] != 0.0:
-        thrust = 0.5 * b[at.TAN] * (b[at.PUSH] - b[at.PUSH + 1])
+        thrust = 0.5 * b[at.TAN] * (push_left - push_right)
         for half in range(2):
             b[at.TORQUE + half] -= thrust * per_pinion
             b[at.TORQUE + 2 + half] -= thrust * per_wheel
-    return eps
+    return eps, normal_left, normal_right, push_left, push_right

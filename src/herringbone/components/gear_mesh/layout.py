@@ -1,6 +1,7 @@
 """Declaration of the gear mesh, and where everything lies in its block."""
 
 import math
+from itertools import pairwise
 
 from herringbone.components.gear_mesh.variables import VARIABLES
 from herringbone.components.ports import HALVES, flange, journals
@@ -9,12 +10,19 @@ from herringbone.core import Declaration, Text
 from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.kernels import force_law, steppers
 
+
+def _apart(places: tuple[int, ...]) -> int:
+    """Distance of places that lie equally far apart."""
+    (found,) = {after - before for before, after in pairwise(places)}
+    return found
+
+
 STATES = 24
 INPUTS = 10
-_DERIVED = 14
+_DERIVED = 13
 _PAIR = 1 + stiffness_table.PAIR[1]
 _TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR
-_RESULTS = 18
+_RESULTS = 8
 
 DECLARATION = Declaration(
     "gear_mesh",
@@ -65,6 +73,9 @@ RB, MASSES, INERTIAS, K_Y, K_Z, K_T, C_Y, C_Z, C_T, SHARE, TEETH, UNBALANCE, UNB
         "unbalance", "unbalance_phase",
     )
 )  # fmt: skip
+# A tuple's index is checked wherever a loop is not unrolled; distances need no check.
+HALF, GEAR, FLANGE = _apart(F_Y), _apart(RB), _apart(TAU)
+"""How far apart lie the forces of the halves, the parameters of the gears, the flanges' torques."""
 FORCE = _d.indices("mesh_left.force", "mesh_right.force")
 DEFLECTION = _d.indices("mesh_left.deflection", "mesh_right.deflection")
 TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN = _d.indices(
@@ -105,18 +116,12 @@ PHASE_RATE, AXIAL_PHASE, PER_PITCH = _derived + 3, _derived + 4, _derived + 5
 """Mesh periods per angle [1/rad] and axial shift [1/m] of a pinion half; transverse 1 / p_bt."""
 PATH_MASS, PER_TRANSITION, PER_WHEEL_RB = _derived + 6, _derived + 7, _derived + 8
 """Mass [kg] of both rotations along the path of contact; reciprocals."""
-CARRYING = _derived + 13
-"""1: the drive flank carries, -1: the coast flank."""
 PER_MASS, PER_INERTIA = (_derived + 9, _derived + 10), (_derived + 11, _derived + 12)
 
 _results = _derived + _DERIVED
-NORMAL, PATH, PUSH = _results, _results + 2, _results + 4
-"""By side [N]: normal force; its part along the path; the same with the energy's push."""
-LOADED = _results + 6
-"""By side: deflection [m] on the flank that carries."""
-DEPTH = _results + 8
+DEPTH = _results
 """By side, drive flank, then coast flank: how deep the flanks are in each other [m]."""
-TORQUE = _results + 12
+TORQUE = _results + 4
 """By body: torque [N m] of what moves the flanks by a rotation."""
 
 TWO_PI = 2.0 * math.pi

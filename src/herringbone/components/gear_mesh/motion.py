@@ -8,45 +8,25 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.contact import derive, meshes, wheel
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import sine_and_cosine
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import kernel, rare
 
 
-@kernel
+@rare
 def _drag(b: np.ndarray, w: float) -> float:
     """Drag torque [N m] on a pinion half at its speed [rad/s]."""
     return 0.5 * b[at.DRAG] * w / math.sqrt(1.0 + w * w)
 
 
-@kernel
-def _translations(b: np.ndarray, dx: np.ndarray) -> None:
-    """Accelerations along the line of action and along the axis."""
-    for gear in range(2):
-        sign, first = 2.0 * gear - 1.0, 2 * gear
-        y, z, per_mass = at.Y + first, at.Z + first, b[at.PER_MASS[gear]]
-        bend = b[at.K_Y[gear]] * (b[y] - b[y + 1])
-        bend += b[at.C_Y[gear]] * (b[y + at.RATE] - b[y + 1 + at.RATE])
-        stretch = b[at.K_Z[gear]] * (b[z] - b[z + 1])
-        stretch += b[at.C_Z[gear]] * (b[z + at.RATE] - b[z + 1 + at.RATE])
-        for half in range(2):
-            s = 1.0 - 2.0 * half
-            force = b[at.F_Y[first + half]] - s * bend + sign * b[at.PATH + half]
-            dx[y + half + at.RATE] = force * per_mass
-            force = b[at.F_Z[first + half]] - s * stretch + s * sign * b[at.TAN] * b[at.PUSH + half]
-            if gear == 0:
-                force -= 0.25 * b[at.RESTRAINT] * (b[z] + b[z + 1])
-                force -= b[at.AXIAL_DRAG] * b[z + half + at.RATE]
-            dx[z + half + at.RATE] = force * per_mass
-
-
-@kernel
+@rare
 def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
     """Accelerations of y and theta of a half with unbalance, from those without."""
-    u, m, i = 0.5 * b[at.UNBALANCE[gear]], b[at.MASSES[gear]], b[at.INERTIAS[gear]]
+    own = gear * at.GEAR
+    u, m, i = 0.5 * b[at.UNBALANCE[0] + own], b[at.MASSES[0] + own], b[at.INERTIAS[0] + own]
     twist = at.TWIST_P + 2 * gear
     psi, w = b[at.ANGLE], b[at.ANGLE + at.RATE]
     if gear == 1:
         psi, w = wheel(b, 0), wheel(b, 1)
-    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[gear]])
+    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[0] + own])
     w += half * b[twist + at.RATE]
     force, torque = m * a + u * c * w * w, i * alpha
     us = u * s
@@ -55,53 +35,77 @@ def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple
 
 
 @kernel
-def _rotations(b: np.ndarray, dx: np.ndarray) -> None:
-    """Accelerations of the angles."""
-    for gear in range(2):
-        twist = at.TWIST_P + 2 * gear
-        share, tau, per_inertia = b[at.SHARE[gear]], b[at.TAU[gear]], b[at.PER_INERTIA[gear]]
-        torsion = b[at.K_T[gear]] * b[twist] + b[at.C_T[gear]] * b[twist + at.RATE]
-        left = share * tau + torsion + b[at.TORQUE + 2 * gear]
-        right = (1.0 - share) * tau - torsion + b[at.TORQUE + 2 * gear + 1]
-        rb = b[at.RB[gear]]
-        if gear == 0:
-            left -= rb * b[at.PUSH]
-            right -= rb * b[at.PUSH + 1]
-            if b[at.DRAG] > 0.0:
-                w = b[at.ANGLE + at.RATE]
-                left -= _drag(b, w)
-                right -= _drag(b, w + b[twist + at.RATE])
-        else:
-            left += rb * b[at.PATH]
-            right += rb * b[at.PATH + 1]
-        left *= per_inertia
-        right *= per_inertia
-        if b[at.UNBALANCE[gear]] > 0.0:
-            y = at.Y + 2 * gear + at.RATE
-            dx[y], left = _swing(b, gear, 0, dx[y], left)
-            dx[y + 1], right = _swing(b, gear, 1, dx[y + 1], right)
-        dx[twist + at.RATE] = right - left
-        if gear == 0:
-            dx[at.ANGLE + at.RATE] = left
-            dx[at.APPROACH + at.RATE] = rb * left
-        else:
-            dx[at.APPROACH + at.RATE] -= rb * left
-
-
-@kernel
-def _derivatives(b: np.ndarray, dx: np.ndarray) -> None:
-    """Derivatives of all states, after `meshes`."""
+def _derivatives(
+    b: np.ndarray,
+    dx: np.ndarray,
+    normal_left: float,
+    normal_right: float,
+    push_left: float,
+    push_right: float,
+) -> None:
+    """Derivatives of all states under the forces of `meshes`."""
     for i in range(at.RATE):
         dx[i] = b[i + at.RATE]
-    _translations(b, dx)
-    _rotations(b, dx)
+    thrust_left, thrust_right = b[at.TAN] * push_left, b[at.TAN] * push_right
+    normal_left *= b[at.COS]
+    normal_right *= b[at.COS]
+    for gear in range(2):
+        sign = -1.0 if gear == 0 else 1.0
+        first, own = 2 * gear, gear * at.GEAR
+        per_mass, per_inertia, rb = (
+            b[at.PER_MASS[0] + gear],
+            b[at.PER_INERTIA[0] + gear],
+            b[at.RB[0] + own],
+        )
+        y, z, twist = at.Y + first, at.Z + first, at.TWIST_P + first
+        bend = b[at.K_Y[0] + own] * (b[y] - b[y + 1])
+        bend += b[at.C_Y[0] + own] * (b[y + at.RATE] - b[y + 1 + at.RATE])
+        stretch = b[at.K_Z[0] + own] * (b[z] - b[z + 1])
+        stretch += b[at.C_Z[0] + own] * (b[z + at.RATE] - b[z + 1 + at.RATE])
+        torsion = b[at.K_T[0] + own] * b[twist] + b[at.C_T[0] + own] * b[twist + at.RATE]
+        dx[y + at.RATE] = (b[at.F_Y[0] + first * at.HALF] - bend + sign * normal_left) * per_mass
+        dx[y + 1 + at.RATE] = (
+            b[at.F_Y[0] + (first + 1) * at.HALF] + bend + sign * normal_right
+        ) * per_mass
+        force_left = b[at.F_Z[0] + first * at.HALF] - stretch + sign * thrust_left
+        force_right = b[at.F_Z[0] + (first + 1) * at.HALF] + stretch - sign * thrust_right
+        tau, share = b[at.TAU[0] + gear * at.FLANGE], b[at.SHARE[0] + own]
+        turn_left = share * tau + torsion + b[at.TORQUE + first]
+        turn_right = (1.0 - share) * tau - torsion + b[at.TORQUE + first + 1]
+        if gear == 0:
+            hold = 0.25 * b[at.RESTRAINT] * (b[z] + b[z + 1])
+            force_left -= hold + b[at.AXIAL_DRAG] * b[z + at.RATE]
+            force_right -= hold + b[at.AXIAL_DRAG] * b[z + 1 + at.RATE]
+            turn_left -= rb * push_left
+            turn_right -= rb * push_right
+            if b[at.DRAG] > 0.0:
+                w = b[at.ANGLE + at.RATE]
+                turn_left -= _drag(b, w)
+                turn_right -= _drag(b, w + b[twist + at.RATE])
+        else:
+            turn_left += rb * normal_left
+            turn_right += rb * normal_right
+        dx[z + at.RATE] = force_left * per_mass
+        dx[z + 1 + at.RATE] = force_right * per_mass
+        turn_left *= per_inertia
+        turn_right *= per_inertia
+        if b[at.UNBALANCE[0] + own] > 0.0:
+            y += at.RATE
+            dx[y], turn_left = _swing(b, gear, 0, dx[y], turn_left)
+            dx[y + 1], turn_right = _swing(b, gear, 1, dx[y + 1], turn_right)
+        dx[twist + at.RATE] = turn_right - turn_left
+        if gear == 0:
+            dx[at.ANGLE + at.RATE] = turn_left
+            dx[at.APPROACH + at.RATE] = rb * turn_left
+        else:
+            dx[at.APPROACH + at.RATE] -= rb * turn_left
 
 
 @kernel
 def _rates(b: np.ndarray, t: float, dx: np.ndarray) -> None:
     """Derivatives of all states, after `derive`."""
-    meshes(b)
-    _derivatives(b, dx)
+    _, normal_left, normal_right, push_left, push_right = meshes(b)
+    _derivatives(b, dx, normal_left, normal_right, push_left, push_right)
 
 
 @kernel
@@ -141,12 +145,14 @@ def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
 def _results(b: np.ndarray, t: float) -> None:
     """Write all outputs, after `derive`."""
     _motions(b)
-    b[at.OFFSET] = meshes(b)
+    eps, normal_left, normal_right, push_left, push_right = meshes(b)
+    b[at.OFFSET], b[at.FORCE[0]], b[at.FORCE[1]] = eps, normal_left, normal_right
     for side in range(2):
-        b[at.FORCE[side]], b[at.DEFLECTION[side]] = b[at.NORMAL + side], b[at.LOADED + side]
+        drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
+        b[at.DEFLECTION[side]] = drive if b[at.FLANK] >= 0.0 else -coast - b[at.BACKLASH]
     b[at.TE] = b[at.APPROACH] + 0.5 * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
     dx = b[at.SCRATCH : at.SCRATCH + at.STATES]
-    _derivatives(b, dx)
+    _derivatives(b, dx, normal_left, normal_right, push_left, push_right)
     _accelerations(b, dx)
 
 
@@ -174,11 +180,13 @@ def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     """Advance by h [s]; add up the times outside the tables and on the other flank."""
     derive(b)
     status = _advance(b, w, t, h, b[at.MICRO_STEP], int(b[at.DEGREE]))
-    other = 1 if b[at.CARRYING] > 0.0 else 0
+    other = 1 if b[at.FLANK] >= 0.0 else 0
     inside, carried = True, True
     for side in range(2):
         drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
-        inside = inside and force_law.inside(b, at.TABLE[side], max(drive, coast))
+        inside = inside and force_law.inside(
+            b, at.TABLE[0] + side * force_law.TABLE_SIZE, max(drive, coast)
+        )
         carried = carried and b[at.DEPTH + 2 * side + other] <= 0.0
     if not inside:
         b[at.OUTSIDE] += h

@@ -27,14 +27,21 @@ HARMONICS = 64
 """Room for those of one flank of one side."""
 _WIDTH, _ROW = len(COLUMNS), 4
 _GROUP = 1 + _ROW * HARMONICS
-TABLE_SIZE = 4 * _GROUP
-"""Length of the table part: by side and flank their number; gear, order, amplitude, phase."""
+TABLE_SIZE = 1 + 4 * _GROUP
+"""Length of the table part: number of all; by side and flank, number; gear, order, amplitude,
+phase."""
 _TOO_MANY, _NOT_WHOLE = 1, 2
 REFUSALS = (
     Refusal(f": more than {HARMONICS} harmonics of one flank of one side", 1),
     Refusal(": order %g must be a whole number, zero or more", 1),
 )
 _TWO_PI = 2.0 * math.pi
+
+
+@kernel
+def group(at: int, side: int, flank: int) -> int:
+    """Start of the harmonics of a side's flank; their number stands there."""
+    return at + 1 + (2 * side + flank) * _GROUP
 
 
 @kernel
@@ -57,20 +64,15 @@ def collect(values: np.ndarray, rows: int, b: np.ndarray, at: int, report: np.nd
             return _NOT_WHOLE
         if values[v + 4] == 0.0:
             continue
-        group = at + int(2.0 * values[v] + values[v + 1]) * _GROUP
-        count = int(b[group])
+        first = group(at, int(values[v]), int(values[v + 1]))
+        count = int(b[first])
         if count == HARMONICS:
             return _TOO_MANY
-        b[group] = count + 1.0
+        b[at] += 1.0
+        b[first] = count + 1.0
         for k in range(_ROW):
-            b[group + 1 + _ROW * count + k] = values[v + 2 + k]
+            b[first + 1 + _ROW * count + k] = values[v + 2 + k]
     return 0
-
-
-@kernel
-def group(at: int, side: int, flank: int) -> int:
-    """Start of the harmonics of a side's flank; their number stands there."""
-    return at + (2 * side + flank) * _GROUP
 
 
 @kernel
@@ -99,7 +101,7 @@ def error(b: np.ndarray, at: int, pinion: float, wheel: float) -> tuple[float, f
 def largest(b: np.ndarray, at: int) -> float:
     """Bound of e [m] on all flanks: the largest sum of amplitudes."""
     sums = []
-    for first in range(at, at + TABLE_SIZE, _GROUP):
+    for first in range(at + 1, at + TABLE_SIZE, _GROUP):
         rows = b[first + 1 : first + 1 + _ROW * int(b[first])].reshape(-1, _ROW)
         sums.append(float(np.abs(rows[:, 2]).sum()))
     return max(sums)
