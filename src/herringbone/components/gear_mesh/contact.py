@@ -133,7 +133,7 @@ def _mesh(
         e, e_rate, _, _ = _error(b, side, 1)
         coast, coast_rate = coast - e, coast_rate - e_rate
     b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1] = drive, coast
-    normal, push = 0.0, 0.0
+    normal, push = 0.0, b[at.HELD + side]
     first = 0 if drive > 0.0 or (b[at.GATE] == 0.0 and coast <= 0.0) else 1
     last = 2 if coast > 0.0 else 1
     for flank in range(first, last):
@@ -155,7 +155,7 @@ def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
     Writes depths, and the torques of what is moved by a rotation.
     """
     for i in range(4):
-        b[at.TORQUE + i] = 0.0
+        b[at.TORQUE + i] = b[at.HELD + 2 + i]
     eps, eps_rate, per_pinion, per_wheel = _apex(b)
     left, left_rate, left_phase = _approach(b, 0, eps, eps_rate)
     right, right_rate, right_phase = _approach(b, 1, eps, eps_rate)

@@ -6,9 +6,9 @@ K:
 
     F(p, depth) = N + K (depth - d),    depth >= d / 2
 
-so that the states at which the mesh was frozen are still an equilibrium, but for the torque with
-which the energy changed over the phase: below 1e-4 of the load's. The axial offset of the chevron's
-apex and the given transmission error stay at their values; meshing impact and unbalance are off.
+so that the states at which the mesh was frozen are still an equilibrium. The axial offset of the
+chevron's apex, the given transmission error and the reactions on what moved them stay at their
+values; meshing impact and unbalance are off.
 """
 
 from collections.abc import Callable
@@ -16,6 +16,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
+from herringbone.components.gear_mesh.contact import meshes
 from herringbone.components.resources import transmission_error
 from herringbone.core import Instance, ParameterError
 from herringbone.core.roles import GEARS, SIDES
@@ -52,6 +53,10 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
         ParameterError: a mesh is open at the operating point.
     """
     offset, share = gear["axial_offset"], gear["symmetry_deviation"]
+    index = gear.component.declaration.index
+    for name in ("impact_force", *(f"{g}.unbalance" for g in GEARS)):
+        gear.block[index[name]] = 0.0
+    reactions = _reactions(gear)
     for side, name in enumerate(SIDES):
         depth, force = _depth(gear, side), abs(gear[f"mesh_{name}.force"])
         if depth <= 0.0 or force <= 0.0:
@@ -63,11 +68,20 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
         tangent = stiffness(tangent_stiffness(gear, side))
         _write_line(gear.block, at.TABLE[side], depth, force, tangent)
     _hold_errors(gear)
-    index = gear.component.declaration.index
-    for name in ("impact_force", *(f"{g}.unbalance" for g in GEARS)):
-        gear.block[index[name]] = 0.0
+    gear.block[at.HELD : at.HELD + len(reactions)] = reactions
     gear.block[index["symmetry_pinion"]] = gear.block[index["symmetry_wheel"]] = 0.0
     gear.block[index["symmetry_constant"]] = offset / share if share else 0.0
+
+
+def _reactions(gear: Instance) -> list[float]:
+    """dU/d(phase) [J] of both meshes, and the torques [N m] of what moves the flanks."""
+    block = gear.block
+    _, *forces = meshes(block)
+    slopes = [
+        (push - block[at.COS] * normal) / block[at.PER_PITCH]
+        for normal, push in zip(forces[:2], forces[2:], strict=True)
+    ]
+    return [*slopes, *block[at.TORQUE : at.TORQUE + 4]]
 
 
 def _hold_errors(gear: Instance) -> None:

@@ -21,7 +21,8 @@ STATES = 24
 INPUTS = 10
 _DERIVED = 13
 _PAIR = 1 + stiffness_table.PAIR[1]
-_TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR
+_HELD = 6
+_TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR + _HELD
 _RESULTS = 8
 
 DECLARATION = Declaration(
@@ -106,7 +107,9 @@ ERRORS = TABLE[1] + force_law.TABLE_SIZE
 """The given transmission error."""
 PAIR = ERRORS + transmission_error.TABLE_SIZE
 """1 if the table tells its pair, then the pair: see `stiffness_table`."""
-SCRATCH = PAIR + _PAIR
+HELD = PAIR + _PAIR
+"""Zero unless the meshes are frozen: by side dU/d(phase) [J], by body torque [N m]."""
+SCRATCH = HELD + _HELD
 """Room for the derivatives of all states."""
 
 _derived = SCRATCH + STATES
