@@ -108,7 +108,5 @@ def test_table_of_a_pair_without_a_torque_reaches_overload():
 
 def test_load_that_no_teeth_can_carry():
     mesh = CoupledSliceMesh(gear_pair(THESIS), slices=60)
-    with pytest.raises(
-        ParameterError, match="presses the contact as wide"
-    ):
+    with pytest.raises(ParameterError, match="presses the contact as wide"):
         mesh.solve([0.0, 1e9], 4)
