@@ -97,10 +97,15 @@ def prepared(
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
     """What is given for parts of a role, by their whole paths; a later level holds."""
     return {
-        part_for(system, role, path, f"{role} {given}"): given
+        part_for(system, role, path, _called(role, given)): given
         for level in levels
         for path, given in level.items()
     }
+
+
+def _called(role: Role, given: object) -> str:
+    """What messages call a file of a role; of what is no file they say the role alone."""
+    return f"{role} {given}" if isinstance(given, str | Path) else role
 
 
 def _by_path(given: object) -> dict:
