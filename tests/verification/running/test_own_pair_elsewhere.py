@@ -68,7 +68,7 @@ def test_without_a_path_the_candidates_are_named(two, file, tmp_path, capsys):
 
 
 def test_a_job_is_not_written_out_in_messages(two, file):
-    with pytest.raises(ParameterError, match="^gear pair: two has several parts"):
+    with pytest.raises(ParameterError, match=r"^gear pair: two has several parts"):
         hb.run(two, gear=read_gear_file(file), **RUN)
 
 
