@@ -5,14 +5,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from herringbone.core import ParameterError
+from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.gears import Gear, balanced, with_gears
+from herringbone.running.gears import Gear, with_gears
 from herringbone.running.housings import split_housings, with_housing_data
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
+from herringbone.running.open_flanges import balanced, unbalanced
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -90,8 +91,13 @@ def prepared(
     structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
     structure = with_housing_data(structure, data).with_values(chosen.values)
     structure, said = with_gears(structure, gears)
-    structure, notes = started(balanced(structure), chosen)
-    return Prepared(structure, chosen, (*said, *notes, *broken))
+    structure = balanced(structure)
+    lines = unbalanced(structure)
+    try:
+        structure, notes = started(structure, chosen)
+    except EquilibriumError as error:
+        raise EquilibriumError("; ".join((*lines, str(error)))) from error
+    return Prepared(structure, chosen, (*said, *lines, *notes, *broken))
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
