@@ -13,7 +13,7 @@ from herringbone.core.anatomy import Anatomy
 from herringbone.core.part_path import PartPath
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.gears.files.read_job import read_mounted_job
+from herringbone.gears.files.read_job import is_rexs, read_mounted_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import pair_values
 from herringbone.gears.table_cache import cached_table
@@ -42,7 +42,12 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         if system.part(part).foreign:
             raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
         job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
-        values, said = _values(system, part, job)
+        if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
+            notes.append(
+                f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
+                "is taken as that of each half of a double-helical pair"
+            )
+        values, said = _values(system, part, job, option)
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
     return system, tuple(notes)
@@ -57,11 +62,14 @@ def _fitted(system: System, values: Mapping[str, float | str]) -> tuple[System, 
 
 
 def _values(
-    system: System, gear: PartPath, job: GearJob
+    system: System, gear: PartPath, job: GearJob, option: str
 ) -> tuple[dict[str, float | str], list[str]]:
     """What a pair gives to the parts that it touches, by `part.variable`; and lines."""
     known = anatomy(system)
-    pair, assumed = pair_values(job)
+    try:
+        pair, assumed = pair_values(job)
+    except ParameterError as error:
+        raise ParameterError(f"{option}: {error}") from error
     notes = list(assumed)
     values: dict[str, float | str] = {}
     for part in _touched(system, known, gear):
