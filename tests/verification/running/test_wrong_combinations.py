@@ -87,7 +87,7 @@ REFUSED = {
     ),
     "pair's file as housing": (
         lambda f: {"housing": f / "own.toml"},
-        "own.toml: gear_pair, mesh, table: unknown; description, dimensions, ",
+        "modes, sensors: missing; gear_pair, mesh, table: unknown",
     ),
     "housing's dimensions as pair": (
         lambda f: {"gear": DESIGN},

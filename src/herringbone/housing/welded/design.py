@@ -195,7 +195,7 @@ def _table(kind: type[Table], data: object, where: str, scale: float = 1.0) -> T
 
 
 def _check_keys(data: Mapping[str, object], known: set[str], where: str) -> None:
-    kinds = ((set(data) - known, "unknown"), (known - set(data), "missing"))
+    kinds = ((known - set(data), "missing"), (set(data) - known, "unknown"))
     if wrong := [f"{', '.join(sorted(keys))}: {what}" for keys, what in kinds if keys]:
         raise ParameterError(f"{where}: {'; '.join(wrong)}")
 
