@@ -92,8 +92,10 @@ def files_of_parts(options: argparse.Namespace) -> PartFiles:
             path, equals, file = item.partition("=")
             path, file = (path, file) if equals and not Path(item).exists() else ("", item)
             if path in files:
-                where = f"'{path}'" if path else "without a path"
-                raise ParameterError(f"--{name} {item}: it is given twice {where}; write PATH=FILE")
+                where = f"for '{path}'" if path else "without a path"
+                raise ParameterError(
+                    f"--{name} {item}: it is given twice {where}; write PATH=FILE, each PATH once"
+                )
             files[path] = Path(file)
         found[name] = files
     return PartFiles(**found)

@@ -62,8 +62,8 @@ def _coast_phase(pair: GearPair, backlash: float) -> float:
     A pinion tooth of thickness s_w at the working circle touches at the pitch point with one flank,
     and s_w / p_w of a pitch later with the other. On either line of action the phase begins where
     contact does, the distance A C before; on the coast flank it runs backwards, and the contact
-    lines lean the other way: p_drive + p_coast = s_w / p_w + (2 A C + b tan(beta_b)) / p_bt, the
-    backlash being taken out of both gears alike.
+    lines lean the other way: p_drive + p_coast = s_w / p_w + (2 A C + b tan(beta_b)) / p_bt. s_w
+    has the pinion's allowance, and half of what backlash there is beyond that of the geometry.
     """
     points, pitch = pair.path_of_contact, pair.transverse_base_pitch
     shift = pair.profile_shift_coefficient[0]
@@ -73,7 +73,9 @@ def _coast_phase(pair: GearPair, backlash: float) -> float:
         involute(pair.transverse_pressure_angle) - involute(pair.working_transverse_pressure_angle)
     )
     of_pitch = angle * pair.number_of_teeth[0] / (2.0 * math.pi)
-    thinned = 0.5 * backlash / math.cos(pair.base_helix_angle)
+    beyond = 0.5 * (backlash - pair.normal_backlash)
+    allowance = pair.tooth_thickness_allowance[0] * math.cos(pair.normal_pressure_angle)
+    thinned = (beyond - allowance) / math.cos(pair.base_helix_angle)
     overlap = pair.face_width * math.tan(abs(pair.base_helix_angle))
     along = 2.0 * (points.pitch - points.start) - thinned + overlap
     return (of_pitch + along / pitch) % 1.0

@@ -8,11 +8,11 @@ it. A flank that is set by name stays.
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.equilibrium import equilibrium
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
+from herringbone.running.mesh_phases import steady_values
 
 _COAST = -1.0
 
@@ -28,10 +28,10 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
     """
     flanks = _free_flanks(system)
     try:
-        values = equilibrium(system).values
-    except EquilibriumError:
+        values = steady_values(system)
+    except EquilibriumError as error:
         if not flanks:
-            raise
+            raise _with_hint(error, system) from error
         coasting = list(flanks)
     else:
         coasting = [gear for gear in flanks if _coasts(system.with_values(values), gear)]
@@ -39,13 +39,29 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
             return values, ()
     chosen = {path: _COAST for gear in coasting for path in flanks[gear]}
     try:
-        found = equilibrium(system.with_values(chosen)).values
+        found = _coasting(system.with_values(chosen), coasting)
     except EquilibriumError:
         if set(coasting) == set(flanks):
-            equilibrium(system)  # what is wrong on the drive flank is what the user can tell
+            steady_values(system)  # what is wrong on the drive flank is what the user can tell
         raise
     lines = [f"{g}: the coast flank carries; y is its line of action" for g in coasting]
     return {**chosen, **found}, tuple(lines)
+
+
+def _coasting(system: System, gears: list[str]) -> Values:
+    """Start values of steady rotation with gear pairs on their coast flanks.
+
+    Raises:
+        EquilibriumError: there is none, or the teeth touch on the other flank there.
+    """
+    found = steady_values(system)
+    for gear in gears:
+        if not _coasts(system.with_values(found), gear):
+            raise EquilibriumError(
+                f"no steady rotation of '{system.name}' was found on one flank of {gear}; look at "
+                "its torques, or start with --start rest"
+            )
+    return found
 
 
 def _free_flanks(system: System) -> dict[str, list[str]]:
@@ -63,6 +79,17 @@ def _free_flanks(system: System) -> dict[str, list[str]]:
         if paths[0] and not named:
             found[gear] = [path for path in paths if path]
     return found
+
+
+def _with_hint(error: EquilibriumError, system: System) -> EquilibriumError:
+    """The error, and that a flank set by name may be the wrong one."""
+    gears = anatomy(system).with_role(Role.GEAR_PAIR)
+    if not gears:
+        return error
+    return EquilibriumError(
+        f"{error}; the flank of {', '.join(gears)} or of its bearings is set by name, so that the "
+        "other one was not tried: leave it out"
+    )
 
 
 def _coasts(system: System, gear: str) -> bool:

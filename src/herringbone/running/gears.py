@@ -3,7 +3,6 @@
 What a scene, a system or the caller sets by name holds over the pair's file, with a line.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -12,9 +11,9 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.part_path import PartPath
-from herringbone.core.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.gears.files.read_job import read_mounted_job
+from herringbone.gears.files.read_job import is_rexs, read_mounted_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import pair_values
 from herringbone.gears.table_cache import cached_table
@@ -43,7 +42,12 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         if system.part(part).foreign:
             raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
         job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
-        values, said = _values(system, part, job)
+        if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
+            notes.append(
+                f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
+                "is taken as that of each half of a double-helical pair"
+            )
+        values, said = _values(system, part, job, option)
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
     return system, tuple(notes)
@@ -58,11 +62,14 @@ def _fitted(system: System, values: Mapping[str, float | str]) -> tuple[System, 
 
 
 def _values(
-    system: System, gear: PartPath, job: GearJob
+    system: System, gear: PartPath, job: GearJob, option: str
 ) -> tuple[dict[str, float | str], list[str]]:
     """What a pair gives to the parts that it touches, by `part.variable`; and lines."""
     known = anatomy(system)
-    pair, assumed = pair_values(job)
+    try:
+        pair, assumed = pair_values(job)
+    except ParameterError as error:
+        raise ParameterError(f"{option}: {error}") from error
     notes = list(assumed)
     values: dict[str, float | str] = {}
     for part in _touched(system, known, gear):
@@ -92,42 +99,3 @@ def _touched(system: System, known: Anatomy, gear: PartPath) -> Iterator[PartSpe
     controllers = known.with_role(Role.CONTROLLER) if alone else ()
     for name in dict.fromkeys([str(gear), *carriers, *controllers]):
         yield system.part(name)
-
-
-def balanced(system: System) -> System:
-    """The system, with the torques that balance the given ones at open flanges.
-
-    Of a gear pair at whose flanges nothing is joined, and of which one torque is given: the other
-    one becomes -T r_b,wheel / r_b,pinion at the wheel, or -T r_b,pinion / r_b,wheel at the pinion.
-    """
-    known = anatomy(system)
-    joined = {system.split(path) for pair in system.connections for path in pair}
-    for gear in known.with_role(Role.GEAR_PAIR):
-        part = system.part(gear)
-        if part.foreign:
-            continue
-        ports = [port for g in GEARS for port in known.ports(gear, PortKind.FLANGE, g)]
-        torques = [f"{port.name}.tau" for port in ports]
-        ends = {(part.name, x) for x in (*torques, *(port.name for port in ports))}
-        given = [part.values.get(torque) for torque in torques]
-        if len(ports) != len(GEARS) or ends & joined or given.count(None) != 1:
-            continue
-        wanted = given.index(None)
-        radii = [_value(system, known, gear, Quantity.BASE_RADIUS, g) for g in GEARS]
-        other = float(given[1 - wanted] or 0.0)
-        torque = -other * radii[wanted] / radii[1 - wanted]
-        system = system.with_values({f"{gear}.{torques[wanted]}": torque})
-    return system
-
-
-def _value(
-    system: System, known: Anatomy, part: str, quantity: Quantity, place: str | None = None
-) -> float:
-    """Value of a parameter of a known part; NaN if it has none."""
-    column = known.column(part, quantity, place)
-    spec = system.part(part)
-    if column is None or spec.component is None:
-        return math.nan
-    variable = column[len(part) + 1 :]
-    start = COMPONENTS[spec.component].declaration.variable(variable).start
-    return float(spec.values.get(variable, start))

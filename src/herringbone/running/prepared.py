@@ -5,14 +5,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from herringbone.core import ParameterError
+from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.gears import Gear, balanced, with_gears
+from herringbone.running.gears import Gear, with_gears
 from herringbone.running.housings import split_housings, with_housing_data
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
+from herringbone.running.open_flanges import balanced, unbalanced
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -90,17 +91,27 @@ def prepared(
     structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
     structure = with_housing_data(structure, data).with_values(chosen.values)
     structure, said = with_gears(structure, gears)
-    structure, notes = started(balanced(structure), chosen)
-    return Prepared(structure, chosen, (*said, *notes, *broken))
+    structure = balanced(structure)
+    lines = unbalanced(structure)
+    try:
+        structure, notes = started(structure, chosen)
+    except EquilibriumError as error:
+        raise EquilibriumError("; ".join((*lines, str(error)))) from error
+    return Prepared(structure, chosen, (*said, *lines, *notes, *broken))
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
     """What is given for parts of a role, by their whole paths; a later level holds."""
     return {
-        part_for(system, role, path, f"{role} {given}"): given
+        part_for(system, role, path, _called(role, given)): given
         for level in levels
         for path, given in level.items()
     }
+
+
+def _called(role: Role, given: object) -> str:
+    """What messages call a file of a role; of what is no file they say the role alone."""
+    return f"{role} {given}" if isinstance(given, str | Path) else role
 
 
 def _by_path(given: object) -> dict:

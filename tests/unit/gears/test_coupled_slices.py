@@ -9,6 +9,7 @@ from support.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
+from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.coupled_slices import TILT, CoupledSliceMesh
 from herringbone.gears.stiffness.tooth_compliance import tooth_compliance
 
@@ -110,3 +111,34 @@ def test_spur_gear_does_not_tilt():
 def test_coupling_must_be_positive(lengths):
     with pytest.raises(ParameterError, match=r"coupling length of the .* modules must be positive"):
         CoupledSliceMesh(gear_pair(SPUR), lengths=lengths)
+
+
+def test_contact_at_overloaded_ends_yields_no_further():
+    """Its deflection load * secant rises up to the formula's limit, and stays."""
+    lines = SliceMesh(gear_pair(THESIS))
+    _, _, slices = lines.lines(0.0)[0]
+    limit = np.exp(slices.logarithm - 1.0) - 100.0
+    shares = np.array([0.5, 0.99, 1.0, 2.0, 50.0])
+    deflection, tangent = np.array(
+        [(share * limit * secant, slope) for share in shares
+         for secant, slope in [lines.contact(slices, share * limit)]]
+    ).swapaxes(0, 1)  # fmt: skip
+    assert np.all(tangent >= 0.0)
+    assert np.all(np.diff(deflection[:3], axis=0) > 0.0)
+    np.testing.assert_allclose(deflection[3:], np.tile(deflection[2], (2, 1)), rtol=1e-12)
+
+
+def test_table_of_a_pair_without_a_torque_reaches_overload():
+    """At 25 times 100 N/mm the ends of the lines of module 3.5 mm are beyond the contact's formula.
+
+    Far from there all follows as before: stiffness rises with the load at every phase.
+    """
+    pair = gear_pair(THESIS, number_of_teeth=(23, 57), face_width=40e-3, groove_diameter=None)
+    found = CoupledSliceMesh(pair).solve(GearJob(pair).task().loads, 256)
+    assert np.all(np.diff(found.secant, axis=0) > 0.0)
+
+
+def test_load_that_no_teeth_can_carry():
+    mesh = CoupledSliceMesh(gear_pair(THESIS), slices=60)
+    with pytest.raises(ParameterError, match="presses the contact as wide"):
+        mesh.solve([0.0, 1e9], 4)

@@ -34,9 +34,14 @@ def read_job(file: Path, *, stage: str | None = None, halves: int | None = None)
     return read_gear_file(file)
 
 
+def is_rexs(file: Path) -> bool:
+    """True for a file of the kind that has no number of halves."""
+    return file.suffix.lower() != ".toml"
+
+
 def read_mounted_job(file: Path) -> GearJob:
     """As `read_job`, of a pair that is mounted in a gearbox: a REXS stage stands for both halves.
 
     A stage of REXS has one face width, here that of one half.
     """
-    return read_job(file) if file.suffix.lower() == ".toml" else read_job(file, halves=2)
+    return read_job(file, halves=2) if is_rexs(file) else read_job(file)

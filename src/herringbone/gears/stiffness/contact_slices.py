@@ -186,6 +186,9 @@ class ContactSlices:
     def contact(self, slices: Slices, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Secant and tangent compliance [m/(N/m)] of the contact at line loads [N/m].
 
+        Where the formula's logarithm falls below `_NARROW`, as at the ends of lines under overload,
+        the contact yields no further: its tangent would be negative.
+
         Args:
             slices: whose contact it is.
             load: of each slice, same shape [N/m].
@@ -194,9 +197,14 @@ class ContactSlices:
         if self.hertz == "yang-sun":
             constant = np.full_like(load, 2.0 * unit)
             return constant, constant
-        above = load + _LEAST_LINE_LOAD
+        limit = np.exp(slices.logarithm - _NARROW) - _LEAST_LINE_LOAD
+        above = np.minimum(load, limit) + _LEAST_LINE_LOAD
         secant = slices.logarithm - np.log(above)
-        return unit * secant, unit * (secant - load / above)
+        tangent = secant - load / above
+        wide = load > limit
+        secant[wide] *= limit[wide] / load[wide]
+        tangent[wide] = 0.0
+        return unit * secant, unit * tangent
 
     def check_contact_width(self, slices: Slices, load: np.ndarray, force: float) -> None:
         """The contact's formula holds while it is narrow against the teeth's depth."""

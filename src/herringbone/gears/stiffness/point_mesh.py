@@ -57,6 +57,16 @@ class PointMesh(ABC):
         path, face = (np.concatenate([line[i] for line in lines]) for i in range(2))
         return LineLoad(path, face, points.length, pressed / points.length)
 
+    def _check_width(self, phase: float, points: ContactPoints, force: float) -> None:
+        """Refuse a load too large for the contact; on the average of the lines, not at their ends.
+
+        Raises:
+            ParameterError: see `ContactSlices.check_contact_width`.
+        """
+        load = np.array([force / points.length.sum()])
+        for _, _, slices in self.lines.lines(phase):
+            self.lines.check_contact_width(slices, load, force)
+
     def solve(self, loads: Sequence[float], phases: int = PHASES) -> MeshStiffness:
         """Deflection and tangent stiffness at loads, over one mesh period.
 
@@ -65,8 +75,8 @@ class PointMesh(ABC):
             phases: number of equidistant phases.
 
         Raises:
-            ParameterError: loads not ascending, no equilibrium, or a relief so large that at the
-                largest load the contact ratio falls below 1.
+            ParameterError: loads not ascending, no equilibrium, a largest load that presses the
+                contact too wide, or a relief so large that the contact ratio falls below 1 there.
         """
         forces = checked_loads(loads)
         at = np.arange(phases) / phases
@@ -74,6 +84,7 @@ class PointMesh(ABC):
         touching = np.empty(phases)
         for i, phase in enumerate(at):
             points = self.points(phase)
+            self._check_width(phase, points, forces[-1])
             touching[i] = _touching_stiffness(points)
             pressed = None
             for j, force in enumerate(forces):

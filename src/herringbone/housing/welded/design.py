@@ -195,9 +195,9 @@ def _table(kind: type[Table], data: object, where: str, scale: float = 1.0) -> T
 
 
 def _check_keys(data: Mapping[str, object], known: set[str], where: str) -> None:
-    for keys, what in ((known - set(data), "missing"), (set(data) - known, "unknown")):
-        if keys:
-            raise ParameterError(f"{where}: {', '.join(sorted(keys))}: {what}")
+    kinds = ((known - set(data), "missing"), (set(data) - known, "unknown"))
+    if wrong := [f"{', '.join(sorted(keys))}: {what}" for keys, what in kinds if keys]:
+        raise ParameterError(f"{where}: {'; '.join(wrong)}")
 
 
 def _number(value: object, name: str, where: str) -> float:
