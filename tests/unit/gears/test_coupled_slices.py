@@ -11,6 +11,7 @@ from herringbone.core import ParameterError
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.coupled_slices import TILT, CoupledSliceMesh
+from herringbone.gears.stiffness.slices import SliceMesh
 from herringbone.gears.stiffness.tooth_compliance import tooth_compliance
 
 LOADS = [0.0, 1e3, 2e4]
