@@ -25,7 +25,8 @@ from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting import PICTURES, overview
-from herringbone.running.api import load_scene, load_system, run
+from herringbone.running.api import run
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
 from herringbone.running.summary import summary_text
 

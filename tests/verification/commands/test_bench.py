@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-WHOLE_RIG = 310_000
+WHOLE_RIG = 330_000
 """The rig of eight parts as one FMU misses it by one hundredth."""
 
 

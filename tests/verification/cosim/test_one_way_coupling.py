@@ -10,7 +10,7 @@ import herringbone as hb
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.housing import default_housing, write_housing
-from herringbone.running import api, start
+from herringbone.running import loading, start
 
 STIFFENING = 1e-4
 """Factor on the shapes: the seats move 1e-8 as much, so the bearings stand on rigid ground."""
@@ -68,8 +68,8 @@ def test_bearing_forces(one_way):
 
 def frequencies(values: dict[str, str]) -> np.ndarray:
     """Damped structural modes of the rig below the limit [Hz]; slower ones are of the drive."""
-    system, folder = api.load_system("test_rig")
-    scene = api.load_scene(folder, None)
+    system, folder = loading.load_system("test_rig")
+    scene = loading.load_scene(folder, None)
     system, _ = start.started(system, replace(scene, values={**scene.values, **values}))
     twin = Twin(system)
     x = twin.state.copy()
