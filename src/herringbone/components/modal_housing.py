@@ -18,7 +18,7 @@ Modes of kind "residual" are pseudo modes that make the static compliance at the
 
 The seats are about as soft as the bearings, so the coupling has to go both ways. On the test rig
 (scene loaded), the motion of the seats changes the vibration of the bearing forces (rms about the
-mean) by a factor of 0.68 radially at the pinion, 2.77 radially and 5.94 axially at the wheel,
+mean) by a factor of 0.68 radially at the pinion, 2.08 radially and 9.29 axially at the wheel,
 against bearings on rigid ground whose forces only drive the housing. Below 300 Hz, the structural
 modes of the rig on rigid ground and of the housing alone lie at 174.1 and 249.3 Hz; coupled, they
 lie at 170.1 and 173.3 Hz.
