@@ -12,6 +12,7 @@ import numpy as np
 
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
+from herringbone.core.roles import Role
 from herringbone.cosim.structure.system import System
 
 _ITERATIONS = 40
@@ -40,17 +41,41 @@ class Equilibrium:
 def equilibrium(system: System) -> Equilibrium:
     """Start values for steady rotation of a system of components.
 
+    Where a controller holds the speed, the first gear pair stays at its angle: what a mesh gives
+    back depends on its phase, and the angle would be moved to where that is least. At given torques
+    nothing else is left to balance them, and the angle is free.
+
     Raises:
         StructureError: a part is a foreign FMU.
         EquilibriumError: no equilibrium was found.
     """
     twin = Twin(system)
+    return _solved(system, twin, _held(twin))
+
+
+def _held(twin: Twin) -> int | None:
+    """Place of the first angle of the first gear pair among the states, under a controller."""
+    if not any(Role.CONTROLLER in i.component.declaration.roles for i in twin.instances):
+        return None
+    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
+        declaration = instance.component.declaration
+        if Role.GEAR_PAIR in declaration.roles:
+            angles = (i for i, v in enumerate(declaration.states) if v.steady == "rotating")
+            return next((first + i for i in angles), None)
+    return None
+
+
+def _solved(system: System, twin: Twin, held: int | None) -> Equilibrium:
+    """Steady rotation with one state as it is, or none."""
     rotating, zero = _steady_rows(twin)
     scale = _scales(twin)
     x = _guess(twin)
     if x.size == 0:
         return Equilibrium({}, 0.0)
     keep = np.setdiff1d(np.arange(x.size), rotating)
+    free = np.ones(x.size)
+    if held is not None:
+        free[held] = 0.0
 
     def residual(x: np.ndarray) -> np.ndarray:
         dx = twin.rhs(0.0, x)
@@ -60,14 +85,14 @@ def equilibrium(system: System) -> Equilibrium:
     r = residual(x)
     first = None
     for _ in range(_ITERATIONS):
-        jacobian = _jacobian(residual, x, r, scale)
+        jacobian = _jacobian(residual, x, r, scale) * free
         rows = np.abs(jacobian).max(axis=1)
         rows[rows == 0.0] = 1.0
         scaled = np.abs(r / rows).max()
         first = first or max(scaled, 1.0)
         if scaled < _CONVERGED * first:
             return Equilibrium(_start_values(twin, x), float(scaled / first))
-        step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale
+        step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
         x, r = _line_search(residual, x, r, step, rows)
     worst = _row_names(twin, keep, zero)[int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
