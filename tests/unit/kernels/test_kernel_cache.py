@@ -124,6 +124,13 @@ def test_closure_holds_what_is_imported_and_no_more():
     assert not any(name.startswith("herringbone.cosim") for name in found)
 
 
+def test_what_is_made_of_a_system_depends_on_all_components():
+    """The registry imports them by name; else a system would keep the code of a changed one."""
+    found = cache_keys._closure(["herringbone.analysis.twin.composite"])
+    for name in ("gear_mesh.contact", "drive_motor", "modal_housing"):
+        assert f"herringbone.components.{name}" in found
+
+
 def test_a_comment_does_not_compile_and_code_does(cache, tmp_path):
     assert compiled_again(tmp_path, SOURCE)
     assert not compiled_again(tmp_path, SOURCE)

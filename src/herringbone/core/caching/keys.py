@@ -31,6 +31,8 @@ _COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
 """Packages that decide what is compiled and packed."""
 _RESOURCES = {".py", ".csv"}
 _LENGTH = 16
+_BY_NAME = "importlib.import_module"
+"""Who imports this, as the registry of components does, imports any module of its package."""
 
 
 def digest_of(*texts: str | bytes) -> str:
@@ -96,7 +98,11 @@ def _closure(modules: Iterable[str]) -> set[str]:
         if module in found or module not in _MODULES:
             continue
         found.add(module)
-        todo += _known(_MODULES[module].imports)
+        imports = _MODULES[module].imports
+        todo += _known(imports)
+        if _BY_NAME in imports:
+            package = module.rpartition(".")[0] + "."
+            todo += [name for name in _MODULES if name.startswith(package)]
     return found
 
 
