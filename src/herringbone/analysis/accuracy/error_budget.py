@@ -2,8 +2,8 @@
 
     table           uncertainty of the mesh harmonics of the stiffness table, over their amplitudes,
                     weighted with the lines that the run's bearing forces have at these harmonics:
-                    sqrt(sum (a_k u_k / h_k)^2) / sqrt(sum a_k^2), k = 1 ... 4; where the response
-                    is linear, a line follows its harmonic
+                    sqrt(sum (a_k u_k / h_k)^2) / sqrt(sum a_k^2), k = 1 ... 4, u_k / h_k at most 1;
+                    where the response is linear, a line follows its harmonic
     coupling        error against the monolithic twin if it was solved, else by the rule of
                     `analysis.stability.recommendation`
     inner steps     floor of the gear's micro steps, by the same rule
@@ -58,7 +58,7 @@ def error_budget(result: Result, bond_frequency: float = 0.0) -> tuple[BudgetRow
 
 def by_size(rows: Iterable[BudgetRow]) -> tuple[BudgetRow, ...]:
     """The rows with a value, the largest first, then the others."""
-    return tuple(sorted(rows, key=lambda row: 0.0 if row.value is None else -row.value))
+    return tuple(sorted(rows, key=lambda row: (row.value is None, -(row.value or 0.0))))
 
 
 def _tables(result: Result) -> Iterator[BudgetRow]:
@@ -88,9 +88,9 @@ def _tables(result: Result) -> Iterator[BudgetRow]:
 
 
 def _mean_force(result: Result, gear: str) -> float:
-    """Mean normal force [N] of the left mesh; 0 if it is not recorded."""
+    """Mean normal force [N] of the left mesh, on either flank; 0 if it is not recorded."""
     force = signal(result, Role.GEAR_PAIR, Quantity.MESH_FORCE, "left", part=gear)
-    return 0.0 if force is None else float(force[steady_part(result).rows].mean())
+    return 0.0 if force is None else abs(float(force[steady_part(result).rows].mean()))
 
 
 def _lines(result: Result, gear: str, count: int) -> np.ndarray | None:
