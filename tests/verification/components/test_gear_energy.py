@@ -56,8 +56,9 @@ def test_power_integrated_as_a_state(errors):
         x = moved(gear, seats)
         found.append(abs(residual(gear, on_seats(gear, seats), x, step, round(2e-3 / step))))
     assert found[-1] < 1e-9
-    # Order 4 from end to end; between two steps the kinks of the law in u may hide it.
-    assert found[-1] < found[0] / 8**4
+    # Order 4 from end to end; between two steps the kinks of the law in u may hide it, and 2000
+    # sums have a rounding.
+    assert found[-1] < found[0] / 8**4 + 2000 * np.finfo(float).eps
 
 
 # --- the mirror: torque and rotation reversed, sides exchanged -----------------------------------

@@ -156,6 +156,11 @@ def test_directional_derivatives_are_the_differences(name, fmi, opened):
 
     size = np.abs(values(0, 0.0)) + 1e-9
     size[: len(host.states)] = np.maximum(size[: len(host.states)], size[: len(host.states)].mean())
+    # Outputs are sums whose terms cancel: rounding is of those of their kind (s_, v_, a_, ...).
+    kinds = np.array([n.rpartition(".")[2][:2] for n in host.output_names])
+    for kind in set(kinds):
+        own = np.flatnonzero(kinds == kind) + len(host.states)
+        size[own] = np.maximum(size[own], size[own].mean())
     for k, state in enumerate(host.states):
         change = 1e-4 * host.nominals[k]
         found = differences(k, change)
