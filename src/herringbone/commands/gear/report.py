@@ -7,14 +7,13 @@ from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.roles import Role
-from herringbone.gears.files.component_values import component_values
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.files.table_file import table_text
-from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.load.figures import Conditions, Loaded, loaded_figures
+from herringbone.gears.pair_values import pair_values
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.methods import AUTO, METHODS, check_method, chosen_method
 from herringbone.gears.stiffness.point_mesh import Progress, silent
@@ -64,7 +63,7 @@ def gear(
     mesh = METHODS[chosen_method(job.method if method is None else method)].mesh(job.task(), silent)
     loaded = loaded_figures(job, mesh, stiffness, conditions or Conditions())
     folder = output or Path("results") / f"gear-{file.stem}"
-    written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
+    written = [str(path) for path in _write(job, stiffness, loaded, folder, file.stem)]
     if as_json:
         return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
     return f"{gear_tables(job, stiffness, loaded)}\n\nFiles: {', '.join(written)}"
@@ -82,15 +81,17 @@ def _job(file: Path, stage: str | None, halves: int | None) -> GearJob:
     return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
 
 
-def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) -> list[Path]:
+def _write(
+    job: GearJob, stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str
+) -> list[Path]:
     """Write tables, pictures and, of a double-helical pair, the component's values."""
     from herringbone.plotting.gear_load import write_gear_load_picture  # noqa: PLC0415 (lazy)
     from herringbone.plotting.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
 
     texts = {TABLE: table_text(stiffness), FLANKS: flank_text(stiffness.pair, loaded.flanks)}
     if stiffness.pair.halves == 2:
-        component = _component()
-        texts[f"{component}.toml"] = _values_text(stiffness.pair, component)
+        component, text = _values_text(job)
+        texts[f"{component}.toml"] = text
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file_name, text in texts.items():
@@ -104,19 +105,23 @@ def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) ->
     return [folder / file_name for file_name in (*texts, PICTURE, LOAD_PICTURE)]
 
 
-def _component() -> str:
-    """Name of the component that takes the values, and of its instance in the shipped systems."""
+def _values_text(job: GearJob) -> tuple[str, str]:
+    """Name of the gear pair's component, and its values as the [set] table of a scene."""
     from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
 
-    return component_for(Role.GEAR_PAIR).name
-
-
-def _values_text(pair: GearPair, component: str) -> str:
-    """Values of the gear pair's component as the [set] table of a scene."""
+    component = component_for(Role.GEAR_PAIR)
+    pair, notes = pair_values(job)
+    follow = component.of_pair(pair, {}) if component.of_pair else {}
+    values: dict[str, float | str] = {**follow, "stiffness_table": TABLE}
     lines = [
-        f"# Values of the {component} component for this pair: the [set] table of a scene.",
-        f"# A steady load of the wheel is {pair.gear_ratio:.6g} times the pinion's torque.",
+        f"# Values of the {component.name} component for this pair: the [set] table of a scene.",
+        "# Damping and pressure angle of the bearings and the controller's gear ratio follow, too:",
+        "# herringbone run SYSTEM --gear FILE sets all of them, and needs no such table.",
+        *(f"# {note[0].upper()}{note[1:]}." for note in notes),
         "[set]",
     ]
-    lines += [f'"{component}.{name}" = {value!r}' for name, value in component_values(pair).items()]
-    return "\n".join(lines) + "\n"
+    lines += [
+        f'"{component.name}.{name}" = ' + (f'"{value}"' if isinstance(value, str) else f"{value!r}")
+        for name, value in values.items()
+    ]
+    return component.name, "\n".join(lines) + "\n"
