@@ -20,7 +20,7 @@ from herringbone.cosim.structure.system_file import read_system
 from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.plotting import PICTURES
-from herringbone.running.api import load_system
+from herringbone.running.loading import load_system
 from herringbone.running.report import write_report
 from herringbone.running.start import started
 from herringbone.scenes import Scene, Start
