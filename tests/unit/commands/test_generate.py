@@ -63,7 +63,9 @@ def test_a_generator_that_fails_is_told(monkeypatch, capfd):
 def test_unknown_names_are_refused(capsys):
     with pytest.raises(SystemExit):
         command.main(["tables"])
-    assert "there is no tables; there are: gear-pair, gear-table" in capsys.readouterr().err
+    assert (
+        "there is no tables; there are: gear-pair, gear-table, housing" in capsys.readouterr().err
+    )
 
 
 def test_every_committed_picture_and_chart_is_made():
