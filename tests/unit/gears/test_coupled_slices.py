@@ -39,7 +39,7 @@ def test_evenly_loaded_spur_tooth():
         base, root, hub = (
             getattr(pair, f"{name}_radius")[gear] for name in ("base", "root", "hub")
         )
-        part = tooth_compliance(pair, gear, np.array([math.hypot(base, reach[gear])]))
+        part = tooth_compliance(pair, gear, np.array([math.hypot(base, reach[gear])]), "strain")
         tooth, local = part.total - part.foundation, part.foundation - part.turning
         shear = pair.youngs_modulus / 2.6
         expected += (1.1 * tooth + 0.7 * local)[0] / width

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from scipy.optimize import brentq
-from support.gears import DRAWN_HELICAL, THESIS, gear_pair
+from support.gears import THESIS, gear_pair
 
 from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import ParameterError
@@ -14,7 +14,13 @@ from herringbone.gears.job import GearJob
 from herringbone.gears.mesh_assumptions import MeshAssumptions
 from herringbone.gears.pair_values import pair_values
 
-SHIFTED = {**DRAWN_HELICAL, "halves": 2}
+SHIFTED = {
+    "number_of_teeth": (24, 58),
+    "normal_module": 3.5e-3,
+    "helix_angle": math.radians(29.6),
+    "face_width": 49.9e-3,
+    "profile_shift_coefficient": (0.389, -0.186),
+}
 NO_SHIFT = {"profile_shift_coefficient": (0.0, 0.0)}
 
 
@@ -170,7 +176,7 @@ def test_dampings_follow_from_their_ratios():
 
 def test_only_double_helical_pairs_are_mounted():
     with pytest.raises(ParameterError, match="halves = 1; the component is double helical"):
-        of(gear_pair(DRAWN_HELICAL))
+        of(gear_pair(SHIFTED, halves=1))
 
 
 @pytest.mark.parametrize("name", list(vars(MeshAssumptions())))
