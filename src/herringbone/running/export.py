@@ -174,23 +174,25 @@ def _carried(system: System, *, native: bool) -> tuple[System, dict[str, Path]]:
     Raises:
         ParameterError: Python FMUs, or parts of one component with different files.
     """
+    read = [
+        (f"{part.name}.{text.name}", f"{part.component}.{text.name}", str(value))
+        for part in system.parts
+        if not part.foreign
+        for text in component(str(part.component)).declaration.texts
+        for value in (part.values.get(text.name, text.start),)
+    ]
     files: dict[str, Path] = {}
-    owners: dict[str, set[str]] = {}
-    for part in system.parts:
-        for text in () if part.foreign else component(str(part.component)).declaration.texts:
-            value = str(part.values.get(text.name, text.start))
-            name = f"{part.component}.{text.name}"
-            owners.setdefault(name, set()).add(value)
-            if not Path(value).is_absolute():
-                continue
-            if not native or len(owners[name]) > 1:
+    for path, name, value in read:
+        if Path(value).is_absolute():
+            alike = all(other == value for _, owner, other in read if owner == name)
+            if not native or not alike:
                 why = (
                     "FMUs of one component carry one file"
                     if native
                     else "an .ssp file must not depend on files outside it; add --native, whose "
                     "FMUs carry it"
                 )
-                raise ParameterError(f"{part.name}.{text.name} = '{value}': {why}")
+                raise ParameterError(f"{path} = '{value}': {why}")
             files[name] = Path(value)
     parts = (
         replace(p, values={v: x for v, x in p.values.items() if f"{p.component}.{v}" not in files})

@@ -12,6 +12,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
+from herringbone.core import ResourceError
 from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.recording import Recording
@@ -86,8 +87,11 @@ def judged(result: Result, bond_frequency: float | None) -> Result:
     if len(result.data) < _FEWEST or result.outcome.unstable:
         return result
     even = result.uniform()
-    notes = (*result.info.notes, *misfits(even))
-    budget = error_budget(even, bond_frequency or 0.0)
+    try:
+        found, budget = misfits(even), error_budget(even, bond_frequency or 0.0)
+    except ResourceError as error:  # no reason to lose a run that has ended
+        found, budget = (f"no error budget: {error}",), ()
+    notes = (*result.info.notes, *found)
     return replace(result, info=replace(result.info, notes=notes), budget=budget)
 
 
