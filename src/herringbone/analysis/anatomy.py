@@ -37,6 +37,14 @@ def anatomy(system: System) -> Anatomy:
     return Anatomy({name: _with_role(info) for name, info in parts.items()}, tuple(joints))
 
 
+def value_at(system: System, path: str) -> float:
+    """Start value of a variable of a component in a system: set, or declared."""
+    name, variable = system.split(path)
+    part = system.part(name)
+    declared = COMPONENTS[str(part.component)].declaration.variable(variable)
+    return float(part.values.get(variable, declared.start))
+
+
 def _declared(part: PartSpec) -> PartInfo:
     component = COMPONENTS.get(part.component or part.stands_for or "")
     if component is None:

@@ -5,6 +5,7 @@ answered, and why, is told by `analysis.unanswered`.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -32,6 +33,28 @@ def column_of(
     names = (part,) if part else result.parts_with(role)[:1]
     found = (result.info.anatomy.column(name, quantity, place) for name in names)
     return next((column for column in found if column in result.data), None)
+
+
+def parameter(
+    result: Result, part: str, quantity: Quantity, place: str | None = None
+) -> float | None:
+    """Parameter of a part, SI unit; None if the part is not known to have it."""
+    column = result.info.anatomy.column(part, quantity, place)
+    return None if column is None else result.info.parameters.get(column)
+
+
+def of_both_gears(result: Result, part: str, quantity: Quantity) -> tuple[float, float] | None:
+    """As `parameter`, of pinion and wheel."""
+    pinion, wheel = (parameter(result, part, quantity, gear) for gear in GEARS)
+    return None if pinion is None or wheel is None else (pinion, wheel)
+
+
+def resource_file(result: Result, part: str, quantity: Quantity) -> Path | None:
+    """File that a part read for a quantity; None if that is not known."""
+    anatomy = result.info.anatomy
+    name = result.info.resources.get(anatomy.column(part, quantity) or "", "")
+    folder = anatomy.parts[part].resources
+    return folder / name if name and folder is not None else None
 
 
 def group(result: Result, name: str) -> list[str]:

@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 
+from herringbone.core.roles import SIDES
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.flank_load import axial_position
 from herringbone.plotting.style import HALF_STYLE, ShownFigure, legend, legend_beside, styled
 
 _MM, _UM, _MPA, _N_UM = 1e3, 1e6, 1e-6, 1e-6
-_SIDES = ("left", "right")
 _AROUND = 5.001
 """Torques whose transmission error is drawn, over the pair's or under it."""
 
@@ -62,7 +62,7 @@ def _flanks(figure: SubFigure, loaded: Loaded) -> None:
             axial[order], _MM * flank.path, _MPA * flank.pressure[:, order],
             cmap="viridis", vmin=0.0, vmax=_MPA * most, shading="gouraud", rasterized=True,
         )  # fmt: skip
-        name = f" {_SIDES[side]}" if len(loaded.flanks) == 2 else ""
+        name = f" {SIDES[side]}" if len(loaded.flanks) == 2 else ""
         largest = _MPA * flank.largest_pressure
         axes.set(
             title=f"Contact pressure{name}, at most {largest:.0f} MPa",
@@ -103,7 +103,7 @@ def _over_torque(axes: Axes, loaded: Loaded) -> None:
 def _halves(axes: Axes, loaded: Loaded) -> None:
     """Secant stiffness of each half over two mesh periods, at the torque."""
     phases = np.concatenate([loaded.pair.phases, loaded.pair.phases + 1.0])
-    for side, half in zip(_SIDES, loaded.pair.halves, strict=False):
+    for side, half in zip(SIDES, loaded.pair.halves, strict=False):
         label = f"{side}, {100.0 * np.mean(half.force) / _whole(loaded):.1f} % of the load"
         how = HALF_STYLE[f"mesh_{side}"]
         axes.plot(phases, _N_UM * np.tile(half.secant, 2), label=label, **how)

@@ -69,15 +69,14 @@ def _free_flanks(system: System) -> dict[str, list[str]]:
     known = anatomy(system)
     found: dict[str, list[str]] = {}
     for gear in known.with_role(Role.GEAR_PAIR):
-        parts = [gear, *(part for part, _ in known.joined(gear, PortKind.JOURNAL))]
-        paths = [known.column(p, Quantity.CARRYING_FLANK) for p in dict.fromkeys(parts)]
-        given = [system.part(p).values for p in dict.fromkeys(parts)]
-        named = any(
-            path and path[len(part) + 1 :] in values
-            for part, path, values in zip(dict.fromkeys(parts), paths, given, strict=True)
+        carriers = (part for part, _ in known.joined(gear, PortKind.JOURNAL))
+        own, *others = (
+            known.column(part, Quantity.CARRYING_FLANK) for part in dict.fromkeys([gear, *carriers])
         )
-        if paths[0] and not named:
-            found[gear] = [path for path in paths if path]
+        paths = [path for path in (own, *others) if path]
+        owners = (system.split(path) for path in paths)
+        if own and not any(name in system.part(part).values for part, name in owners):
+            found[gear] = paths
     return found
 
 

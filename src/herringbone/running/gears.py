@@ -17,7 +17,6 @@ from herringbone.gears.files.read_job import is_rexs, read_mounted_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import pair_values
 from herringbone.gears.table_cache import cached_table
-from herringbone.running.chosen_parts import part_for
 
 Gear = str | Path | GearJob
 """A gear file (TOML or REXS), or what it would give."""
@@ -28,17 +27,16 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
 
     Args:
         system: with what is set by name, which holds.
-        gears: file or job by path of the gear pair's part, or of a system around it; "": the
-            only one.
+        gears: file or job by path of the gear pair's part.
 
     Raises:
-        ParameterError: no such gear pair, or several; a pair that its component cannot be.
+        ParameterError: a foreign part, or a pair that its component cannot be.
         ResourceError: a file cannot be read.
     """
     notes: list[str] = []
-    for asked, gear in gears.items():
+    for name, gear in gears.items():
         option = f"--gear {gear}" if isinstance(gear, str | Path) else "gear"
-        part = part_for(system, Role.GEAR_PAIR, asked, option)
+        part = system.part(name).name
         if system.part(part).foreign:
             raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
         job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))

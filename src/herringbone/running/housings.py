@@ -10,32 +10,29 @@ from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.files import is_file, is_folder
 from herringbone.core.paths import cache_folder
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 from herringbone.housing.welded.build import build_housing
 from herringbone.housing.welded.design import read_design
-from herringbone.running.chosen_parts import part_for
 
 _FILES = {Quantity.MODES: MODES, Quantity.SHAPES: SHAPES}
 _FMU, _DIMENSIONS = ".fmu", ".toml"
 
 
 def split_housings(
-    system: System, housings: Mapping[str, str | Path]
+    housings: Mapping[str, str | Path],
 ) -> tuple[dict[str, Path], dict[str, Path]]:
     """Housings that are data, and those that are FMUs, by the path of their part.
 
     Raises:
-        ParameterError: there is no such housing, or there are several.
         ResourceError: a file or folder is not there, or none of these.
     """
     data: dict[str, Path] = {}
     fmus: dict[str, Path] = {}
-    for asked, given in housings.items():
+    for part, given in housings.items():
         file, option = Path(given), f"--housing {given}"
-        part = part_for(system, Role.HOUSING, asked, option)
         if not is_file(file) and not is_folder(file):
             raise ResourceError(f"{option}: there is no file or folder {file}")
         if file.suffix.lower() == _FMU:

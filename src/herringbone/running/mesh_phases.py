@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 
-from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
@@ -51,11 +51,9 @@ def _other_angles(system: System) -> Iterator[Values]:
             teeth = known.column(part.name, Quantity.NUMBER_OF_TEETH, GEARS[0])
             if teeth is None:
                 continue
-            name = teeth[len(part.name) + 1 :]
-            number = float(part.values.get(name, declared.variable(name).start))
+            further = 2.0 * math.pi / value_at(system, teeth) * k / _PHASES
             for state in declared.states:
                 if state.steady == "rotating":
-                    start = float(part.values.get(state.name, state.start))
-                    further = 2.0 * math.pi / number * k / _PHASES
-                    values[f"{part.name}.{state.name}"] = start + further
+                    path = f"{part.name}.{state.name}"
+                    values[path] = value_at(system, path) + further
         yield values

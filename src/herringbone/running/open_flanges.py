@@ -6,8 +6,7 @@ At such a pair T_pinion / r_b,pinion + T_wheel / r_b,wheel must vanish.
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from herringbone.analysis.anatomy import anatomy
-from herringbone.components.registry import COMPONENTS
+from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.core.roles import GEARS, PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System
 
@@ -69,9 +68,7 @@ def _open_pairs(system: System) -> Iterator[_Open]:
         ends = {(part.name, x) for x in (*torques, *ports)}
         if part.foreign or len(ports) != len(GEARS) or ends & joined or None in columns:
             continue
-        declared = COMPONENTS[str(part.component)].declaration
-        names = [str(column)[len(gear) + 1 :] for column in columns]
-        radii = [float(part.values.get(n, declared.variable(n).start)) for n in names]
+        radii = [value_at(system, str(column)) for column in columns]
         given = [part.values.get(torque) for torque in torques]
         yield _Open(
             [f"{gear}.{torque}" for torque in torques],

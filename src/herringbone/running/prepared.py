@@ -87,7 +87,7 @@ def prepared(
         raise ParameterError(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
         )
-    data, fmus = split_housings(structure, housings)
+    data, fmus = split_housings(housings)
     structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
     structure = with_housing_data(structure, data).with_values(chosen.values)
     structure, said = with_gears(structure, gears)

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.asked import group, signal
+from herringbone.analysis.asked import group, resource_file, signal
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.stability.recommendation import (
@@ -29,7 +29,7 @@ from herringbone.analysis.stability.recommendation import (
     separation_floor,
 )
 from herringbone.components.resources.stiffness_table import read_uncertainty
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.roles import SIDES, Quantity, Role
 from herringbone.cosim.algorithms import parse_algorithm
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import TIME, Result
@@ -62,15 +62,13 @@ def by_size(rows: Iterable[BudgetRow]) -> tuple[BudgetRow, ...]:
 
 
 def _tables(result: Result) -> Iterator[BudgetRow]:
-    anatomy = result.info.anatomy
     for gear in result.parts_with(Role.GEAR_PAIR):
         source = f"stiffness table of {gear}"
-        column = anatomy.column(gear, Quantity.STIFFNESS_TABLE)
-        name, folder = result.info.resources.get(column or "", ""), anatomy.parts[gear].resources
-        if not name or folder is None:
+        file = resource_file(result, gear, Quantity.STIFFNESS_TABLE)
+        if file is None:
             yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, "a part whose table is not known")
             continue
-        stated = read_uncertainty(folder / name, _mean_force(result, gear))
+        stated = read_uncertainty(file, _mean_force(result, gear))
         if stated is None:
             yield BudgetRow(source, _FORCE, None, Known.UNKNOWN, "the table states no uncertainty")
             continue
@@ -149,8 +147,7 @@ def _inner_steps(result: Result) -> Iterator[BudgetRow]:
 
 def _separates(result: Result, gear: str) -> bool:
     forces = (
-        signal(result, Role.GEAR_PAIR, Quantity.MESH_FORCE, side, part=gear)
-        for side in ("left", "right")
+        signal(result, Role.GEAR_PAIR, Quantity.MESH_FORCE, side, part=gear) for side in SIDES
     )
     return any(force is not None and not np.all(force != 0.0) for force in forces)
 

@@ -1,10 +1,10 @@
 """Motion of a housing's oscillators under the bearing forces that a run has recorded."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
@@ -38,17 +38,14 @@ def housing_of(result: Result, part: str = "") -> ModalHousing | None:
     Raises:
         ParameterError: there is no such housing.
     """
-    name, anatomy = the_housing(result, part), result.info.anatomy
-    texts = [anatomy.column(name, quantity) for quantity in (Quantity.MODES, Quantity.SHAPES)]
-    files = [result.info.resources.get(text or "", "") for text in texts]
-    folder = anatomy.parts[name].resources
-    if folder is None or not all(files):
+    name = the_housing(result, part)
+    modes, shapes = (resource_file(result, name, q) for q in (Quantity.MODES, Quantity.SHAPES))
+    if modes is None or shapes is None:
         return None
-    modes, shapes = (folder / file for file in files)
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None
-    return read_housing(Path(modes.parent))
+    return read_housing(modes.parent)
 
 
 def seat_forces(result: Result, part: str = "") -> np.ndarray:

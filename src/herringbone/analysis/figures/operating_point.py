@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.analysis.asked import shaft_torques, signal
+from herringbone.analysis.asked import parameter, shaft_torques, signal
 from herringbone.analysis.figures.spectra import mesh_frequency
 from herringbone.core.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
@@ -86,8 +86,7 @@ def run_mesh_frequency(
 
 
 def _teeth(result: Result, gear: str) -> float | None:
-    name = result.info.anatomy.column(gear, Quantity.NUMBER_OF_TEETH, "pinion")
-    return result.info.parameters.get(name or "")
+    return parameter(result, gear, Quantity.NUMBER_OF_TEETH, "pinion")
 
 
 @dataclass(frozen=True)

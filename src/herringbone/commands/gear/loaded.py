@@ -4,11 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
+from herringbone.core.roles import SIDES
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.flank_load import FlankLoad, axial_position
 
-SIDES = ("left", "right")
 _RPM = math.pi / 30.0
 
 

@@ -4,10 +4,9 @@ import math
 from pathlib import Path
 
 from herringbone.core import HerringboneError
+from herringbone.core.roles import SIDES
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-
-SIDES = ("left", "right")
 
 
 def table_text(stiffness: MeshStiffness) -> str:

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 
-from herringbone.analysis.asked import mesh_forces
-from herringbone.analysis.figures.misfits.parameters import value
+from herringbone.analysis.asked import mesh_forces, parameter
 from herringbone.core.roles import PortKind, Quantity
 from herringbone.result.result import TIME, Result
 
@@ -12,14 +11,14 @@ _NAMES = {1.0: "drive", -1.0: "coast"}
 
 def of_flank(result: Result, gear: str) -> Iterator[str]:
     """Lines on bearings with y along the other flank, and on the time that this one is loaded."""
-    flank = value(result, gear, Quantity.CARRYING_FLANK)
+    flank = parameter(result, gear, Quantity.CARRYING_FLANK)
     if flank is None:
         return
     carries = _sign(flank)
     name, opposite = _NAMES[carries], _NAMES[-carries]
     joined = (part for part, _ in result.info.anatomy.joined(gear, PortKind.JOURNAL))
     for part in dict.fromkeys(joined):
-        own = value(result, part, Quantity.CARRYING_FLANK)
+        own = parameter(result, part, Quantity.CARRYING_FLANK)
         if own is not None and _sign(own) != carries:
             yield (
                 f"{gear} has y along the line of action of its {name} flank ({flank:g}), {part} "

@@ -2,11 +2,10 @@
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.figures.misfits.parameters import both, value
+from herringbone.analysis.asked import of_both_gears, parameter, resource_file
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.core.roles import GEARS, PortKind, Quantity, Role
@@ -42,9 +41,8 @@ def of_housing(result: Result, gear: str) -> Iterator[str]:
 
 def _of_files(result: Result, part: str) -> Iterator[str]:
     """A line if frequencies and shapes are of different housings."""
-    columns = (result.info.anatomy.column(part, q) for q in (Quantity.MODES, Quantity.SHAPES))
-    files = [Path(result.info.resources.get(column or "", "")) for column in columns]
-    if len({file.parent for file in files}) > 1:
+    files = [resource_file(result, part, q) for q in (Quantity.MODES, Quantity.SHAPES)]
+    if len({file.parent for file in files if file}) > 1:
         yield (
             f"{part} has its modes of {files[0]} and its shapes of {files[1]}: of two housings; "
             "--housing takes the folder of one"
@@ -55,8 +53,8 @@ def _of_seats(
     result: Result, gear: str, bearing: str, part: str, housing: ModalHousing
 ) -> Iterator[str]:
     """Lines on the place of the wheel's seats, from those of the pinion."""
-    radii = both(result, gear, Quantity.BASE_RADIUS)
-    angle = value(result, bearing, Quantity.WORKING_PRESSURE_ANGLE)
+    radii = of_both_gears(result, gear, Quantity.BASE_RADIUS)
+    angle = parameter(result, bearing, Quantity.WORKING_PRESSURE_ANGLE)
     across = _across(housing)
     if across is None:
         return

@@ -1,36 +1,32 @@
 """The stiffness table: whose it is, and its load range against the forces of the run."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.asked import mesh_forces
+from herringbone.analysis.asked import mesh_forces, resource_file
 from herringbone.components.resources.flat_csv import read_header
 from herringbone.components.resources.stiffness_table import PAIR, read_stiffness_table
 from herringbone.core import ResourceError
-from herringbone.core.roles import Quantity
+from herringbone.core.roles import SIDES, Quantity
 from herringbone.result.result import Result
 
 
 def of_table(result: Result, gear: str) -> Iterator[str]:
     """Lines on the stiffness table of a gear pair."""
-    anatomy = result.info.anatomy
-    column = anatomy.column(gear, Quantity.STIFFNESS_TABLE)
-    folder, name = anatomy.parts[gear].resources, result.info.resources.get(column or "", "")
-    if not name or folder is None:
+    file = resource_file(result, gear, Quantity.STIFFNESS_TABLE)
+    if file is None:
         return
-    file = Path(folder) / name
     try:
         tables = read_stiffness_table(file)
     except ResourceError:  # it was read when the run began
         return
     if np.isnan(read_header(file, *PAIR)).any():
         yield (
-            f"{gear}: its stiffness table {name} does not tell of which pair it is, so that this "
+            f"{gear}: its stiffness table {file} does not tell of which pair it is, so that this "
             "was not tested; those that 'herringbone gear' writes do"
         )
-    for side, (loads, _) in zip(("left", "right"), tables, strict=True):
+    for side, (loads, _) in zip(SIDES, tables, strict=True):
         force = mesh_forces(result, gear).get(side)
         largest = float(result.data[force].abs().max()) if force in result.data else 0.0
         if largest > loads[-1]:
