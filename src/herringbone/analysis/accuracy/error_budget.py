@@ -23,9 +23,9 @@ from herringbone.analysis.asked import group, resource_file, signal
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.stability.recommendation import (
-    RULE_ERROR,
     SOURCE,
     contact_floor,
+    rule_error,
     separation_floor,
 )
 from herringbone.components.resources.stiffness_table import read_uncertainty
@@ -127,7 +127,7 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
         how = "no rule for this algorithm and system; --reference measures"
         return BudgetRow("coupling", _FORCE, None, Known.UNKNOWN, how)
     step = result.info.communication_step * bond_frequency / rule
-    value = RULE_ERROR * step**algorithm.convergence_order
+    value = rule_error(algorithm, step)
     return BudgetRow("coupling", _FORCE, value, Known.ESTIMATED, f"{SOURCE}; --reference measures")
 
 

@@ -71,7 +71,7 @@ class FixedPoint(Algorithm):
     @property
     def accurate_step(self) -> float | None:
         """Measured for quadratic and cubic nodes with few sweeps."""
-        known = {(2, 2): 0.465, (3, 2): 0.465, (3, 3): 0.929}
+        known = {(2, 2): 0.443, (3, 2): 0.454, (3, 3): 0.899}
         return known.get((self.degree, self.sweeps))
 
     def prepare(self, network: Network) -> PreparedNodes:

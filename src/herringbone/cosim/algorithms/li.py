@@ -78,7 +78,7 @@ class LI(Algorithm):
     @property
     def accurate_step(self) -> float | None:
         """Measured for one correction with a fixed step."""
-        known = {2: 0.824, 3: 1.516, 4: 2.161}
+        known = {2: 0.713, 3: 1.335, 4: 1.759}
         return known.get(self.degree) if self.iterations == 1 and not self.adaptive else None
 
     @property

@@ -52,7 +52,7 @@ class Predict(Algorithm):
     @property
     def accurate_step(self) -> float:
         """Measured, as in the base."""
-        return 0.159
+        return 0.153
 
     def prepare(self, network: Network) -> "PreparedPrediction":
         """Lay out a network for this algorithm.
