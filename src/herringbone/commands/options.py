@@ -41,8 +41,8 @@ def add_start_values(sub: argparse.ArgumentParser) -> None:
     """Declare start values, gears and housings; see `start_values`, `files_of_parts`."""
     sub.add_argument(
         "--gear", action="append", default=[], metavar="[PATH=]FILE",
-        help="gear file (.toml, .rexs) of the gear pair, or of the one at PATH; sets all parts "
-        "that belong to it",
+        help="gear file (.toml; .rexs, of several stages as FILE#STAGE) of the gear pair, or of "
+        "the one at PATH; sets all parts that belong to it",
     )  # fmt: skip
     sub.add_argument(
         "--housing", action="append", default=[], metavar="[PATH=]DATA",

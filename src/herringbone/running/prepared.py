@@ -101,12 +101,24 @@ def prepared(
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:
-    """What is given for parts of a role, by their whole paths; a later level holds."""
-    return {
-        part_for(system, role, path, _called(role, given)): given
-        for level in levels
-        for path, given in level.items()
-    }
+    """What is given for parts of a role, by their whole paths; a later level holds.
+
+    Raises:
+        ParameterError: see `part_for`; or one level gives a part twice, by different paths.
+    """
+    found: dict[str, Any] = {}
+    for level in levels:
+        own: dict[str, Any] = {}
+        for path, given in level.items():
+            part = part_for(system, role, path, _called(role, given))
+            if part in own:
+                raise ParameterError(
+                    f"{_called(role, given)}: {part} has {_called(role, own[part])} already; "
+                    "give one of them"
+                )
+            own[part] = given
+        found |= own
+    return found
 
 
 def _called(role: Role, given: object) -> str:

@@ -10,6 +10,7 @@ from support.gears import THESIS, gear_pair
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.paths import component_folder
 from herringbone.gears.files.gear_file import read_gear_file
+from herringbone.gears.files.read_job import read_mounted_job
 from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.job import GearJob
 
@@ -180,11 +181,16 @@ def test_stage_is_chosen(tmp_path):
     second = '<component id="20" name="Second stage" type="cylindrical_stage"/></components>'
     file = tmp_path / "two.rexs"
     file.write_text(text.replace("</components>", second), encoding="utf-8")
-    with pytest.raises(HerringboneError, match=r"choose one of 10 \(First.*20 \(Second stage\)"):
+    names = r"10 \(First stage\), 20 \(Second stage\)"
+    with pytest.raises(HerringboneError, match=rf"{names}; choose one .*{file.name}#10 "):
         read_rexs(file)
     assert read_rexs(file, stage="First stage") == read_rexs(file, stage="10")
     with pytest.raises(HerringboneError, match="stage 'Third' is none of"):
         read_rexs(file, stage="Third")
+    chosen = read_mounted_job(file.with_name(f"{file.name}#10"))
+    assert chosen.pair == read_rexs(file, stage="10", halves=2)
+    with pytest.raises(HerringboneError, match="--stage is of REXS files only"):
+        read_mounted_job(tmp_path / "own.toml#10")
 
 
 def test_other_xml(tmp_path):

@@ -65,6 +65,10 @@ def test_without_a_path_the_candidates_are_named(two, file, tmp_path, capsys):
     twice = ["--gear", f"first={file}", "--gear", f"first={file}"]
     assert main([*arguments, *twice]) == 2
     assert "it is given twice for 'first'" in capsys.readouterr().err
+    twice = ["--gear", f"first={file}", "--gear", f"first.gear_mesh={file}"]
+    assert main([*arguments, *twice]) == 2
+    said = capsys.readouterr().err
+    assert f"gear pair {file}: first.gear_mesh has gear pair {file} already; give one" in said
 
 
 def test_a_job_is_not_written_out_in_messages(two, file):

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from herringbone.core import ParameterError
+from herringbone.core.files import is_file
 from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.files.rexs import STAGE_MARK, read_rexs
 from herringbone.gears.job import GearJob
 
 _READERS = (".toml", ".rexs", ".xml")
@@ -42,6 +43,12 @@ def is_rexs(file: Path) -> bool:
 def read_mounted_job(file: Path) -> GearJob:
     """As `read_job`, of a pair that is mounted in a gearbox: a REXS stage stands for both halves.
 
-    A stage of REXS has one face width, here that of one half.
+    A stage of REXS has one face width, here that of one half. Of a file of several stages one is
+    chosen by its id or name behind the file's: unit.rexs#2.
     """
-    return read_job(file, halves=2) if is_rexs(file) else read_job(file)
+    if not is_rexs(file):
+        return read_job(file)
+    name, chosen, stage = file.name.rpartition(STAGE_MARK)
+    if chosen and name and not is_file(file):
+        return read_job(file.with_name(name), stage=stage, halves=2)
+    return read_job(file, halves=2)

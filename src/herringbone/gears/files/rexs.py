@@ -26,6 +26,8 @@ from herringbone.gears.files.quantity import in_si
 from herringbone.gears.geometry.gear_pair import GearPair
 
 _STAGE = "cylindrical_stage"
+STAGE_MARK = "#"
+"""Between the file and the id or name of a stage, where one text names both."""
 _GEAR = "cylindrical_gear"
 _SAME = 1e-6
 
@@ -122,7 +124,10 @@ def _stage(model: _Model, wanted: str | None) -> str:
         raise ResourceError(f"{model.file}: it has no {_STAGE}")
     if wanted is None:
         if len(stages) > 1:
-            raise ResourceError(f"{model.file}: it has several stages; choose one of {names}")
+            raise ResourceError(
+                f"{model.file}: it has several stages, {names}; choose one by --stage, or as "
+                f"{model.file}{STAGE_MARK}{next(iter(stages))} where a gearbox takes the file"
+            )
         return next(iter(stages))
     found = [i for i, name in stages.items() if wanted in {i, name}]
     if len(found) != 1:

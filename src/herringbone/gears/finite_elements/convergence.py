@@ -9,7 +9,7 @@ computed is kept in the cache. The result stands in `finite_elements.compliance`
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -58,6 +58,22 @@ def difference(found: MeshStiffness, finer: MeshStiffness) -> np.ndarray:
     return np.column_stack([mean, ours[:, :4] / theirs[:, :4] - 1.0, above])
 
 
+def finer_meshes(
+    pair: GearPair, *, whole: bool = False
+) -> Iterator[tuple[str, FiniteElementMesh, int]]:
+    """Name, mesh and phases of what the default mesh is compared with; `whole`: see the module."""
+    usual = FiniteElementMesh(pair)
+    layers = usual.teeth[1].face.size - 1
+    yield "twice the layers", replace(usual, resolution=Resolution(layers=2 * layers)), PHASES
+    yield "twice the phases", usual, 2 * PHASES
+    for factor in (2, 4):
+        points = factor * SLICES
+        yield f"{points} points across the face", replace(usual, slices=points), PHASES
+    if whole:
+        mesh = replace(usual, resolution=doubled(usual.resolution, layers))
+        yield "twice the elements everywhere", mesh, PHASES
+
+
 def convergence_table(pair: GearPair, loads: Sequence[float], *, whole: bool = False) -> str:
     """The comparison as text.
 
@@ -66,20 +82,9 @@ def convergence_table(pair: GearPair, loads: Sequence[float], *, whole: bool = F
         loads: normal forces of one half [N].
         whole: with twice the elements in all directions.
     """
-    usual = FiniteElementMesh(pair)
-    found = solved(usual, loads)
-    layers = usual.teeth[1].face.size - 1
-    finer = {
-        "twice the layers": (replace(usual, resolution=Resolution(layers=2 * layers)), PHASES),
-        "twice the phases": (usual, 2 * PHASES),
-        f"{2 * SLICES} points across the face": (replace(usual, slices=2 * SLICES), PHASES),
-        f"{4 * SLICES} points across the face": (replace(usual, slices=4 * SLICES), PHASES),
-    }
-    if whole:
-        mesh = replace(usual, resolution=doubled(usual.resolution, layers))
-        finer["twice the elements everywhere"] = (mesh, PHASES)
+    found = solved(FiniteElementMesh(pair), loads)
     rows = [f"{'against':30} {'load N':>8} {'mean %':>8} {'H1 to H4 %':^31} {'above H10 %':>12}"]
-    for name, (mesh, phases) in finer.items():
+    for name, mesh, phases in finer_meshes(pair, whole=whole):
         for load, row in zip(loads, difference(found, solved(mesh, loads, phases)), strict=True):
             mean, *harmonics, above = 100.0 * row
             middle = " ".join(f"{value:7.2f}" for value in harmonics)
