@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 import herringbone
 from herringbone.commands import bench as bench_command
 from herringbone.commands import build as build_command
+from herringbone.commands import check as check_command
 from herringbone.commands import export as export_command
 from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
@@ -30,7 +31,6 @@ from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
     OutcomeKind,
-    ParameterError,
     one_line,
 )
 
@@ -75,10 +75,8 @@ def _parser() -> argparse.ArgumentParser:
     sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
     sub.add_argument("name", nargs="?", help="component whose variables are shown")
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
-    sub = add("check", _check, "check an FMU: file, description, a step, state, reset")
-    sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
-    sub.add_argument("--as", dest="role", choices=["housing"], help="also test what it must do")
-    sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
+    sub = add("check", check_command.run, "check an FMU: is it sound, and what is it")
+    check_command.add_options(sub)
     run_command.add_options(add("run", _run, "run a system"))
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("stability", _stability, "predict the stable steps of algorithms")
@@ -132,24 +130,6 @@ def _build(options: argparse.Namespace) -> int:
     for line in build_command.build(options):
         show(line)
     return 0
-
-
-def _check(options: argparse.Namespace) -> int:
-    if options.against and not options.role:
-        raise ParameterError("--against belongs to the test of a housing; add --as housing")
-    if options.role:
-        from herringbone.commands.housing.check import check_command  # noqa: PLC0415 (numba)
-
-        return check_command(options.fmu, options.against)
-    from herringbone.fmi.check import check_fmu  # noqa: PLC0415
-
-    problems = check_fmu(options.fmu)
-    for problem in problems:
-        show(problem)
-    show(
-        f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
-    )
-    return 1 if problems else 0
 
 
 def _chart(options: argparse.Namespace) -> int:

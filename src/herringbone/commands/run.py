@@ -48,6 +48,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="FMU in the place of an instance; may be repeated",
     )  # fmt: skip
     add_start_values(sub)
+    sub.add_argument(
+        "--no-probe", action="store_true",
+        help="take foreign FMUs by what they declare, without trial steps on further instances",
+    )  # fmt: skip
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
@@ -81,6 +85,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             gear=files.gear,
             housing=files.housing,
             slow=_multiples(options.slow),
+            probe=not options.no_probe,
             reference=options.reference,
             progress=bar.show,
             recorded=report.write,

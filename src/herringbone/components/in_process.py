@@ -86,6 +86,8 @@ class InProcessPart:
         self.instance = instance
         self.name = instance.name
         self.variables = part_variables(instance.component.name)
+        self.has_states: bool | None = None
+        self.once = False
         self._start_time: float | None = None
         self._stale = False
         self._states: list[np.ndarray] = []

@@ -64,10 +64,20 @@ class Addresses(NamedTuple):
 
 
 class Part(Protocol):
-    """A participant of a co-simulation, instantiated."""
+    """A participant of a co-simulation, instantiated.
+
+    Attributes:
+        name: instance name.
+        variables: by name.
+        has_states: whether outputs depend on what inputs were before; None if only the declared
+            dependencies tell, by which a part that passes inputs to outputs has none.
+        once: True if there can be no second instance.
+    """
 
     name: str
     variables: Mapping[str, PartVariable]
+    has_states: bool | None
+    once: bool
 
     @property
     def addresses(self) -> Addresses:

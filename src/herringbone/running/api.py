@@ -14,6 +14,7 @@ from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
     AUTO,
+    LI,
     Algorithm,
     choose_algorithm,
     parse_algorithm,
@@ -27,8 +28,9 @@ from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
+from herringbone.running.foreign_parts import understood
 from herringbone.running.gears import Gear
-from herringbone.running.loading import open_parts
+from herringbone.running.loading import instances, open_parts
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress, told
 from herringbone.running.run_result import compared, decimated, judged, make_result
@@ -54,6 +56,7 @@ def run(
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: str | Path | Mapping[str, str | Path] | None = None,
+    probe: bool = True,
     reference: bool = False,
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
@@ -83,6 +86,8 @@ def run(
             belong to it; of several pairs: by path.
         housing: folder of modal data, dimensions of a welded housing (TOML) or FMU; of several
             housings: by path.
+        probe: find out by trial steps what foreign FMUs are, see `running.foreign_parts`; False:
+            they are taken by what they declare.
         reference: also solve the monolithic twin, and report the errors against it.
         progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
@@ -104,7 +109,10 @@ def run(
         refuse_foreign_parts(structure)
     fmu, slower = choose_kind(fmu)
     lines = [*notes, *slower]
-    with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as parts:
+    with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as opened:
+        trial = step or (coupling or LI()).start_step
+        parts, said = understood(structure, opened, instances, trial) if probe else (opened, [])
+        lines += said
         if coupling is None:
             coupling, why = _chosen_for(parts, tolerance)
             lines.append(why)

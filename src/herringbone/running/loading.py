@@ -1,6 +1,6 @@
 """From names to what a run takes: the system, its scene, its parts."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +13,7 @@ from herringbone.core.files import as_texts, beside, is_file, same_folder
 from herringbone.core.part import Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
-from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.cosim.fmu.opening import many_of, open_fmu
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
@@ -119,13 +119,37 @@ def open_parts(system: System, fmu: str) -> list[Part]:
     try:
         for spec in system.parts:
             parts.append(_open_part(spec, files))
-            for name, value in spec.values.items():
-                parts[-1].set(name, value)
+            _set_values(parts[-1], spec)
     except HerringboneError:
         for part in parts:
             part.close()
         raise
     return parts
+
+
+@contextmanager
+def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
+    """A function that makes instances of a foreign part, with its start values.
+
+    It raises HerringboneError if the part cannot be instantiated, or a value is wrong.
+    """
+    with many_of(spec.name, Path(str(spec.fmu))) as make:
+
+        def with_values() -> Part:
+            part = make()
+            try:
+                _set_values(part, spec)
+            except HerringboneError:
+                part.close()
+                raise
+            return part
+
+        yield with_values
+
+
+def _set_values(part: Part, spec: PartSpec) -> None:
+    for name, value in spec.values.items():
+        part.set(name, value)
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from numba import carray, from_dtype, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from herringbone.cosim.loops.calls import c_call, state_call
+from herringbone.cosim.loops.calls import at_address, c_call, state_call
 from herringbone.kernels.fmi_calls import DISCARD, OK
 from herringbone.kernels.jit import allocating, c_function
 
@@ -67,16 +67,6 @@ _ENDED = 256  # added to the status of a step
 _INT32, _DOUBLE, _BOOLEAN = ir.IntType(32), ir.DoubleType(), ir.IntType(8)
 
 
-@intrinsic
-def _at(typing_context, address):  # noqa: ANN001, ANN202
-    """Pointer to what stands at an address."""
-
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
-        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
-
-    return types.voidptr(types.int64), generate
-
-
 _exchange = c_call("address", "address", "count", "address", "count")
 """fmi3SetFloat64 or fmi3GetFloat64."""
 _derivatives = c_call("address", "address", "count", "address", "address", "count")
@@ -121,10 +111,10 @@ def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, 
     """Variables of these elements and their last values, to the current call; how many of each."""
     part = memory[0]
     part.calls += 1
-    element = carray(_at(part.elements), part.count, ELEMENT)
-    value = carray(_at(part.values), part.count, np.float64)
-    reference = carray(_at(part.references), part.count, np.uint32)
-    packed = carray(_at(part.packed), part.count, np.float64)
+    element = carray(at_address(part.elements), part.count, ELEMENT)
+    value = carray(at_address(part.values), part.count, np.float64)
+    reference = carray(at_address(part.references), part.count, np.uint32)
+    packed = carray(at_address(part.packed), part.count, np.float64)
     variables, total = 0, 0
     for i in range(count):
         first = element[references[i]].first
@@ -142,9 +132,9 @@ def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, 
 def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
     """Values of the current call, to the elements of the variables in the order of `_pack`."""
     part = memory[0]
-    element = carray(_at(part.elements), part.count, ELEMENT)
-    value = carray(_at(part.values), part.count, np.float64)
-    packed = carray(_at(part.packed), part.count, np.float64)
+    element = carray(at_address(part.elements), part.count, ELEMENT)
+    value = carray(at_address(part.values), part.count, np.float64)
+    packed = carray(at_address(part.packed), part.count, np.float64)
     total = 0
     for i in range(count):
         first = element[references[i]].first
@@ -173,7 +163,7 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
     given = carray(values, _UNKNOWN_SIZE)
     part = whole[0]
-    last = carray(_at(part.values), part.count, np.float64)
+    last = carray(at_address(part.values), part.count, np.float64)
     for i in range(count):
         last[reference[i]] = given[i]
     variables, total = _pack(whole, reference, count)
@@ -189,7 +179,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     wanted = carray(values, _UNKNOWN_SIZE)
     part = whole[0]
     status = _update(whole, reference, count)
-    last = carray(_at(part.values), part.count, np.float64)
+    last = carray(at_address(part.values), part.count, np.float64)
     for i in range(count):
         wanted[i] = last[reference[i]]
     return status
@@ -220,7 +210,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     part = whole[0]
     status = state_call(part.set_state, part.instance, state)
     if status == OK and part.array_count > 0:
-        arrays = carray(_at(part.arrays), part.array_count, np.uint32)
+        arrays = carray(at_address(part.arrays), part.array_count, np.uint32)
         return _update(whole, arrays, part.array_count)
     return status
 
@@ -237,8 +227,8 @@ def get_derivatives(memory, references, count, orders, values):  # noqa: ANN001,
     """fmi2GetRealOutputDerivatives, of scalars; the others' number of values is refused."""
     part = carray(memory, 1)[0]
     given = carray(references, _UNKNOWN_SIZE)
-    element = carray(_at(part.elements), part.count, ELEMENT)
-    reference = carray(_at(part.references), part.count, np.uint32)
+    element = carray(at_address(part.elements), part.count, ELEMENT)
+    reference = carray(at_address(part.references), part.count, np.uint32)
     for i in range(count):
         reference[i] = element[given[i]].reference
     return _derivatives(

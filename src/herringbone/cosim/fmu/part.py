@@ -26,18 +26,28 @@ class FmuPart(ABC):
         name: instance name.
         file: the FMU, of the class's FMI version.
         model: its model description, if it has been read.
+        folder: where it is extracted already, and stays; None: to a folder of its own.
 
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
 
-    def __init__(self, name: str, file: Path, model: ModelDescription | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        file: Path,
+        model: ModelDescription | None = None,
+        folder: Path | None = None,
+    ) -> None:
         self.name, self.file = name, file
+        self.has_states: bool | None = None
         self._running = False
         self.model = model or read_fmu(file)
         self.variables: Mapping[str, PartVariable] = read_variables(self.model)
+        self.once = bool(self.model.coSimulation.canBeInstantiatedOnlyOncePerProcess)
         self._log = FmuLog()
-        self._folder = extract_fmu(file)
+        self._folder = folder or extract_fmu(file)
+        self._owned = folder is None
         try:
             self.slave = self._load(
                 guid=self.model.guid,
@@ -47,7 +57,7 @@ class FmuPart(ABC):
             )
             self._instantiate()
         except Exception as error:  # fmpy raises bare Exception; loading raises OSError
-            shutil.rmtree(self._folder, ignore_errors=True)
+            self._remove_files()
             said = "; ".join([str(error), *self.messages()])
             raise FmuError(f"{name}: {file} does not instantiate: {said}") from error
 
@@ -154,4 +164,8 @@ class FmuPart(ABC):
                 self.slave.terminate()
         if not self._log.fatal:
             self.slave.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._remove_files()
+
+    def _remove_files(self) -> None:
+        if self._owned:
+            shutil.rmtree(self._folder, ignore_errors=True)

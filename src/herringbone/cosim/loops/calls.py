@@ -42,6 +42,16 @@ def c_call(*kinds: str) -> Callable:
     return call
 
 
+@intrinsic
+def at_address(typing_context, address):  # noqa: ANN001, ANN201
+    """Pointer to what stands at an address."""
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.int64), generate
+
+
 _exchange = c_call("address", "address", "count", "address")
 _derivatives = c_call("address", "address", "count", "address", "address")
 _step = c_call("address", "real", "real", "flag")

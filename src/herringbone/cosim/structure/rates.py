@@ -19,10 +19,11 @@ def rate_of(part: Part, name: str) -> str | None:
     None if there is none, or none is known.
     """
     declared = part.variables[name].rate
-    return _named_rate(name, part.variables) if declared is None else declared or None
+    return named_rate(name, part.variables) if declared is None else declared or None
 
 
-def _named_rate(name: str, names: Collection[str]) -> str | None:
+def named_rate(name: str, names: Collection[str]) -> str | None:
+    """The rate of an output by the names of all: `x.s_y`, `x.v_y`; None if there is none."""
     port, dot, last = name.rpartition(".")
     quantity, bar, axis = last.partition("_")
     rate = f"{port}{dot}{_RATES.get(quantity)}{bar}{axis}"

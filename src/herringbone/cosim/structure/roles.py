@@ -36,15 +36,16 @@ def find_roles(connections: Sequence[Connection], parts: Sequence[Part]) -> Role
 
     A circle of parts that pass inputs directly to outputs is cut where they pass forces: such a
     part is a body. A part whose dependencies are not declared counts as an element unless that
-    makes a circle.
+    makes a circle. One that is known to have states is a body, whatever it passes.
 
     Raises:
         StructureError: a circle in which no part passes forces alone.
     """
     fed = {i: {c.input for c in connections if c.target == i} for i in range(len(parts))}
     passed, undeclared, moving = _passed_inputs(connections, parts, fed)
-    elements = {part for part, inputs in passed.items() if inputs}
-    feedthrough: set[int] = set()
+    moved = {p for p, inputs in passed.items() if inputs and parts[p].has_states}
+    elements = {p for p, inputs in passed.items() if inputs} - moved
+    feedthrough = {p for p in moved if any(map(motion_of_force, passed[p]))}
     while circle := _circle(elements, passed, connections):
         cut = {p for p in circle if all(map(motion_of_force, passed[p]))}
         if not cut:

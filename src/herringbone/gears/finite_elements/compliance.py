@@ -30,6 +30,15 @@ the tenth, of the mean), see `finite_elements.convergence`:
                                                200 N m     0.43   0.34  0.53  0.00  0.57     0.000
                                               2000 N m     0.47   0.40  0.71  0.15  1.62     0.000
 
+What that changes in the bearing forces of the test rig (rms of the alternating part, 200 N m; see
+`herringbone.benchmarks.table_refinement`):
+
+    default against                    800     1000     1200     1500 r/min
+    46 layers                         0.16     0.09     0.10     0.27 %
+    128 phases                        0.02     0.01     0.01     0.02 %
+    240 points across the face       -0.06     0.05     0.02    -0.13 %
+    480 points across the face       -0.06     0.04     0.01    -0.14 %
+
 With half of the layers the mean moves by twice as much (0.43 %, then 0.24 %): the layers' error is
 of first order, that of the whole mesh about 1.3 %.  Harmonics above the tenth are there (0.07 %, at
 the eleventh): a line without corner contact enters at once.

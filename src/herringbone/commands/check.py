@@ -1,0 +1,66 @@
+"""The command `check`: whether an FMU is sound, and what it is in a coupling."""
+
+import argparse
+from pathlib import Path
+
+from herringbone.commands.output import show
+from herringbone.core import FmuError, ParameterError
+
+_STEP = 1e-4
+_ROLES = ["housing"]
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
+    sub.add_argument("--as", dest="role", choices=_ROLES, help="also test what it must do")
+    sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
+    sub.add_argument(
+        "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show problems of an FMU and its signature; 1 if there are problems.
+
+    Raises:
+        HerringboneError: the file cannot be used, or an option is wrong.
+    """
+    if options.against and not options.role:
+        raise ParameterError("--against belongs to the test of a housing; add --as housing")
+    if options.step is not None and not options.step > 0.0:
+        raise ParameterError(f"--step {options.step:g}: it must be positive, in s")
+    if options.role:
+        from herringbone.commands.housing.check import check_command  # noqa: PLC0415 (numba)
+
+        return check_command(options.fmu, options.against)
+    from herringbone.fmi.check import check_fmu  # noqa: PLC0415
+
+    problems = check_fmu(options.fmu)
+    for problem in problems:
+        show(problem)
+    show(
+        f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
+    )
+    for line in _signature(options.fmu, options.step):
+        show(f"  {line}")
+    return 1 if problems else 0
+
+
+def _signature(fmu: Path, step: float | None) -> list[str]:
+    """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
+    from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
+    from herringbone.cosim.signature.text import described  # noqa: PLC0415
+    from herringbone.running.foreign_parts import signature_of  # noqa: PLC0415
+
+    try:
+        with many_of(fmu.stem, fmu) as make:
+            part = make()
+            experiment = part.model.defaultExperiment
+            own = float(experiment.stepSize) if experiment and experiment.stepSize else _STEP
+            try:
+                return described(signature_of(part, make, own if step is None else step))
+            finally:
+                part.close()
+    except FmuError:
+        return []

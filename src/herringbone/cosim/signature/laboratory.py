@@ -1,0 +1,182 @@
+"""Where trials begin: the start state of a part, again and again.
+
+A state that is restored is trusted only after steps from it gave equal bits twice. Otherwise every
+trial has a new instance.
+"""
+
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from herringbone.core import FmuError
+from herringbone.core.part import Part
+from herringbone.cosim.signature.trial import Refused, Trial
+
+_TESTED_STEPS = 3
+
+
+class Laboratory:
+    """Trials of a part at its start.
+
+    Args:
+        make: makes an instance with its start values set.
+        inputs: names of the real inputs that may be changed.
+        outputs: names of the real outputs.
+        start: (n,) values of the inputs at the start.
+        step: of the trials [s].
+        start_time: of the experiment [s].
+
+    Attributes:
+        restores: True if saving and restoring gives equal bits; False if not, None if the part does
+            not offer it.
+        repeats: True if two instances give equal bits.
+        why: what is wrong with either, "" if nothing.
+    """
+
+    def __init__(
+        self,
+        make: Callable[[], Part],
+        inputs: Sequence[str],
+        outputs: Sequence[str],
+        start: np.ndarray,
+        step: float,
+        start_time: float = 0.0,
+    ) -> None:
+        self.inputs, self.outputs, self.start = tuple(inputs), tuple(outputs), np.array(start)
+        self.step, self.start_time = step, start_time
+        self._make = make
+        self._trial: Trial | None = None
+        self._handle: int | None = None
+        self._rest: dict[float, np.ndarray] = {}
+        self.restores: bool | None = None
+        self.repeats = True
+        self.why = ""
+
+    def __enter__(self) -> Self:
+        """Make the first instance, and test whether it repeats.
+
+        Raises:
+            FmuError: it does not instantiate or initialise, or refuses the step.
+        """
+        try:
+            self._test()
+        except BaseException:
+            self._close()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._close()
+
+    def at_start(self) -> Trial:
+        """The part at its start, with its start inputs."""
+        if self._trial is None or self._handle is None:
+            self._close()
+            self._trial = self._instance()
+        else:
+            self._trial.restore(self._handle)
+        self._trial.set(self.start)
+        return self._trial
+
+    def run(self, inputs: Sequence[np.ndarray], h: float) -> np.ndarray:
+        """(steps + 1, m) outputs at the start and after each step of h [s].
+
+        Args:
+            inputs: (n,) values held in each step.
+            h: step [s].
+
+        Raises:
+            Refused: the part does.
+        """
+        try:
+            trial = self.at_start()
+            found = [trial.values()]
+            for values in inputs:
+                trial.set(values)
+                trial.step(h)
+                found.append(trial.values())
+        except Refused:
+            self._close()  # after a refused step an FMU must not be used on
+            raise
+        return np.array(found)
+
+    def at_rest(self, h: float) -> np.ndarray:
+        """(m,) outputs after one step of h [s] on the start inputs; kept. Raises Refused."""
+        if h not in self._rest:
+            self._rest[h] = self.run([self.start], h)[-1]
+        return self._rest[h]
+
+    def _instance(self) -> Trial:
+        stop = self.start_time + 1e6 * self.step
+        return Trial(self._make(), self.inputs, self.outputs, self.start_time, stop)
+
+    def _steps(self, trial: Trial) -> np.ndarray:
+        found = []
+        for number in range(_TESTED_STEPS):
+            trial.set(self.start + self._stir(number))
+            trial.step(self.step)
+            found.append(trial.values())
+        return np.array(found)
+
+    def _stir(self, number: int) -> np.ndarray:
+        """Small changes of all inputs, so that what a state forgets shows."""
+        return 1e-6 * (number + 1.0) * np.maximum(1e-3, np.abs(self.start))
+
+    def _test(self) -> None:
+        self._trial = self._instance()
+        saved = self._saved()
+        first = self._steps(self._trial)
+        if saved is not None:
+            try:
+                self._trial.restore(saved)
+                again = self._steps(self._trial)
+                self._trial.restore(saved)
+                self.restores = bool(np.array_equal(first, again))
+                self.why = "" if self.restores else self._differs(first, again, "after a restore")
+            except Refused as error:
+                self.restores, self.why = False, str(error)
+        if not self.restores:
+            self._compare_instances(first)
+        elif saved is not None:
+            self._handle = saved
+
+    def _saved(self) -> int | None:
+        assert self._trial is not None
+        if not self._trial.can_restore:
+            return None
+        try:
+            return self._trial.save()
+        except Refused as error:
+            self.restores, self.why = False, str(error)
+            return None
+
+    def _compare_instances(self, first: np.ndarray) -> None:
+        self._close()
+        try:
+            self._trial = self._instance()
+        except FmuError as error:
+            raise FmuError(f"no second instance for trials: {error}") from error
+        again = self._steps(self._trial)
+        self.repeats = bool(np.array_equal(first, again))
+        if not self.repeats:
+            self.why = self._differs(first, again, "in a second instance")
+
+    def _differs(self, first: np.ndarray, again: np.ndarray, where: str) -> str:
+        column = int(np.argmax(np.abs(first - again).max(axis=0)))
+        row = int(np.argmax(np.abs(first - again)[:, column]))
+        return (
+            f"{self.outputs[column]} is {again[row, column]:.17g} {where}, "
+            f"{first[row, column]:.17g} before"
+        )
+
+    def _close(self) -> None:
+        if self._trial is not None:
+            self._trial.close()
+        self._trial = self._handle = None

@@ -1,0 +1,71 @@
+"""Memory and delay of a part: what a pulse at an input leaves behind.
+
+An input is changed during one step, and what comes out is compared with the run without the change.
+Outputs that differ after the pulse has gone remember it. An output that differs only in a later
+step than the pulse's, by the same number of steps when they are half as long, has a delay of steps;
+one that differs after the same time has a delay of its own, which is a state.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.cosim.signature.laboratory import Laboratory
+from herringbone.cosim.signature.signature import Answer
+
+_STEPS = 8
+_LONG = 1024
+"""Steps in which an input that seems to do nothing may still come out."""
+_NOTHING = 1e-9
+"""Differences over the largest one that are rounding."""
+_ROUNDING = 1e3 * float(np.finfo(float).eps)
+
+
+class Pulses(NamedTuple):
+    """Answers to pulses.
+
+    Attributes:
+        first: (m, n) change of the output over that of the input, at the end of the pulse's step.
+        memory: of the part.
+        delay: (m, n) see `Signature`.
+    """
+
+    first: np.ndarray
+    memory: Answer
+    delay: np.ndarray
+
+
+def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
+    """Answers to a pulse at every input; raises Refused."""
+    m, n = len(lab.outputs), len(lab.inputs)
+    first, delay = np.zeros((m, n)), np.full((m, n), -1)
+    remembers = False
+    for number in range(n):
+        apart = _differences(lab, number, float(changes[number]), lab.step, _STEPS)
+        if not apart.any():
+            apart = _differences(lab, number, float(changes[number]), lab.step, _LONG)
+        seen = apart != 0.0
+        first[:, number] = apart[0] / changes[number]
+        reached = seen.any(axis=0)
+        begins = np.argmax(seen, axis=0)
+        delay[:, number] = np.where(reached, begins, -1)
+        remembers = remembers or bool(seen[1:].any())
+        late = reached & (begins > 0)
+        if late.any():
+            steps = 2 * len(apart)
+            half = _differences(lab, number, float(changes[number]), 0.5 * lab.step, steps) != 0.0
+            of_steps = np.argmax(half, axis=0) == begins
+            delay[late & ~of_steps, number] = 0
+    return Pulses(first, Answer.YES if remembers else Answer.NO, delay)
+
+
+def _differences(lab: Laboratory, number: int, change: float, h: float, steps: int) -> np.ndarray:
+    """(steps, m) what a pulse in the first step changes; what is rounding is 0."""
+    changed = lab.start.copy()
+    changed[number] += change
+    rest = [lab.start] * (steps - 1)
+    base = lab.run([lab.start, *rest], h)[1:]
+    pulse = lab.run([changed, *rest], h)[1:]
+    apart = pulse - base
+    floor = np.maximum(_ROUNDING * np.abs(base).max(axis=0), _NOTHING * np.abs(apart).max(axis=0))
+    return np.where(np.abs(apart) > floor, apart, 0.0)

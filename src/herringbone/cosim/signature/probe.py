@@ -1,0 +1,151 @@
+"""The trials that find a part's signature."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from herringbone.core.part import PartVariable
+from herringbone.cosim.signature.amplitudes import RATIO, amplitude
+from herringbone.cosim.signature.feedthrough import feedthrough_of, runs_on
+from herringbone.cosim.signature.laboratory import Laboratory
+from herringbone.cosim.signature.memory import Pulses, pulses
+from herringbone.cosim.signature.rates import rates_of
+from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
+from herringbone.cosim.signature.ticks import tick_of
+from herringbone.cosim.signature.trial import Refused
+
+_SHORT = 1.001
+_LOUDER = 5
+"""How often a change that nothing answers is made 16 times larger."""
+_TINY = 1e-3
+"""The first step that shows whether outputs are valid before it, over the step."""
+
+
+def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Signature:
+    """Signature of a part.
+
+    Args:
+        lab: entered; its step is the one that the part will be stepped with.
+        variables: of the part.
+
+    Returns:
+        What was found; what trials leave open is unknown, with a line on why.
+    """
+    found = Findings()
+    shape = len(lab.outputs), len(lab.inputs)
+    unknown = np.full(shape, np.nan)
+    if not lab.repeats:
+        found.note(f"the same steps give other outputs: {lab.why}; its inputs are held")
+        return _signature(lab, found, Kind.NOISY, unknown)
+    if lab.restores is False:
+        found.note(f"its saved state is not trusted: {lab.why}")
+    try:
+        changes = _amplitudes(lab, variables)
+        tick = tick_of(lab, changes)
+        if tick > _SHORT * lab.step:
+            found.note(
+                f"its outputs change every {tick:g} s only, in longer steps than those of "
+                f"{lab.step:g} s; its inputs are held"
+            )
+            return _signature(lab, found, Kind.SAMPLED, unknown, tick=tick)
+        pulse = pulses(lab, changes)
+        for _ in range(_LOUDER):
+            deaf = (pulse.delay < 0).all(axis=0)
+            if not deaf.any():
+                break
+            changes = np.where(deaf, RATIO * changes, changes)
+            pulse = pulses(lab, changes)
+        feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
+        _doubt(feedthrough, pulse, found)
+        valid = _valid_at_start(lab, tick)
+        rates = rates_of(lab, variables, changes)
+    except Refused as error:
+        found.note(f"trials are not possible: {error}")
+        return _signature(lab, found, Kind.UNKNOWN, unknown)
+    _note_answers(lab, pulse, found)
+    together = runs_on(feedthrough, slopes)
+    for number, other in enumerate(together):
+        if other >= 0:
+            found.note(f"{lab.inputs[number]} runs on with {lab.inputs[other]} inside a step")
+    if not valid:
+        found.note("its outputs are not valid before the first step")
+    return _signature(
+        lab,
+        found,
+        _kind(feedthrough, pulse),
+        feedthrough,
+        answers=pulse.first,
+        memory=pulse.memory,
+        delay=pulse.delay,
+        rates=rates,
+        valid_at_start=valid,
+        tick=tick,
+        runs_on=together,
+    )
+
+
+def _signature(
+    lab: Laboratory, found: Findings, kind: Kind, feedthrough: np.ndarray, **more: object
+) -> Signature:
+    empty = {
+        "answers": np.full_like(feedthrough, np.nan),
+        "memory": Answer.UNKNOWN,
+        "delay": np.zeros(feedthrough.shape, dtype=int),
+    }
+    values: dict = {**empty, **more}
+    return Signature(
+        lab.inputs,
+        lab.outputs,
+        lab.step,
+        kind,
+        feedthrough,
+        restores=lab.restores,
+        repeats=lab.repeats,
+        notes=tuple(found.notes),
+        **values,
+    )
+
+
+def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
+    """Where an output is not linear, what it did not answer may pass to it elsewhere: unknown."""
+    for row in found.bent:
+        feedthrough[row, pulse.delay[row] < 0] = np.nan
+
+
+def _note_answers(lab: Laboratory, pulse: Pulses, found: Findings) -> None:
+    """Lines on inputs that nothing answers, and on answers that come late."""
+    for number, name in enumerate(lab.inputs):
+        late = pulse.delay[:, number]
+        if (late < 0).all():
+            found.note(f"no output answers {name}, however far it is changed")
+        elif late.max() > 0:
+            found.note(f"{lab.outputs[int(late.argmax())]} answers {name} {late.max()} steps late")
+
+
+def _kind(feedthrough: np.ndarray, pulse: Pulses) -> Kind:
+    if feedthrough.shape[1] == 0:
+        return Kind.SOURCE
+    reached = np.isnan(feedthrough) | (feedthrough != 0.0) | (pulse.delay >= 0)
+    if not reached.any() or np.isnan(feedthrough).any() or pulse.memory is Answer.UNKNOWN:
+        return Kind.UNKNOWN
+    if not (feedthrough != 0.0).any():
+        return Kind.BODY
+    return Kind.ELEMENT if pulse.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH
+
+
+def _amplitudes(lab: Laboratory, variables: Mapping[str, PartVariable]) -> np.ndarray:
+    """(n,) the larger change of each input."""
+    starts = zip(lab.inputs, lab.start, strict=True)
+    return np.array([amplitude(variables[name], float(value)) for name, value in starts])
+
+
+def _valid_at_start(lab: Laboratory, tick: float) -> bool:
+    """False if outputs jump in a tiny first step by more than in the one that follows it."""
+    tiny = _TINY * lab.step if tick == 0.0 else tick
+    try:
+        path = lab.run([lab.start, lab.start], tiny)
+    except Refused:
+        return True
+    first, second = np.abs(np.diff(path, axis=0))
+    size = np.abs(path).max(axis=0)
+    return not bool(np.any(first > np.maximum(1e3 * second, 1e-6 * size)))

@@ -1,0 +1,47 @@
+"""A signature in lines for people."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from herringbone.cosim.signature.signature import Answer, Kind, Rate, Signature
+
+_MOST = 12
+"""Entries of the feedthrough that are shown."""
+_RESTORES = {
+    True: "it saves and restores its state",
+    False: "its saved state is not to be trusted",
+    None: "it does not save its state",
+}
+_HOLDS = {Answer.YES: "holds", Answer.NO: "does not hold", Answer.UNKNOWN: "is not clear"}
+
+
+def described(signature: Signature) -> list[str]:
+    """What a part is in the coupling, line by line."""
+    lines = [f"by trial steps of {1e6 * signature.step:g} us: {_kind(signature)}"]
+    lines.append(_RESTORES[signature.restores] if signature.repeats else "no step can be repeated")
+    passed = list(_passed(signature))
+    lines += passed[:_MOST]
+    if len(passed) > _MOST:
+        lines.append(f"and {len(passed) - _MOST} more of these")
+    for rate in signature.rates:
+        lines.append(f"{rate.rate} = d({rate.of})/dt {_HOLDS[rate.holds]}{_off(rate)}")
+    return [*lines, *signature.notes]
+
+
+def _off(rate: Rate) -> str:
+    if rate.holds is Answer.YES or not rate.ratio:
+        return ""
+    return f": it is {1.0 / rate.ratio:.4g} times that"
+
+
+def _kind(signature: Signature) -> str:
+    if signature.tick and signature.kind is not Kind.SAMPLED:
+        return f"{signature.kind}, in inner steps of {signature.tick:g} s"
+    return str(signature.kind)
+
+
+def _passed(signature: Signature) -> Iterator[str]:
+    for row, column in np.argwhere(np.nan_to_num(signature.feedthrough) != 0.0):
+        value = signature.feedthrough[row, column]
+        yield f"d({signature.outputs[row]})/d({signature.inputs[column]}) = {value:.6g}"

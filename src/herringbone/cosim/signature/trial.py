@@ -1,0 +1,116 @@
+"""A throw-away instance of a part, stepped by hand through the functions that the loop calls."""
+
+import ctypes
+from collections.abc import Sequence
+
+import numpy as np
+
+from herringbone.core import FmuError
+from herringbone.core.part import Part
+
+_WARNING = 1
+_Pointer, _Count, _Real, _Flag = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
+_exchange_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Pointer, _Count, _Pointer)
+_step_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Real, _Real, _Flag)
+_state_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Pointer)
+
+
+class Refused(FmuError):
+    """A part refused a trial step, a value or its state."""
+
+
+class Trial:
+    """An initialised part at its start time.
+
+    Args:
+        part: instantiated, start values set; it belongs to the trial, which closes it.
+        inputs, outputs: names of its real inputs and outputs.
+        start_time, stop_time: of the experiment [s].
+
+    Raises:
+        FmuError: the part does not initialise.
+    """
+
+    def __init__(
+        self,
+        part: Part,
+        inputs: Sequence[str],
+        outputs: Sequence[str],
+        start_time: float = 0.0,
+        stop_time: float = 1.0,
+    ) -> None:
+        self.part, self.time = part, start_time
+        self._inputs, self._outputs = (
+            np.array([part.variables[name].reference for name in names], dtype=np.uint32)
+            for names in (inputs, outputs)
+        )
+        self._saved: dict[int, float] = {}
+        try:
+            part.enter_initialization(start_time, stop_time)
+            part.exit_initialization()
+        except FmuError:
+            part.close()
+            raise
+        self._at = part.addresses
+
+    def set(self, values: np.ndarray) -> None:
+        """Set all inputs (n,); raises Refused."""
+        given = np.ascontiguousarray(values, dtype=float)
+        if self._inputs.size:
+            self._exchange(self._at.set_real, self._inputs, given, "an input value")
+
+    def values(self) -> np.ndarray:
+        """(m,) all outputs; raises Refused."""
+        found = np.empty(self._outputs.size)
+        if found.size:
+            self._exchange(self._at.get_real, self._outputs, found, "to give its outputs")
+        return found
+
+    def step(self, h: float) -> None:
+        """Step by h [s]; raises Refused."""
+        status = _step_type(self._at.do_step)(self._at.component, self.time, h, 1)
+        if status > _WARNING:
+            raise Refused(self._refusal(f"a step of {h:g} s", status))
+        self.time += h
+
+    @property
+    def can_restore(self) -> bool:
+        """True if the part says that it saves and restores its state."""
+        return self._at.can_restore
+
+    def save(self) -> int:
+        """Handle of the present state; raises Refused."""
+        handle = ctypes.c_void_p(self.part.new_state())
+        status = _state_type(self._at.get_state)(self._at.component, ctypes.addressof(handle))
+        if status > _WARNING:
+            raise Refused(self._refusal("to save its state", status))
+        found = int(handle.value or 0)
+        self._saved[found] = self.time
+        return found
+
+    def restore(self, handle: int) -> None:
+        """Go back to a saved state; raises Refused."""
+        status = _state_type(self._at.set_state)(self._at.component, handle)
+        if status > _WARNING:
+            raise Refused(self._refusal("to restore its state", status))
+        self.time = self._saved[handle]
+
+    def close(self) -> None:
+        """Free states and part."""
+        for handle in self._saved:
+            kept = ctypes.c_void_p(handle)
+            _state_type(self._at.free_state)(self._at.component, ctypes.addressof(kept))
+        self.part.close()
+
+    def _exchange(
+        self, address: int, references: np.ndarray, values: np.ndarray, what: str
+    ) -> None:
+        status = _exchange_type(address)(
+            self._at.component, references.ctypes.data, references.size, values.ctypes.data
+        )
+        if status > _WARNING:
+            raise Refused(self._refusal(what, status))
+
+    def _refusal(self, what: str, status: int) -> str:
+        said = "; ".join(self.part.messages())
+        return f"{self.part.name} refuses {what} (status {status})" + (f": {said}" if said else "")

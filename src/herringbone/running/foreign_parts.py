@@ -1,0 +1,141 @@
+"""Foreign FMUs of a system: what each is, found by trials, and what the coupling makes of it.
+
+Parts with known feedthrough are given polynomial signals (`cosim.nodal`). Of others the declared
+structure is used, and a line says why.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import replace
+
+import numpy as np
+
+from herringbone.core import FmuError
+from herringbone.core.activity import activity
+from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.nodal import NodalPart
+from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.structure.system import PartSpec, System
+
+_CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
+_NODE = ".node"
+
+Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
+
+
+def understood(
+    system: System, parts: Sequence[Part], instances: Instances, step: float
+) -> tuple[list[Part], list[str]]:
+    """The parts, foreign ones with what trials tell of them; and lines that the user should read.
+
+    Args:
+        system: of the parts, in the same order.
+        parts: instantiated, start values set.
+        instances: of a part's description, what makes further instances of it.
+        step: macro step [s].
+    """
+    found: list[Part] = []
+    notes: list[str] = []
+    for spec, part in zip(system.parts, parts, strict=True):
+        if not spec.foreign or INTERFACE_DEGREE in part.variables:
+            found.append(part)
+            continue
+        with activity(f"finding out what {part.name} is"), instances(spec) as make:
+            signature = signature_of(part, make, step)
+        changed, lines = _with_signature(part, signature)
+        found.append(changed)
+        notes += [f"{part.name}: {line}" for line in lines]
+    return found, notes
+
+
+def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
+    """Signature of a part, found on further instances; what they refuse leaves it unknown.
+
+    Args:
+        part: whose variables count.
+        make: makes a further instance, start values set.
+        step: of the trials [s].
+    """
+    inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
+    if part.once:
+        return _unknown(inputs, outputs, step, "it can be instantiated once only: no trials")
+    try:
+        start = _start(make(), inputs)
+        with Laboratory(make, inputs, outputs, start, step) as lab:
+            return find_signature(lab, part.variables)
+    except FmuError as error:
+        return _unknown(inputs, outputs, step, f"no trials: {error}")
+
+
+def _reals(part: Part, causality: str) -> list[str]:
+    return [
+        name
+        for name, v in part.variables.items()
+        if v.causality == causality and v.is_real and _NODE not in name
+    ]
+
+
+def _start(part: Part, inputs: list[str]) -> np.ndarray:
+    """Start values of the inputs, as an instance has them when it is initialised."""
+    try:
+        part.enter_initialization(0.0, 1.0)
+        return np.array(part.get(inputs))
+    finally:
+        part.close()
+
+
+def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Signature:
+    nothing = np.full((len(outputs), len(inputs)), np.nan)
+    return Signature(
+        tuple(inputs),
+        tuple(outputs),
+        step,
+        Kind.UNKNOWN,
+        nothing,
+        nothing,
+        Answer.UNKNOWN,
+        np.zeros(nothing.shape, dtype=int),
+        notes=(why,),
+    )
+
+
+def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
+    """The part as the coupling takes it, and lines on it."""
+    lines = list(signature.notes)
+    if signature.kind not in _CLEAR:
+        lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
+        return part, lines
+    lines += _contradictions(part.variables, signature)
+    if part.addresses.set_derivatives or signature.tick:
+        part.has_states = signature.kind is not Kind.ELEMENT
+        part.variables = _measured(part.variables, signature)
+        return part, lines
+    return NodalPart(part, signature), lines
+
+
+def _measured(
+    variables: Mapping[str, PartVariable], signature: Signature
+) -> dict[str, PartVariable]:
+    passed = signature.dependencies()
+    return {
+        name: replace(v, dependencies=passed[name]) if name in passed else v
+        for name, v in variables.items()
+    }
+
+
+def _contradictions(variables: Mapping[str, PartVariable], signature: Signature) -> list[str]:
+    """Lines on outputs whose declared dependencies are not those found."""
+    lines = []
+    for row, output in enumerate(signature.outputs):
+        declared = variables[output].dependencies
+        if declared is None:
+            continue
+        for column, name in enumerate(signature.inputs):
+            value = signature.feedthrough[row, column]
+            if value != 0.0 and name not in declared:
+                lines.append(
+                    f"{output} is declared not to depend directly on {name}; found "
+                    f"d({output})/d({name}) = {value:.4g}, which is used"
+                )
+    return lines

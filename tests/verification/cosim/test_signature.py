@@ -1,0 +1,136 @@
+"""Signatures of FMUs whose authors have not seen the trials: right, or unknown with the reason.
+
+`tests/fmus/kinds/answers.toml` says what each FMU truly is, at which steps.
+"""
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from herringbone.commands.main import main
+from herringbone.cosim.fmu.opening import many_of
+from herringbone.cosim.signature import Answer, Kind
+from herringbone.running.foreign_parts import signature_of
+
+KINDS = Path(__file__).parents[2] / "fmus" / "kinds"
+ANSWERS = tomllib.loads((KINDS / "answers.toml").read_text(encoding="utf-8"))
+NAMES = {
+    "body": Kind.BODY,
+    "element": Kind.ELEMENT,
+    "body_with_feedthrough": Kind.STATES_AND_FEEDTHROUGH,
+    "sampled": Kind.SAMPLED,
+    "noisy": Kind.NOISY,
+}
+CASES = [(name, step) for name, answer in ANSWERS.items() for step in answer["steps"]]
+MAY_BE_UNKNOWN = {
+    "dog_clutch": "it is not linear there",
+    "single_flywheel": "it can be instantiated once only: no trials",
+    "c_single_flywheel": "it can be instantiated once only: no trials",
+    "press_ram": "refuses a step of",
+    "c_press_ram": "refuses a step of",
+}
+"""FMUs whose nature trials cannot find, and why."""
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("kinds")
+    command = [sys.executable, "-B", str(KINDS / "build.py"), str(folder)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def signature(file, step):
+    with many_of(file.stem, file) as make:
+        part = make()
+        try:
+            return signature_of(part, make, step)
+        finally:
+            part.close()
+
+
+@pytest.fixture(scope="module")
+def found(built):
+    """Function: signature of a named FMU at a step."""
+    kept = {}
+
+    def find(name, step):
+        key = name, step
+        if key not in kept:
+            kept[key] = signature(built / ANSWERS[name]["file"], step)
+        return kept[key]
+
+    return find
+
+
+@pytest.mark.parametrize(("name", "step"), CASES)
+def test_kind_is_right_or_unknown_with_a_reason(found, name, step):
+    answer, it = ANSWERS[name], found(name, step)
+    allowed = {NAMES[kind] for kind in (answer["kind"], *answer.get("kind_also", []))}
+    if it.kind is Kind.UNKNOWN:
+        assert name in MAY_BE_UNKNOWN
+        assert any(MAY_BE_UNKNOWN[name] in note for note in it.notes)
+        return
+    assert it.kind in allowed
+    if it.memory is not Answer.UNKNOWN:
+        assert (it.memory is Answer.YES) == answer["memory"]
+
+
+@pytest.mark.parametrize(("name", "step"), CASES)
+def test_what_passes_directly(found, name, step):
+    """Where it is known; `quasi_direct` says what passes at once at this step."""
+    answer, it = ANSWERS[name], found(name, step)
+    direct = answer["direct"] | answer.get("quasi_direct", {})
+    for output, passed in it.dependencies().items():
+        if passed is not None:
+            assert passed == set(direct[output])
+
+
+@pytest.mark.parametrize(("name", "step"), CASES)
+def test_ticks_and_states(found, name, step):
+    answer, it = ANSWERS[name], found(name, step)
+    if it.tick:
+        assert it.tick == pytest.approx(answer["tick"], rel=1e-9)
+    if it.kind is Kind.UNKNOWN or not answer["state"]["offered"]:
+        return
+    assert it.restores == answer["state"]["true"]
+
+
+@pytest.mark.parametrize(("name", "step"), CASES)
+def test_rates(found, name, step):
+    """A rate that holds has the factor 1; one in millimetres is 1000 times too large."""
+    factors = {
+        (what["of"], rate): what["factor"]
+        for rate, what in ANSWERS[name].get("derivative", {}).items()
+    }
+    for rate in found(name, step).rates:
+        factor = factors[rate.of, rate.rate]
+        if rate.ratio is not None:
+            assert 1.0 / rate.ratio == pytest.approx(factor, rel=0.1)
+            assert (rate.holds is Answer.YES) == (factor == 1.0)
+
+
+def test_motor_and_vehicle(found):
+    """The numbers of their sources; the vehicle turns on inside a step, the motor does not."""
+    motor, vehicle = found("e_drive", 1e-4), found("road_vehicle", 1e-4)
+    row = motor.feedthrough[motor.outputs.index("flange.tau")]
+    assert dict(zip(motor.inputs, row, strict=True)) == pytest.approx(
+        {"torque_set": 0.0, "flange.phi": -8e4, "flange.w": -15.0}, rel=1e-6
+    )
+    assert set(motor.runs_on) == {-1}
+    angle, speed = (vehicle.inputs.index(f"gearbox.{x}") for x in ("phi", "w"))
+    assert vehicle.runs_on[angle] == speed
+    assert vehicle.feedthrough[0, [angle, speed]] == pytest.approx([-1.2e4, -60.0], rel=1e-6)
+
+
+def test_check_prints_it(built, capsys):
+    assert main(["check", str(built / "EDrive.fmu"), "--step", "5e-5"]) == 0
+    said = capsys.readouterr().out
+    assert "by trial steps of 50 us: a body with direct feedthrough" in said
+    assert "d(flange.tau)/d(flange.phi) = -80000" in said
+    assert main(["check", str(built / "LiftCage.fmu")]) == 0
+    assert "v = d(s)/dt does not hold: it is 1000 times that" in capsys.readouterr().out
