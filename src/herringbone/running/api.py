@@ -114,7 +114,7 @@ def run(
         parts, said = understood(structure, opened, instances, trial) if probe else (opened, [])
         lines += said
         if coupling is None:
-            coupling, why = _chosen_for(parts, tolerance)
+            coupling, why = _chosen_for(parts, tolerance, step)
             lines.append(why)
         asked, step = step, coupling.start_step if step is None else step
         lines += _stability_notes(structure, coupling, step, slow)
@@ -150,9 +150,11 @@ def _asked_for(algorithm: str | Algorithm | None, tolerance: float | None) -> Al
     return found if tolerance is None else with_tolerance(found, tolerance)
 
 
-def _chosen_for(parts: Sequence[Part], tolerance: float | None) -> tuple[Algorithm, str]:
+def _chosen_for(
+    parts: Sequence[Part], tolerance: float | None, step: float | None
+) -> tuple[Algorithm, str]:
     """The algorithm that suits the parts, and why."""
-    found, why = choose_algorithm(parts, tolerance)
+    found, why = choose_algorithm(parts, tolerance, step)
     return (found if tolerance is None else with_tolerance(found, tolerance)), why
 
 

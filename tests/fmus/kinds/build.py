@@ -168,6 +168,18 @@ PARTS = {
         },
         "flags": SAVES,
     },
+    "oscillator_mass.c": {
+        "inputs": ["f", "xo", "vo"],
+        "outputs": ["x", "v", "fo"],
+        "parameters": {"m": 1.0, "k": 0.0, "c": 0.0, "ko": 0.0, "co": 0.0, "x0": 0.0, "v0": 0.0},
+        "flags": SAVES,
+    },
+    "oscillator_spring.c": {
+        "inputs": ["xa", "va", "xb", "vb"],
+        "outputs": ["fa", "fb"],
+        "parameters": {"k": 100.0, "c": 0.0},
+        "flags": SAVES,
+    },
     "c_speed_governor.c": {
         "inputs": ["w_set", "w_act"],
         "outputs": ["torque"],

@@ -3,19 +3,17 @@
 `tests/fmus/kinds/answers.toml` says what each FMU truly is, at which steps.
 """
 
-import subprocess
-import sys
 import tomllib
-from pathlib import Path
 
 import pytest
+from support.kinds import KINDS
 
 from herringbone.commands.main import main
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Answer, Kind
+from herringbone.cosim.signature.rotation import Given
 from herringbone.running.foreign_parts import signature_of
 
-KINDS = Path(__file__).parents[2] / "fmus" / "kinds"
 ANSWERS = tomllib.loads((KINDS / "answers.toml").read_text(encoding="utf-8"))
 NAMES = {
     "body": Kind.BODY,
@@ -35,15 +33,6 @@ MAY_BE_UNKNOWN = {
 """FMUs whose nature trials cannot find, and why."""
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("kinds")
-    command = [sys.executable, "-B", str(KINDS / "build.py"), str(folder)]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=folder)
-    assert done.returncode == 0, done.stderr
-    return folder
-
-
 def signature(file, step):
     with many_of(file.stem, file) as make:
         part = make()
@@ -54,14 +43,14 @@ def signature(file, step):
 
 
 @pytest.fixture(scope="module")
-def found(built):
+def found(kinds):
     """Function: signature of a named FMU at a step."""
     kept = {}
 
     def find(name, step):
         key = name, step
         if key not in kept:
-            kept[key] = signature(built / ANSWERS[name]["file"], step)
+            kept[key] = signature(kinds / ANSWERS[name]["file"], step)
         return kept[key]
 
     return find
@@ -115,22 +104,36 @@ def test_rates(found, name, step):
 
 
 def test_motor_and_vehicle(found):
-    """The numbers of their sources; the vehicle turns on inside a step, the motor does not."""
+    """The numbers of their sources."""
     motor, vehicle = found("e_drive", 1e-4), found("road_vehicle", 1e-4)
     row = motor.feedthrough[motor.outputs.index("flange.tau")]
     assert dict(zip(motor.inputs, row, strict=True)) == pytest.approx(
         {"torque_set": 0.0, "flange.phi": -8e4, "flange.w": -15.0}, rel=1e-6
     )
-    assert set(motor.runs_on) == {-1}
     angle, speed = (vehicle.inputs.index(f"gearbox.{x}") for x in ("phi", "w"))
-    assert vehicle.runs_on[angle] == speed
+    assert vehicle.rate_inputs[angle] == speed
     assert vehicle.feedthrough[0, [angle, speed]] == pytest.approx([-1.2e4, -60.0], rel=1e-6)
 
 
-def test_check_prints_it(built, capsys):
-    assert main(["check", str(built / "EDrive.fmu"), "--step", "5e-5"]) == 0
+@pytest.mark.parametrize(
+    ("name", "angle", "rule"),
+    [
+        ("e_drive", "flange.phi", Given.MEAN),
+        ("road_vehicle", "gearbox.phi", Given.START),
+        ("c_e_drive", "flange.phi", Given.END),
+    ],
+)
+@pytest.mark.parametrize("step", [1e-5, 1e-4])
+def test_what_a_part_makes_of_an_angle(found, name, angle, rule, step):
+    """Sources: held; `phi += h w` from its value on; `PHI + (i - n) d W`, up to its value."""
+    it = found(name, step)
+    assert it.given[it.inputs.index(angle)] is rule
+
+
+def test_check_prints_it(kinds, capsys):
+    assert main(["check", str(kinds / "EDrive.fmu"), "--step", "5e-5"]) == 0
     said = capsys.readouterr().out
     assert "by trial steps of 50 us: a body with direct feedthrough" in said
     assert "d(flange.tau)/d(flange.phi) = -80000" in said
-    assert main(["check", str(built / "LiftCage.fmu")]) == 0
+    assert main(["check", str(kinds / "LiftCage.fmu")]) == 0
     assert "v = d(s)/dt does not hold: it is 1000 times that" in capsys.readouterr().out

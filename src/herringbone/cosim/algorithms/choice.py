@@ -12,15 +12,17 @@ AUTO = "auto"
 
 
 def choose_algorithm(
-    parts: Sequence[Part], tolerance: float | None = None
+    parts: Sequence[Part], tolerance: float | None = None, step: float | None = None
 ) -> tuple[Algorithm, str]:
     """The most accurate algorithm that the parts allow, and a line that says why.
 
-    li repeats steps: every part with inputs must save and restore its state. Otherwise jacobi.
+    li repeats steps. Parts that cannot take theirs once, on predicted inputs, which jacobi does
+    with all parts at half the cost: it is the choice then, up to the step that is its default.
 
     Args:
         parts: participants.
         tolerance: for which the step is to be adapted, if it is; see `LI`.
+        step: that was asked for [s].
 
     Raises:
         ParameterError: the step is to be adapted, but a part cannot repeat a step.
@@ -36,9 +38,17 @@ def choose_algorithm(
             f"tolerance = {tolerance:g}: {', '.join(unable)} cannot save and restore its state, "
             "as an adaptive step needs; leave the tolerance out"
         )
-    if unable:
+    long = step is not None and step > Jacobi.default_step
+    able = any(part.addresses.can_restore for part in parts)
+    if unable and not (long and able):
         chosen: Algorithm = Jacobi()
         why = f"{', '.join(unable)} cannot save and restore its state"
+    elif unable:
+        chosen = LI()
+        why = (
+            f"the step is longer than jacobi's; {', '.join(unable)} cannot repeat a step, the "
+            "others can"
+        )
     else:
         chosen = LI()
         why = "all parts save and restore their state"

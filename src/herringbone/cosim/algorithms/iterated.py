@@ -32,22 +32,36 @@ PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
 
 
-def check_rollback(name: str, network: Network) -> None:
-    """Check that all parts with inputs can restore their state.
-
-    Raises:
-        ParameterError: one cannot.
-    """
-    unable = [
-        part.name
+def explicit_parts(network: Network) -> tuple[int, ...]:
+    """Parts with inputs that cannot repeat a step: they step once, first, on predicted inputs."""
+    return tuple(
+        p
         for p, part in enumerate(network.parts)
         if network.inputs(p) and p not in network.slow and not part.addresses.can_restore
-    ]
-    if unable:
+    )
+
+
+def check_rollback(name: str, network: Network) -> None:
+    """Check that there is a part with inputs that can restore its state.
+
+    Raises:
+        ParameterError: there is none.
+    """
+    unable = explicit_parts(network)
+    able = any(network.inputs(p) and p not in unable for p in range(len(network.parts)))
+    if unable and not able:
+        names = ", ".join(network.parts[p].name for p in unable)
         raise ParameterError(
-            f"{name} repeats steps, but {', '.join(unable)} cannot save and restore its state; "
+            f"{name} repeats steps, but {names} cannot save and restore its state; "
             "use jacobi, gauss_seidel or predict"
         )
+
+
+def _explicit_note(network: Network, part: int) -> str:
+    return (
+        f"{network.parts[part].name} cannot repeat a step: it takes each one once, on predicted "
+        "inputs, which makes the coupling there explicit, of third order in the step at most"
+    )
 
 
 class PreparedNodes(PreparedRun):
@@ -75,9 +89,14 @@ class PreparedNodes(PreparedRun):
         self.network, self.full_order, self.newton = network, full_order, newton
         self.corrections, self.most = corrections, most
         degrees, notes = node_degrees(network, degree)
-        self.degree, self._downgrades = tuple(degrees), tuple(notes)
-        stages = [s for s in (network.sources, network.bodies) if s]
-        stages += [(e,) for e in network.elements]
+        explicit = explicit_parts(network)
+        self._first = (*network.sources, *explicit)
+        self._bodies = tuple(p for p in network.bodies if p not in explicit)
+        self._elements = tuple(p for p in network.elements if p not in explicit)
+        self.degree = tuple(degrees)
+        self._downgrades = (*notes, *(_explicit_note(network, p) for p in explicit))
+        stages = [s for s in (self._first, self._bodies) if s]
+        stages += [(e,) for e in self._elements]
         derivatives = fmi_derivatives(network, degree, degrees)
         self.layout = build_layout(
             network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
@@ -99,9 +118,9 @@ class PreparedNodes(PreparedRun):
         return NodeLayout(
             degree,
             unknown,
-            np.array(network.bodies, dtype=np.int64),
-            np.array(network.elements, dtype=np.int64),
-            np.array(network.sources, dtype=np.int64),
+            np.array(self._bodies, dtype=np.int64),
+            np.array(self._elements, dtype=np.int64),
+            np.array(self._first, dtype=np.int64),
             *node_references(parts, self._outputs, node_degrees),
             state[:, 0].copy(),
             state[:, 1].copy(),

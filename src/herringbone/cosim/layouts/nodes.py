@@ -11,7 +11,8 @@ class NodeLayout(NamedTuple):
     Attributes:
         degree: p.
         unknown: outputs that feed parts which are stepped before or together with their own.
-        bodies, elements, sources: parts; elements in the order of their dependence.
+        bodies, elements, sources: parts; elements in the order of their dependence; among the
+            sources those that cannot repeat a step.
         node_first, node_reference: outputs at node 1 ... p of each part, node by node; empty for a
             part without them.
         get_state, set_state, free_state: addresses.

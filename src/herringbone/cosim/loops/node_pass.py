@@ -182,7 +182,7 @@ def begin(
     h: float,
     trial: bool,
 ) -> int:
-    """Save, step the sources, predict the unknowns; -1, or who failed.
+    """Save, predict the unknowns, step the sources and what steps once; -1, or who failed.
 
     In a trial that will be taken back, sources that cannot be restored hold their outputs.
     """
@@ -195,7 +195,9 @@ def begin(
     for k in range(nodes.degree):
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
-            buffers.trial[k, i] = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
+            guess = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
+            buffers.trial[k, i] = guess
+            buffers.nodes[k + 1, nodes.unknown[i]] = guess  # for parts that step on it once
     predict_slow_nodes(layout.slow, layout, buffers.nodes, buffers.history[1], known - 1, h)
     for s in range(nodes.sources.size):
         p = nodes.sources[s]

@@ -15,6 +15,7 @@ its outputs is that mean, where the value at the end is wanted:
 with D the direct feedthrough (see `cosim.signature`). A part without memory is given u(c1) instead.
 An input that runs on with its rate r inside the part, as an angle with its speed, is given as
 u(c0), and has come to u(c0) + (t(c1) - t(c0)) r_held at the end; D acts on what is missing there.
+One that runs up to its value is given as u(c1). See `cosim.signature.rotation`.
 
 The component pointer is the address of the part's memory, a record of type `MEMORY`. Only inputs
 that were set once are set; others keep their start values. References of this interface: input i at
@@ -26,6 +27,7 @@ from numba import carray, from_dtype, types
 
 from herringbone.cosim.loops.calls import at_address, exchange_reals, state_call
 from herringbone.cosim.loops.calls import do_step as step_part
+from herringbone.cosim.signature.rotation import Given
 from herringbone.kernels.jit import allocating, c_function
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
 
@@ -55,7 +57,8 @@ MEMORY = np.dtype(
         ("raw", np.int64),
         ("values", np.int64),
         ("feedthrough", np.int64),
-        ("runs_on", np.int64),
+        ("place", np.int64),
+        ("rate", np.int64),
     ]
 )
 """What an adapter knows.
@@ -65,7 +68,8 @@ the signals; pieces: steps per node; at_end: 1 for a part without memory; steppe
 step. Addresses: value references of the part's inputs and outputs (uint32); given: signals of the
 inputs (n, STRIDE); driven: 1 for inputs that were set (int64); coefficients (n, STRIDE); held (n);
 packed and packed_references: of driven inputs; raw (m) outputs of the part; values: signals of the
-outputs (m, STRIDE); feedthrough (m, n); runs_on (n, int64): number of an input's rate, or -1.
+outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see
+`Given`; rate (n, int64): number of an input's rate, or -1.
 """
 
 _MEMORY = types.CPointer(from_dtype(MEMORY))
@@ -76,6 +80,7 @@ _STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
 _STATE = types.int32(_MEMORY, types.int64)
 _UNKNOWN_SIZE = 1  # bounds are not checked
 _LAST_GOOD = 1
+_START, _END = int(Given.START), int(Given.END)
 
 
 @allocating
@@ -109,14 +114,14 @@ def _hold(memory: np.ndarray, begin: float, end: float) -> int:
     packed = carray(at_address(part.packed), part.inputs, np.float64)
     references = carray(at_address(part.input_references), part.inputs, np.uint32)
     packed_references = carray(at_address(part.packed_references), part.inputs, np.uint32)
-    runs_on = carray(at_address(part.runs_on), part.inputs, np.int64)
+    place = carray(at_address(part.place), part.inputs, np.int64)
     count = 0
     for i in range(part.inputs):
         if driven[i] == 0:
             continue
-        if part.at_end:
+        if part.at_end or place[i] == _END:
             held[i] = evaluate(coefficients, i * STRIDE, part.degree, end)
-        elif runs_on[i] >= 0:
+        elif place[i] == _START:
             held[i] = evaluate(coefficients, i * STRIDE, part.degree, begin)
         else:
             held[i] = _mean(coefficients, i * STRIDE, part.degree, begin, end)
@@ -150,7 +155,8 @@ def _keep(memory: np.ndarray, node: int, end: float, length: float) -> None:
     raw = carray(at_address(part.raw), part.outputs, np.float64)
     values = carray(at_address(part.values), part.outputs * STRIDE, np.float64)
     feedthrough = carray(at_address(part.feedthrough), part.outputs * part.inputs, np.float64)
-    runs_on = carray(at_address(part.runs_on), part.inputs, np.int64)
+    place = carray(at_address(part.place), part.inputs, np.int64)
+    rate = carray(at_address(part.rate), part.inputs, np.int64)
     for j in range(part.outputs):
         value = raw[j]
         if part.at_end == 0 and part.degree > 0:
@@ -159,8 +165,8 @@ def _keep(memory: np.ndarray, node: int, end: float, length: float) -> None:
                 if driven[i] and passed != 0.0:
                     at_end = evaluate(coefficients, i * STRIDE, part.degree, end)
                     seen = held[i]
-                    if runs_on[i] >= 0:
-                        seen += length * held[runs_on[i]]
+                    if place[i] == _START and rate[i] >= 0:
+                        seen += length * held[rate[i]]
                     value += passed * (at_end - seen)
         values[j * STRIDE + node] = value
         values[j * STRIDE] = value

@@ -61,7 +61,8 @@ class NodalPart:
             "raw": np.zeros(m),
             "values": np.zeros((m, STRIDE)),
             "feedthrough": np.nan_to_num(self.signature.feedthrough),
-            "runs_on": np.array(self.signature.runs_on or [-1] * n, np.int64),
+            "place": np.array(self.signature.given or [0] * n, np.int64),
+            "rate": np.array(self.signature.rate_inputs or [-1] * n, np.int64),
         }
         memory = np.zeros(1, calls.MEMORY)
         memory["inputs"], memory["outputs"], memory["pieces"] = n, m, pieces

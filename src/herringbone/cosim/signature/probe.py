@@ -10,10 +10,15 @@ from herringbone.cosim.signature.feedthrough import feedthrough_of, runs_on
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.memory import Pulses, pulses
 from herringbone.cosim.signature.rates import rates_of
+from herringbone.cosim.signature.rotation import Given, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
 from herringbone.cosim.signature.ticks import tick_of
 from herringbone.cosim.signature.trial import Refused
 
+_MOVES = {
+    Given.START: "runs on inside a step, with",
+    Given.END: "runs up to its value inside a step, with",
+}
 _SHORT = 1.001
 _LOUDER = 5
 """How often a change that nothing answers is made 16 times larger."""
@@ -57,16 +62,16 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
             pulse = pulses(lab, changes)
         feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
         _doubt(feedthrough, pulse, found)
+        given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
         valid = _valid_at_start(lab, tick)
         rates = rates_of(lab, variables, changes)
     except Refused as error:
         found.note(f"trials are not possible: {error}")
         return _signature(lab, found, Kind.UNKNOWN, unknown)
     _note_answers(lab, pulse, found)
-    together = runs_on(feedthrough, slopes)
-    for number, other in enumerate(together):
-        if other >= 0:
-            found.note(f"{lab.inputs[number]} runs on with {lab.inputs[other]} inside a step")
+    for number, rule in enumerate(given):
+        if rule is not Given.MEAN:
+            found.note(f"{lab.inputs[number]} {_MOVES[rule]} {lab.inputs[rate[number]]}")
     if not valid:
         found.note("its outputs are not valid before the first step")
     return _signature(
@@ -80,7 +85,8 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
         rates=rates,
         valid_at_start=valid,
         tick=tick,
-        runs_on=together,
+        given=given,
+        rate_inputs=rate,
     )
 
 
@@ -104,6 +110,22 @@ def _signature(
         notes=tuple(found.notes),
         **values,
     )
+
+
+def _rules(
+    lab: Laboratory, changes: np.ndarray, feedthrough: np.ndarray, together: tuple[int, ...]
+) -> tuple[tuple[Given, ...], tuple[int, ...]]:
+    """Which value of each input the part is given for a step, and the number of its rate or -1."""
+    given, rate = [Given.MEAN] * len(lab.inputs), list(together)
+    for number, other in enumerate(together):
+        if other >= 0:
+            given[number] = Given.START
+    known = np.nan_to_num(feedthrough)
+    for number, other in pairs(lab.inputs):
+        if known[:, number].any():
+            rate[number] = other
+            given[number] = rule_of(lab, (number, other), float(changes[other]), known)
+    return tuple(given), tuple(rate)
 
 
 def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:

@@ -6,6 +6,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from herringbone.cosim.signature.rotation import Given
+
 
 class Kind(StrEnum):
     """What a part is in the coupling."""
@@ -68,8 +70,8 @@ class Signature:
         repeats: see `Laboratory`.
         valid_at_start: False if outputs jump in the first, tiny step.
         tick: time between changes of a sampled part [s]; 0: not sampled.
-        runs_on: for each input the number of the one that the part integrates into it inside a
-            step, as an angle with its speed; -1: the input is held.
+        given: for each input which value the part is given for a step, see `rotation`.
+        rate_inputs: for each input the number of its rate; -1 if it has none.
         notes: lines on what is unknown, and why.
     """
 
@@ -86,7 +88,8 @@ class Signature:
     repeats: bool = True
     valid_at_start: bool = True
     tick: float = 0.0
-    runs_on: tuple[int, ...] = ()
+    given: tuple[Given, ...] = ()
+    rate_inputs: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
 
     def dependencies(self) -> Mapping[str, frozenset[str] | None]:
