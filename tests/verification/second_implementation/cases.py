@@ -108,6 +108,10 @@ CASES = {
         CONTACT_CHANGES, offset=KICK,
     ),
     "rig": Case("test_rig", {**EVERY, **MOTORS}),
+    "rig, coast": Case("test_rig", {**EVERY, **MOTORS, "bench_controller.torque_factor": -0.7}),
+    "rig, turning backwards": Case(
+        "test_rig", {**EVERY, **MOTORS, "bench_controller.speed_factor": -1.0}
+    ),
     "rig, separation": Case("test_rig", {**EVERY, **MOTORS}, CONTACT_CHANGES, scene="separation"),
     "rig, run-up": Case(
         "test_rig", {**TEETH, **SHAFTS, **RUN_UP}, CONTACT_CHANGES, start="rest", t_end=5e-3
