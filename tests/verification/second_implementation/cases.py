@@ -1,15 +1,19 @@
 """What is compared: few runs, each of which combines several paths of the equations.
 
-The tables and harmonics are made so that left and right, drive and coast differ.
+Left and right, drive and coast differ in tables and harmonics; most phases of the right table are
+no nodes of the force law.
 """
 
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from second_implementation.product import FMUS
 
 LOADED, CONTACT_CHANGES = 1e-7, 1e-6
 """Largest deviation over a group's alternating part."""
+_RIGHT_PHASES = 48
 _TABLE = FMUS / "gear_mesh" / "resources" / "mesh_stiffness.csv"
 _ERRORS = """# units: order 1, amplitude m, phase rad
 side,flank,gear,order,amplitude,phase
@@ -26,8 +30,8 @@ right,coast,wheel,81,0.1e-6,0.9
 _CYCLE = """# units: time s, speed rad/s, torque N.m
 time,speed,torque
 0.0005,0,40
-0.0025,4,120
-0.004,3,60
+0.002,4,120
+0.0035,-2,60
 """
 
 TEETH = {
@@ -121,9 +125,8 @@ CASES = {
 
 def write_files(folder):
     """The files that the cases name, by name."""
-    lines = _TABLE.read_text(encoding="utf-8").splitlines()
     contents = {
-        "table.csv": "\n".join(map(_right_differs, lines)) + "\n",
+        "table.csv": _table(),
         "errors.csv": _ERRORS,
         "cycle.csv": _CYCLE,
     }
@@ -132,10 +135,16 @@ def write_files(folder):
     return {name: str(folder / name) for name in contents}
 
 
-def _right_differs(line):
-    """A line of the table; the right mesh is softer than the left one, and otherwise over phase."""
-    if not line.startswith("right,"):
-        return line
-    side, load, phase, stiffness = line.split(",")
-    factor = 0.93 + 0.03 * math.cos(2.0 * math.pi * (float(phase) - 0.2))
-    return f"{side},{load},{phase},{float(stiffness) * factor!r}"
+def _table():
+    """The shipped table; its right mesh is softer, and has other phases with another course."""
+    lines = _TABLE.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if not line.startswith("right,")]
+    loads = sorted({line.split(",")[1] for line in lines if line.startswith("right,")}, key=float)
+    for load in loads:
+        rows = [line.split(",") for line in lines if line.startswith(f"right,{load},")]
+        phases, stiffness = np.array([[float(phase), float(k)] for _, _, phase, k in rows]).T
+        for phase in np.arange(_RIGHT_PHASES) / _RIGHT_PHASES:
+            factor = 0.93 + 0.03 * math.cos(2.0 * math.pi * (phase - 0.2))
+            k = factor * np.interp(phase, phases, stiffness, period=1.0)
+            kept.append(f"right,{load},{float(phase)!r},{float(k)!r}")
+    return "\n".join(kept) + "\n"
