@@ -11,10 +11,10 @@ gear. With the seat motion projected on n, each half has
 and the same along z with the axial stiffness, without n. The same vector carries motion in and
 force out, so that no power is created. With a radial clearance c,
 
-    gap(d) = d - max(-c/2, min(d, c/2))
+    gap(d) = d - max(-c/2, min(d, c/2)),   g = min(1, |gap(d)| / (c/10))
 
-and the damping acts only on the loaded part (g = 0 inside the clearance, 1 without clearance,
-rising over a tenth of the clearance); a bearing with clearance never pulls.
+so that the damping acts only on the loaded part, and f = 0 where its sign is not that of gap(d): a
+bearing with clearance never pulls. Without clearance g = 1, and f may have any sign.
 
 A master that steps all FMUs in parallel sees this element one macro step h late; gear and seat then
 are stable only for h < 4/3 zeta / w with the local w, zeta (here about 3e-6 s). A master

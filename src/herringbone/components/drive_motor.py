@@ -1,7 +1,7 @@
 """Speed-controlled drive motor: rotor, PI controller, torque limit, set-point ramp.
 
     J w' = tau + T,   phi' = w
-    T = limit(K_p e + K_i x),   e = w_ref - w
+    T = limit(K_p e + K_i x, +-torque_limit),   e = w_ref - w
     x' = e + (T - (K_p e + K_i x)) / K_p          (anti-windup by back-calculation)
     w_ref' = limit((speed_setpoint - w_ref) / ramp_time_constant, +-maximum_acceleration)
 

@@ -7,7 +7,8 @@ Shapes are mass-normalised [kg^-1/2]. f is the force on the housing. Each oscill
 exactly for forces that are polynomials over the macro step (see `kernels.modal`), for any step.
 Positions and velocities never depend on the inputs directly; the accelerations do.
 
-`start.<seat>.f_x` ... are the forces under which the housing is at rest at the start.
+`start.<seat>.f_x` ... are the forces under which the housing is at rest at the start, with
+q_i = sum of shape_i f / w_i^2 (rigid modes: 0).
 
 In model exchange the modal coordinates q[i] are continuous states: as many as the data have with
 which the FMU was built. With other data of another number of modes, such an instance is refused;

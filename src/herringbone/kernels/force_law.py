@@ -1,8 +1,9 @@
 """Force law of one tooth mesh, F(phase, deflection), and its energy, from a stiffness table.
 
-A table has secant stiffnesses K = F / x (x: deflection) at loads F_n and equidistant phases;
-phases p are counted in mesh periods. The law interpolates K over p and u = 32 sqrt(x / limit);
-limit is the smallest x at which the largest load is reached, over the phases of the table.
+A table has secant stiffnesses K = F / x (x: deflection) at loads F_n and equidistant phases from 0,
+for each side its own; rows of the CSV are side, F_n, phase, K. Phases p are counted in mesh
+periods. The law interpolates K over p and u = 32 sqrt(x / limit); limit is the smallest x at which
+the largest load is reached, over the phases of the side's table.
 
     F(p, x) = K(p, u) x,    dF/dx = K + u/2 dK/du,    0 <= x <= limit
     U(p, x) = 2 limit^2 / 32^4 * integral of K u^3 du from 0 to u,    dU/dx = F

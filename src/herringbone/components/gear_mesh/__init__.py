@@ -50,7 +50,7 @@ energy U(p, x) (both below); x' is the depth's rate:
     damping_gate 1: P = max(0, F(p, x) + q r h(p) + C r x')
     damping_gate 0: P = F(p, x) + q r h(p) + C x';  open flanks: P = C x' on the drive flank, with
                     k at x = 1e-12 m, while x > -backlash
-    C = 2 zeta sqrt(k m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel)
+    C = 2 zeta sqrt(k m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel),   I: of a half
     r = v^2 (3 - 2 v),   v = min(1, x / damping_transition)
 
 C is the corrected form of the thesis' mesh damping, whose base radii are swapped. Gated, damping
@@ -61,9 +61,9 @@ force 0.1, alternating force 0.05 times the frequency squared), swept downwards,
 separation to contact at 0.71 of its natural frequency ungated, at 0.58 gated: in free flight
 nothing is lost. Without separation both are the same above the transition.
 
-h is the meshing impact of the flank that carries: q is impact_force,
+h is the meshing impact of the flank that carries: q is impact_force there, 0 on the other flank;
 h(p) = (1 - cos(2 pi f / impact_duration)) / 2 where f, the fractional part of p, is below
-impact_duration, else 0.
+impact_duration, else 0. p is the phase of the contact itself, on either flank.
 
 **Normal force** of a mesh: N = P on the drive flank, -P on the coast flank (their sum, if both
 should touch).
