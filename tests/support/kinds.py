@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 KINDS = Path(__file__).parents[1] / "fmus" / "kinds"
@@ -17,8 +18,6 @@ def build_kinds(folder: Path) -> Path:
 
 def without_states(file: Path) -> Path:
     """The FMU without the ability to save and restore its state, beside it."""
-    import zipfile
-
     plain = file.with_name(f"{file.stem}_plain.fmu")
     with zipfile.ZipFile(file) as whole, zipfile.ZipFile(plain, "w") as part:
         for name in whole.namelist():

@@ -49,6 +49,8 @@ class FakePart:
 
     name: str
     variables: dict[str, PartVariable] = field(default_factory=dict)
+    has_states: bool | None = None
+    once: bool = False
 
     def real(self, name, causality, unit="1", dependencies=None, **more):
         """Add a variable; outputs depend on nothing unless told."""
@@ -78,6 +80,8 @@ class CallbackPart:
     """
 
     feedthrough = False
+    has_states = None
+    once = False
 
     def __init__(self, name, inputs, outputs, *, nodes=True, state=True, start=None):
         self.name, self.inputs, self.outputs = name, tuple(inputs), tuple(outputs)

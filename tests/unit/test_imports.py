@@ -30,7 +30,7 @@ ALLOWED: dict[str, set[str]] = {
         "result",
         "plotting",
     },
-    "benchmarks": {"core", "fmi", "cosim", "analysis", "scenes", "result", "running"},
+    "benchmarks": {"core", "fmi", "gears", "cosim", "analysis", "scenes", "result", "running"},
     "plotting": {"core", "components", "gears", "analysis", "result"},
 }
 """What a package or module may import of this package, besides itself; the rest stands on top."""

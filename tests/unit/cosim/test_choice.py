@@ -83,24 +83,37 @@ def test_a_source_need_not_be_restored():
 
 
 @pytest.mark.parametrize("algorithm", ITERATED, ids=str)
-def test_rollback_is_refused_by_name(algorithm):
+def test_rollback_is_refused_by_name_if_no_part_can_repeat_a_step(algorithm):
+    parts = [
+        Mass("left", 1.0, 1.0, state=False),
+        Mass("right", 1.0, state=False),
+        SpringDamper("spring", 1.0, 0.0, state=False),
+    ]
     wanted = (
-        f"{algorithm.name} repeats steps, but left cannot save and restore its state; "
-        "use jacobi, gauss_seidel or predict"
+        f"{algorithm.name} repeats steps, but left, right, spring cannot save and restore its "
+        "state; use jacobi, gauss_seidel or predict"
     )
     with pytest.raises(ParameterError, match=f"^{re.escape(wanted)}$"):
-        TwoMass().run(algorithm, 0.1, 1.0, state=False)
+        simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(1.0, 0.1, 0.1))
 
 
 @pytest.mark.parametrize("algorithm", ITERATED, ids=str)
-def test_all_that_cannot_be_restored_are_named(algorithm):
-    parts = [
-        Mass("left", 1.0, 1.0, state=False),
-        Mass("right", 1.0),
-        SpringDamper("spring", 1.0, 0.0, state=False),
-    ]
-    with pytest.raises(ParameterError, match="but left, spring cannot save and restore"):
-        simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(1.0, 0.1, 0.1))
+def test_a_part_that_cannot_repeat_steps_steps_once(algorithm):
+    parts = TwoMass().parts(state=False)
+    recording = simulate(TWO_MASS_SYSTEM, parts, algorithm, make_grid(1.0, 0.1, 0.1))
+    assert recording.outcome.completed
+    assert parts[0].steps == 10
+    assert parts[0].restores == 0
+    assert parts[1].steps > 10
+    assert any(note.startswith("left cannot repeat a step") for note in recording.notes)
+
+
+def test_li_is_chosen_for_steps_that_are_long_for_jacobi():
+    parts = TwoMass().parts(state=False)
+    assert choose_algorithm(parts, step=Jacobi.default_step)[0] == Jacobi()
+    algorithm, why = choose_algorithm(parts, step=1.01 * Jacobi.default_step)
+    assert algorithm == LI()
+    assert why.endswith("left cannot repeat a step, the others can")
 
 
 def test_predict_refuses_elements_without_nodes():

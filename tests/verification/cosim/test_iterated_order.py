@@ -55,6 +55,13 @@ def test_li_and_converged_fixed_point_are_one_scheme(degree):
     assert np.abs(one - other).max() < 1e-8
 
 
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_a_part_that_steps_once_leaves_third_order(degree):
+    """Its inputs are parabolas through known values, carried on: their error is of h^3."""
+    found = fitted(TwoMass(), LI(degree=degree), (0.1, 0.05, 0.025), state=False)
+    assert found == pytest.approx(3.0, abs=0.15)
+
+
 def test_order_of_predict_without_damping():
     """The predicted velocity errs by h^2 a' / 2: a damper feels it, a spring does not."""
     found = fitted(TwoMass(), Predict(), (0.04, 0.02, 0.01), acceleration=True)
