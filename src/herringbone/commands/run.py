@@ -53,6 +53,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="take foreign FMUs by what they declare, without trial steps on further instances",
     )  # fmt: skip
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
+    sub.add_argument(
+        "--verify", action="store_true", help="errors against a run with half the step"
+    )
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
@@ -87,6 +90,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             slow=_multiples(options.slow),
             probe=not options.no_probe,
             reference=options.reference,
+            verify=options.verify,
             progress=bar.show,
             recorded=report.write,
         )

@@ -20,6 +20,7 @@ from herringbone.core.names import matches_any, shown
 from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
 from herringbone.result.budget import BudgetRow
+from herringbone.result.verification import Verification
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,6 +87,7 @@ class Result(Facts):
         info: how it was computed.
         channels: column patterns by group, such as "bearing_force".
         error: error against the monolithic twin by group, if it was asked for.
+        verification: error by half the step, if it was asked for.
         files: files that were written, if any.
         budget: how far the run may be from the gearbox that is meant, by source of error.
     """
@@ -96,6 +98,7 @@ class Result(Facts):
     info: RunInfo
     channels: Mapping[str, Sequence[str]] = field(default_factory=dict)
     error: Mapping[str, float] | None = None
+    verification: Verification | None = None
     files: tuple[str, ...] = ()
     budget: tuple[BudgetRow, ...] = ()
 
@@ -221,6 +224,8 @@ class Result(Facts):
             found |= {"message": self.outcome.message, "culprit": self.outcome.culprit}
         if self.error is not None:
             found["error"] = dict(self.error)
+        if self.verification is not None:
+            found["verification"] = self.verification._asdict()
         if self.budget:
             found["error_budget"] = [asdict(row) for row in self.budget]
         return found

@@ -1,39 +1,32 @@
 """Running a system: from names and options to a result."""
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.stability.diagnosis import diagnose
-from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
-from herringbone.core.files import same_folder
-from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
     AUTO,
-    LI,
     Algorithm,
-    choose_algorithm,
     parse_algorithm,
     with_tolerance,
 )
-from herringbone.cosim.exit_guard import exit_guard
-from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
-from herringbone.cosim.simulation import check_grid, make_grid, simulate
+from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.foreign_parts import understood
+from herringbone.running.coupled import Asked, coupled
 from herringbone.running.gears import Gear
-from herringbone.running.loading import instances, open_parts
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import compared, decimated, judged, make_result
+from herringbone.running.progress import Progress
+from herringbone.running.run_result import compared
+from herringbone.running.verification import verified
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
@@ -58,6 +51,7 @@ def run(
     housing: str | Path | Mapping[str, str | Path] | None = None,
     probe: bool = True,
     reference: bool = False,
+    verify: bool = False,
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
 ) -> Result:
@@ -89,6 +83,8 @@ def run(
         probe: find out by trial steps what foreign FMUs are, see `running.foreign_parts`; False:
             they are taken by what they declare.
         reference: also solve the monolithic twin, and report the errors against it.
+        verify: also run with half the macro step and half the inner steps, and report how far
+            apart both are, see `running.verification`; for systems that have no twin.
         progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and
@@ -108,36 +104,18 @@ def run(
     if reference:
         refuse_foreign_parts(structure)
     fmu, slower = choose_kind(fmu)
-    lines = [*notes, *slower]
-    with same_folder(), exit_guard(), closing_all(open_parts(structure, fmu)) as opened:
-        trial = step or (coupling or LI()).start_step
-        parts, said = understood(structure, opened, instances, trial) if probe else (opened, [])
-        lines += said
-        if coupling is None:
-            coupling, why = _chosen_for(parts, tolerance, step)
-            lines.append(why)
-        asked, step = step, coupling.start_step if step is None else step
-        lines += _stability_notes(structure, coupling, step, slow)
-        grid = make_grid(chosen.t_end, step, step if reference else chosen.record_step)
-        _log.info("%s, scene %s: %s, %s FMUs", structure.name, chosen.name, coupling, fmu)
-        lines += _record_notes(record_step, coupling, grid)
-        bond = fastest_bond(structure)
-        what = f"simulating {1e3 * chosen.t_end:g} ms of {structure.name}"
-        with told(progress, what) as tell:
-            recording = simulate(
-                structure, parts, coupling, grid, tell, bond_frequency=bond, slow=slow
-            )
-        lines += _step_notes(asked, coupling, recording)
-        every = judged(make_result(structure, chosen, coupling, fmu, recording, lines), bond)
-        _log_end(recording)
-        result = decimated(every, chosen.record_step) if reference else every
-        if recorded:
-            recorded(result)
+    asked = Asked(
+        fmu, coupling, step, tolerance, slow, probe, record_step, reference, (*notes, *slower)
+    )
+    found = coupled(structure, chosen, asked, progress, recorded)
+    result = found.result
     if reference:
-        result = compared(result, every, structure)
-    if _unstable(recording):
+        result = compared(result, found.every, structure)
+    if verify and not found.recording.outcome.unstable:
+        result = verified(result, structure, chosen, found, asked, progress)
+    if _unstable(found.recording):
         with activity(f"looking for what grows in {structure.name}, and for remedies"):
-            why_unstable = diagnose(structure, coupling, recording.step)
+            why_unstable = diagnose(structure, found.algorithm, found.recording.step)
         result = replace(result, info=replace(result.info, why=why_unstable))
     return result
 
@@ -148,52 +126,6 @@ def _asked_for(algorithm: str | Algorithm | None, tolerance: float | None) -> Al
         return None
     found = parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
     return found if tolerance is None else with_tolerance(found, tolerance)
-
-
-def _chosen_for(
-    parts: Sequence[Part], tolerance: float | None, step: float | None
-) -> tuple[Algorithm, str]:
-    """The algorithm that suits the parts, and why."""
-    found, why = choose_algorithm(parts, tolerance, step)
-    return (found if tolerance is None else with_tolerance(found, tolerance)), why
-
-
-def _stability_notes(
-    system: System, algorithm: Algorithm, step: float, slow: Mapping[str, int] | None
-) -> list[str]:
-    """A line if the step is unstable; nothing is predicted with slow bodies.
-
-    An adaptive step needs none: it finds the limit, and goes below.
-    """
-    if system.foreign_parts or algorithm.adaptive or slow:
-        return []
-    with activity(f"predicting whether {system.name} is stable"):
-        warning = warn_if_unstable(system, algorithm, step)
-    return [warning] if warning else []
-
-
-def _record_notes(record_step: float | None, algorithm: Algorithm, grid: Grid) -> list[str]:
-    """A line if records were asked for inside a communication step."""
-    if record_step is None or record_step >= grid.step or algorithm.adaptive:
-        return []
-    return [f"record_step = {record_step:g} s: records are taken at communication points, every "
-            f"{grid.step:g} s; use a shorter step for more"]  # fmt: skip
-
-
-def _step_notes(asked: float | None, algorithm: Algorithm, recording: Recording) -> list[str]:
-    """A line if the step that was asked for was shortened."""
-    used = recording.step
-    if asked is None or algorithm.adaptive or used >= _SAME * asked:
-        return []
-    return [f"step = {asked:g} s: shortened to {used:g} s, of which a whole number makes the end "
-            "of the run"]  # fmt: skip
-
-
-def _log_end(recording: Recording) -> None:
-    outcome = recording.outcome
-    _log.info("%s at %g s, after %.3g s", outcome.kind.value, outcome.time, recording.wall_seconds)
-    for line in filter(None, (outcome.message, *recording.notes)):
-        _log.info(line)
 
 
 def _unstable(recording: Recording) -> bool:

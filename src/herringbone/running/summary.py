@@ -270,6 +270,13 @@ def _errors(result: Result) -> Iterator[str]:
             f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in result.error.items()
         )
         yield _line("Error against twin", errors)
+    if (found := result.verification) is not None:
+        errors = ", ".join(
+            f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in found.groups.items()
+        )
+        if found.worst:
+            errors += f"; worst {found.worst} {100.0 * found.worst_error:.3g} %"
+        yield _line("Error by half step", errors)
 
 
 def _budget(result: Result) -> Iterator[str]:

@@ -117,6 +117,11 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
         quantity = f"{name.replace('_', ' ')}, alternating part"
         how = "against the monolithic solution of the same equations"
         return BudgetRow("coupling", quantity, value, Known.MEASURED, how)
+    if result.verification is not None and result.verification.groups:
+        name, value = max(result.verification.groups.items(), key=lambda item: item[1])
+        quantity = f"{name.replace('_', ' ')}, alternating part"
+        how = "against a run with half the macro step and half the inner steps"
+        return BudgetRow("coupling", quantity, value, Known.ESTIMATED, how)
     algorithm = parse_algorithm(result.info.algorithm)
     if algorithm.adaptive:
         how = "the tolerance of its steps; --reference measures"

@@ -64,7 +64,7 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
         _doubt(feedthrough, pulse, found)
         given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
         valid = _valid_at_start(lab, tick)
-        rates = rates_of(lab, variables, changes)
+        rates = rates_of(lab, variables, changes, feedthrough)
     except Refused as error:
         found.note(f"trials are not possible: {error}")
         return _signature(lab, found, Kind.UNKNOWN, unknown)

@@ -22,9 +22,14 @@ _ROUNDING = 1e5 * float(np.finfo(float).eps)
 
 
 def rates_of(
-    lab: Laboratory, variables: Mapping[str, PartVariable], changes: np.ndarray
+    lab: Laboratory,
+    variables: Mapping[str, PartVariable],
+    changes: np.ndarray,
+    feedthrough: np.ndarray,
 ) -> tuple[Rate, ...]:
     """Pairs of outputs that a declaration or their names call rates of each other, tested.
+
+    An output that inputs pass to moves as they do; it is left out.
 
     Raises:
         Refused: the part refuses the steps.
@@ -33,7 +38,8 @@ def rates_of(
     for name in lab.outputs:
         declared = variables[name].rate
         rate = named_rate(name, lab.outputs) if declared is None else declared
-        if rate and rate in lab.outputs:
+        passed = feedthrough[lab.outputs.index(name)]
+        if rate and rate in lab.outputs and not np.nan_to_num(passed, nan=1.0).any():
             pairs.append((name, rate))
     if not pairs:
         return ()

@@ -13,7 +13,7 @@ _RESTORES = {
     False: "its saved state is not to be trusted",
     None: "it does not save its state",
 }
-_HOLDS = {Answer.YES: "holds", Answer.NO: "does not hold", Answer.UNKNOWN: "is not clear"}
+_HOLDS = {Answer.NO: "does not hold", Answer.UNKNOWN: "is not clear"}
 
 
 def described(signature: Signature) -> list[str]:
@@ -24,13 +24,23 @@ def described(signature: Signature) -> list[str]:
     lines += passed[:_MOST]
     if len(passed) > _MOST:
         lines.append(f"and {len(passed) - _MOST} more of these")
+    return [*lines, *_rates(signature), *signature.notes]
+
+
+def _rates(signature: Signature) -> Iterator[str]:
+    """Those that do not hold, one by one; of the others how many there are."""
+    right = [rate for rate in signature.rates if rate.holds is Answer.YES]
+    if len(right) == 1:
+        yield f"{right[0].rate} = d({right[0].of})/dt holds"
+    elif right:
+        yield f"{right[0].rate} = d({right[0].of})/dt holds, as {len(right) - 1} other rates do"
     for rate in signature.rates:
-        lines.append(f"{rate.rate} = d({rate.of})/dt {_HOLDS[rate.holds]}{_off(rate)}")
-    return [*lines, *signature.notes]
+        if rate.holds is not Answer.YES:
+            yield f"{rate.rate} = d({rate.of})/dt {_HOLDS[rate.holds]}{_off(rate)}"
 
 
 def _off(rate: Rate) -> str:
-    if rate.holds is Answer.YES or not rate.ratio:
+    if not rate.ratio:
         return ""
     return f": it is {1.0 / rate.ratio:.4g} times that"
 

@@ -41,6 +41,7 @@ class DescribedPart:
     name: PartPath
     file: Path
     values: Values
+    has_states: bool | None = None
 
     @cached_property
     def model(self) -> ModelDescription:

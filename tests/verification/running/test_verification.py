@@ -1,0 +1,40 @@
+"""The error by half the step is that against the twin, to a factor of 3 and mostly to 1.5.
+
+With an error of the power p of the step the difference of both runs is 1 - 2^-p of it: 1/2, 3/4,
+7/8, 15/16 for p = 1 to 4; times 4/3 that is 0.67 to 1.25 of the error.
+"""
+
+import pytest
+
+import herringbone as hb
+from herringbone.commands.main import main
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "step"),
+    [("jacobi:order=1", 5e-6), ("jacobi:order=2", 10e-6), ("li:degree=3", 100e-6)],
+)
+def test_against_the_twin(algorithm, step):
+    run = hb.run(
+        "test_rig", algorithm=algorithm, step=step, t_end=0.01, record_step=step, fmu="in-process",
+        reference=True, verify=True,
+    )  # fmt: skip
+    for group, error in run.error.items():
+        assert 0.6 * error < run.verification.groups[group] < 1.6 * error
+    assert run.verification.worst_error >= max(run.verification.groups.values())
+    (row,) = (row for row in run.budget if row.source == "coupling")
+    assert row.value == max(run.error.values())  # what is measured goes before
+
+
+def test_it_is_said_and_takes_the_rule_s_place(tmp_path, capsys):
+    command = ["run", "test_rig", "--t-end", "0.01", "--fmu", "in-process", "--verify"]
+    assert main([*command, "--step", "2e-5", "-o", str(tmp_path)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Error by half step bearing force" in said
+    assert "coupling (estimated; " in said
+
+
+def test_a_step_that_adapts_itself_is_refused(tmp_path, capsys):
+    command = ["run", "test_rig", "--t-end", "0.002", "--fmu", "in-process", "--verify"]
+    assert main([*command, "--tolerance", "1e-2", "-o", str(tmp_path)]) == 2
+    assert "adapts its step to the tolerance" in capsys.readouterr().err
