@@ -56,6 +56,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     try:
         with many_of(fmu.stem, fmu) as make:
             part = make()
+            part.enter_initialization(0.0, 1.0)
+            part.exit_initialization()  # pythonfmu does not survive freeing what was not
             experiment = part.model.defaultExperiment
             own = float(experiment.stepSize) if experiment and experiment.stepSize else _STEP
             try:
