@@ -58,7 +58,7 @@ def test_the_default_holds_the_contract(shipped):
         lambda: component(*shipped["default"]), static=housing.static_compliance()
     )
     assert [f.test for f in findings if not f.holds] == []
-    assert len(findings) == 10
+    assert len(findings) == 13
 
 
 def test_other_statics_are_noticed(shipped):
@@ -137,14 +137,43 @@ class Coarse(Seats):
         return super().step(t, h)
 
 
+class Millimetres(Seats):
+    def step(self, t, h):
+        status = super().step(t, h)
+        self.memory[12:24] = list(1e3 * self.v)
+        return status
+
+
+class Backwards(Seats):
+    def step(self, t, h):
+        status = super().step(t, h)
+        self.memory[12:24] = list(-self.v)
+        return status
+
+
+class Late(Seats):
+    """It moves under the force of the step before."""
+
+    def __init__(self):
+        super().__init__()
+        self.last = np.zeros(12)
+
+    def force(self, f, s, v):
+        last, self.last = self.last, f
+        return super().force(last, s, v)
+
+
 @pytest.mark.parametrize(
     ("kind", "fails"),
     [
         (Seats, set()),
+        (Millimetres, {"v = ds/dt"}),
+        (Backwards, {"v = ds/dt"}),
+        (Late, {"no delay"}),
         (Active, {"passivity"}),
         (Directed, {"reciprocity"}),
         (Hardening, {"superposition"}),
-        (Direct, {"no feedthrough"}),
+        (Direct, {"no feedthrough", "v = ds/dt"}),
         (Preloaded, {"zero stays zero", "superposition"}),
         (Creeping, {"static compliance"}),
         (Coarse, {"step halving"}),
@@ -154,6 +183,20 @@ def test_each_fault_fails_its_test(monkeypatch, kind, fails):
     monkeypatch.setattr(housing_behaviour, "_SETTLING", 700)
     found = {f.test for f in check_housing(kind) if not f.holds}
     assert found == fails
+
+
+def test_no_damping_is_a_remark(monkeypatch):
+    """Exact oscillators without damping keep their energy; damped ones of 30 % lose it."""
+    monkeypatch.setattr(housing_behaviour, "_SETTLING", 700)
+
+    class Undamped(Seats):
+        def force(self, f, s, v):
+            return f - STIFFNESS * s
+
+    for kind, said in ((Undamped, True), (Seats, False)):
+        (remark,) = (f for f in check_housing(kind) if f.test == "damping")
+        assert remark.holds
+        assert ("next to no damping" in remark.measured) == said
 
 
 def test_missing_and_wrong_variables(monkeypatch):

@@ -31,6 +31,11 @@ RECIPROCITY_ERROR = 0.01
 SUPERPOSITION_ERROR = 1e-3
 NEGATIVE_WORK = 1e-3
 HALVING_CHANGE = 0.01
+VELOCITY_ERROR = 0.1
+"""Semi-implicit Euler in steps of 20 us has 5 % at 800 Hz."""
+LEAST_PROMPTNESS = 0.1
+"""Share of the velocity after two steps that is there after one; 0 if the answer comes late."""
+_UNDAMPED = 0.9
 FEEDTHROUGH_RATIO = 0.75
 """Largest share of a step's deflection that half the step may give; a mass alone gives 1/4."""
 
@@ -95,6 +100,39 @@ class Behaviour:
         return Finding(
             "no feedthrough", holds, f"s(h/2) / s(h) = {ratio:.2f}", f"{FEEDTHROUGH_RATIO:g}"
         )
+
+    def delay(self) -> Finding:
+        """Velocities after one step under a force are those after two, over 2 for a mass."""
+        forces = np.full((2, len(FORCES)), _FORCE)
+        one, two = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
+        ratio = float(one.max() / two.max()) if two.any() else 0.0
+        holds = ratio >= LEAST_PROMPTNESS
+        return Finding("no delay", holds, f"v(h) / v(2h) = {ratio:.2f}", f"{LEAST_PROMPTNESS:g}")
+
+    def velocities(self) -> Finding:
+        """The integral of the velocities is the change of the positions: by Simpson's rule."""
+        names = (*POSITIONS, *VELOCITIES)
+        found = self._outputs(random_forces(1, self._step), names, self._step)
+        s, v = np.split(found, 2, axis=1)
+        pieces = (v[:-2:2] + 4.0 * v[1:-1:2] + v[2::2]) * self._step / 3.0
+        error = float(np.abs(np.cumsum(pieces, axis=0) - (s[2::2] - s[0])).max())
+        error /= float(np.abs(s).max())
+        holds = error <= VELOCITY_ERROR
+        return Finding(
+            "v = ds/dt", holds, f"off by {100 * error:.2g} %", f"{100 * VELOCITY_ERROR:g} %"
+        )
+
+    def damping(self) -> Finding:
+        """Whether vibration after a push dies out; a remark only, as none is legal."""
+        forces = np.zeros((2 * _SETTLING, len(FORCES)))
+        forces[0] = _FORCE
+        speed = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
+        part = len(speed) // 4
+        left = float(np.sqrt((speed[-part:] ** 2).mean() / (speed[:part] ** 2).mean()))
+        shown = f"{100 * left:.2g} % left after {1e3 * 2 * _SETTLING * self._step:.3g} ms"
+        if left > _UNDAMPED:
+            shown += ": next to no damping"
+        return Finding("damping", True, shown, "a remark")
 
     def zero(self) -> Finding:
         """Nothing moves without force."""

@@ -4,7 +4,8 @@ Variables: twelve forces on the housing `<seat>.f_x` ... [N] are inputs; the mot
 `<seat>.s_x` ... [m] and `<seat>.v_x` ... [m/s] are outputs without direct dependence on inputs.
 Behaviour, from rest: zero stays zero; a constant force leads to a constant deflection; the
 compliance is reciprocal; responses add up; a force record never gets out more work than it put in;
-a halved step changes little.
+a halved step changes little; velocities are the rates of the positions; the answer comes in the
+step of the force. Whether it has damping is told, not asked for.
 
 Behaviour is tested in `housing.behaviour`.
 """
@@ -64,12 +65,15 @@ def check_housing(
     tests = Behaviour(open_part, step)
     for what, test in (
         ("no feedthrough", tests.feedthrough),
+        ("no delay", tests.delay),
+        ("v = ds/dt", tests.velocities),
         ("zero stays zero", tests.zero),
         ("static compliance", lambda: tests.statics(static)),
         ("reciprocity", tests.reciprocity),
         ("superposition", tests.superposition),
         ("passivity", tests.passivity),
         ("step halving", tests.halving),
+        ("damping", tests.damping),
     ):
         progress(what)
         findings.append(test())
