@@ -1,7 +1,7 @@
 """Every call ends soon: a million micro steps are taken, and a longer step is refused.
 
-In processes of their own, so that a step that never ends is a failure and no hang. Seconds are of
-the CPU: other work of the machine does not count.
+In a process of their own for each kind, so that a step that never ends is a failure and no hang.
+Seconds are of the CPU: other work of the machine does not count.
 """
 
 import re
@@ -22,17 +22,18 @@ from pathlib import Path
 from herringbone.fmi.host import open_host
 from herringbone.core import FmuError
 
-name, file, *steps = sys.argv[1:]
-for text in ("1e-6", *steps):
-    with open_host(name, Path(file)) as part:
-        part.initialise()
-        begin = process_time()
-        try:
-            part.step(0.0, float(text))
-            said = "done"
-        except FmuError as error:
-            said = str(error)
-        print(process_time() - begin, said, flush=True)
+steps, *parts = sys.argv[1:]
+for name, file in zip(parts[::2], parts[1::2]):
+    for text in ("1e-6", *steps.split()):
+        with open_host(name, Path(file)) as part:
+            part.initialise()
+            begin = process_time()
+            try:
+                part.step(0.0, float(text))
+                said = "done"
+            except FmuError as error:
+                said = str(error)
+            print(name, text, process_time() - begin, said, flush=True)
 """
 _IN_PROCESS = """
 import sys
@@ -43,32 +44,34 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.core import FmuError, Instance
 from herringbone.cosim.loops.drive import drive
 
-name, _, *steps = sys.argv[1:]
-for text in ("1e-6", *steps):
-    part = InProcessPart(Instance(component(name), name))
-    part.enter_initialization(0.0, 1.0)
-    part.exit_initialization()
-    begin = process_time()
-    try:
-        drive(part, (), np.zeros((1, 0)), (), float(text))
-        said = "done"
-    except FmuError as error:
-        said = str(error)
-    print(process_time() - begin, said, flush=True)
+steps, *parts = sys.argv[1:]
+for name in parts[::2]:
+    for text in ("1e-6", *steps.split()):
+        part = InProcessPart(Instance(component(name), name))
+        part.enter_initialization(0.0, 1.0)
+        part.exit_initialization()
+        begin = process_time()
+        try:
+            drive(part, (), np.zeros((1, 0)), (), float(text))
+            said = "done"
+        except FmuError as error:
+            said = str(error)
+        print(name, text, process_time() - begin, said, flush=True)
 """
 
 
-def stepped(program, name, file):
-    """(CPU seconds, what is said) of one step of a fresh instance, for each of STEPS.
+def stepped(program, files):
+    """(CPU seconds, what is said) of one step of a fresh instance, by component and step.
 
-    A first step compiles what is not in the cache, and is left out.
+    A first step of 1e-6 s compiles what is not in the cache.
     """
+    parts = [str(word) for pair in files.items() for word in pair]
     found = subprocess.run(
-        [sys.executable, "-c", program, name, str(file), *STEPS],
-        capture_output=True, text=True, check=True, timeout=300,
+        [sys.executable, "-c", program, " ".join(STEPS), *parts],
+        capture_output=True, text=True, check=True, timeout=600,
     )  # fmt: skip
-    _, *lines = (line.partition(" ") for line in found.stdout.splitlines())
-    return {step: (float(line[0]), line[2]) for step, line in zip(STEPS, lines, strict=True)}
+    lines = (line.split(" ", 3) for line in found.stdout.splitlines())
+    return {(name, step): (float(seconds), said) for name, step, seconds, said in lines}
 
 
 def expected(name, step):
@@ -81,23 +84,39 @@ def expected(name, step):
     return r"at most [\d.e+]+ s" if float(step) >= 1e3 else "^done$"
 
 
-def check(program, name, file, seconds):
-    for step, (elapsed, said) in stepped(program, name, file).items():
+def check(found, name, seconds):
+    for step in STEPS:
+        elapsed, said = found[name, step]
         assert re.search(expected(name, step), said), (step, said)
         assert elapsed < seconds, (step, elapsed)
 
 
+@pytest.fixture(scope="module")
+def python(python_fmus):
+    return stepped(_FMU, python_fmus)
+
+
+@pytest.fixture(scope="module")
+def native(native_fmus):
+    return stepped(_FMU, native_fmus)
+
+
+@pytest.fixture(scope="module")
+def in_process():
+    return stepped(_IN_PROCESS, dict.fromkeys(NAMES, "-"))
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_python(python_fmus, name):
+def test_python(python, name):
     """Of a refusal, the message compiles a function that tells the longest step."""
-    check(_FMU, name, python_fmus[name], 60.0)
+    check(python, name, 60.0)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_native(native_fmus, name):
-    check(_FMU, name, native_fmus[name], 1.0)
+def test_native(native, name):
+    check(native, name, 1.0)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_in_process(name):
-    check(_IN_PROCESS, name, "-", 60.0)
+def test_in_process(in_process, name):
+    check(in_process, name, 60.0)

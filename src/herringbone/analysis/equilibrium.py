@@ -9,13 +9,18 @@ a null space: Gauss-Newton with the smallest step in scaled unknowns.
 from dataclasses import dataclass
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import Role
 from herringbone.cosim.structure.system import System
 
-_ITERATIONS = 40
+_BLAS = ThreadpoolController()
+"""Systems of a hundred equations: threads of BLAS would mostly wait for each other."""
+_ITERATIONS, _PATIENCE = 40, 12
+"""At most, and without getting closer: a search that is caught stays so."""
+_CLOSER = 0.9
 _CONVERGED = 1e-11
 _DIFFERENCE = 1e-3
 _SCALE = {
@@ -50,7 +55,8 @@ def equilibrium(system: System) -> Equilibrium:
         EquilibriumError: no equilibrium was found.
     """
     twin = Twin(system)
-    return _solved(system, twin, _held(twin))
+    with _BLAS.limit(limits=1, user_api="blas"):
+        return _solved(system, twin, _held(twin))
 
 
 def _held(twin: Twin) -> int | None:
@@ -83,8 +89,8 @@ def _solved(system: System, twin: Twin, held: int | None) -> Equilibrium:
         return np.concatenate([dx[keep], outputs])
 
     r = residual(x)
-    first = None
-    for _ in range(_ITERATIONS):
+    first, best, since = None, np.inf, 0
+    for iteration in range(_ITERATIONS):
         jacobian = _jacobian(residual, x, r, scale) * free
         rows = np.abs(jacobian).max(axis=1)
         rows[rows == 0.0] = 1.0
@@ -92,11 +98,15 @@ def _solved(system: System, twin: Twin, held: int | None) -> Equilibrium:
         first = first or max(scaled, 1.0)
         if scaled < _CONVERGED * first:
             return Equilibrium(_start_values(twin, x), float(scaled / first))
+        if scaled < _CLOSER * best:
+            best, since = scaled, iteration
+        if iteration - since >= _PATIENCE:
+            break
         step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
         x, r = _line_search(residual, x, r, step, rows)
     worst = _row_names(twin, keep, zero)[int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
-        f"no steady rotation of '{system.name}' was found in {_ITERATIONS} iterations: {worst} "
+        f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
         "does not vanish; look for a load there that nothing balances, or start with --start rest"
     )
 

@@ -104,11 +104,16 @@ class InProcessPart:
             self.instance.memory.ctypes.data_as(ctypes.c_void_p).value or 0,
             fmi_calls.set_real.address,
             fmi_calls.get_real.address,
-            _do_step_address(self.instance.component.name),
+            self._do_step,
             fmi_calls.get_state.address,
             fmi_calls.set_state.address,
             fmi_calls.free_state.address,
         )
+
+    @property
+    def _do_step(self) -> int:
+        """Address of fmi2DoStep; it is compiled when this is asked for."""
+        return _do_step_address(self.instance.component.name)
 
     def new_state(self) -> int:
         """Memory for a saved state: number of mutable values, then the values."""

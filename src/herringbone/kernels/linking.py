@@ -28,14 +28,25 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import InlineOverloads, NopythonRewrites
 from numba.core.typing import Signature
-from numba.core.untyped_passes import LiteralPropagationSubPipelinePass, LiteralUnroll
+from numba.core.untyped_passes import (
+    InlineClosureLikes,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+)
 
 from herringbone.core.activity import COMPILING
 from herringbone.kernels.typed_calls import remembered_calls
 
-_NEEDLESS = {NopythonRewrites, InlineOverloads, LiteralUnroll, LiteralPropagationSubPipelinePass}
-"""Passes of numba for what the kernel language does not have: array expressions, functions that are
-inlined before they are typed, loops over tuples of several types."""
+_NEEDLESS = {
+    NopythonRewrites,
+    InlineOverloads,
+    InlineClosureLikes,
+    LiteralUnroll,
+    LiteralPropagationSubPipelinePass,
+}
+"""Passes of numba for what the kernel language does not have: array expressions, functions inside
+of functions, functions that are inlined before they are typed, loops over tuples of several types.
+"""
 _SHARED = llvm.Linkage.linkonce_odr
 
 
@@ -219,8 +230,12 @@ class KernelDispatcher(CPUDispatcher):
             return super().compile(sig)
 
     def get_call_template(self, args: tuple, kws: dict) -> tuple:
-        """For calls from other kernels: those of the piece."""
-        return self.piece.get_call_template(args, kws)
+        """For calls from other kernels: those of the piece.
+
+        It is compiled once, not for each constant that it is called with; LLVM sees these where it
+        takes the piece into its caller.
+        """
+        return self.piece.get_call_template(tuple(map(types.unliteral, args)), kws)
 
     def get_overload(self, sig: Signature) -> object:
         """What other kernels find the code by."""

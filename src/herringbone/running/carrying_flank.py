@@ -26,13 +26,13 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
     Raises:
         EquilibriumError: there is no steady rotation on either flank.
     """
-    flanks = _free_flanks(system)
+    flanks, wrong = _free_flanks(system), None
     try:
         values = steady_values(system)
     except EquilibriumError as error:
         if not flanks:
             raise _with_hint(error, system) from error
-        coasting = list(flanks)
+        coasting, wrong = list(flanks), error
     else:
         coasting = [gear for gear in flanks if _coasts(system.with_values(values), gear)]
         if not coasting:
@@ -41,8 +41,8 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
     try:
         found = _coasting(system.with_values(chosen), coasting)
     except EquilibriumError:
-        if set(coasting) == set(flanks):
-            steady_values(system)  # what is wrong on the drive flank is what the user can tell
+        if wrong:  # what is wrong on the drive flank is what the user can tell
+            raise wrong from None
         raise
     lines = [f"{g}: the coast flank carries; y is its line of action" for g in coasting]
     return {**chosen, **found}, tuple(lines)

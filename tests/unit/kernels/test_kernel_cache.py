@@ -8,6 +8,7 @@ import subprocess
 import sys
 from importlib.metadata import requires, version
 
+import numpy as np
 import pytest
 
 from herringbone.core.caching import keys as cache_keys
@@ -60,6 +61,20 @@ part = factory({factor})
 @kernel
 def {name}(x: float) -> float:
     return part(x) + part(x + 1.0) + part(x + 2.0)
+"""
+CONSTANTS = """
+import numpy as np
+from herringbone.kernels.jit import kernel
+
+
+@kernel
+def entry(b: np.ndarray, side: int, part: int) -> float:
+    return b[2 * side + part]
+
+
+@kernel
+def whole(b: np.ndarray) -> float:
+    return entry(b, 0, 0) + 10.0 * entry(b, 0, 1) + 100.0 * entry(b, 1, 0) + entry(b, 1, b.size - 3)
 """
 
 
@@ -165,6 +180,12 @@ def test_pieces_have_no_machine_code_and_are_their_wholes_own(cache, tmp_path, m
     defined = [f for f in whole.library._final_module.functions if not f.is_declaration]
     found = [f.linkage.name for f in defined if "scaled" in f.name]
     assert found == ["internal"]  # it is there, as it is too long to become a part of its caller
+
+
+def test_a_piece_is_compiled_once_whatever_constants_it_is_called_with(cache, tmp_path):
+    module = load(tmp_path / "constants.py", CONSTANTS)
+    assert module.whole(np.array([1.0, 2.0, 3.0, 4.0])) == 1.0 + 20.0 + 300.0 + 4.0
+    assert len(module.entry.piece.overloads) == 1
 
 
 def test_caches_of_two_processes_agree_in_a_third(tmp_path):

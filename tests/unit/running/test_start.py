@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
+from herringbone.analysis import equilibrium
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import HerringboneError, ParameterError, StructureError
+from herringbone.core import EquilibriumError, HerringboneError, ParameterError, StructureError
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import LOAD_RAMP_TIME, started
 from herringbone.scenes import Scene, Start, find_scene, read_scene
@@ -159,3 +161,20 @@ def test_no_equilibrium_says_what_to_do():
     system = read_system("gearbox").with_values({"gear_mesh.pinion.tau": 200.0})
     with pytest.raises(HerringboneError, match=r"gear_mesh\.der.*--start rest"):
         started(system, Scene("s"))
+
+
+def test_a_search_that_is_caught_is_given_up(monkeypatch):
+    """On one thread of BLAS: with a hundred equations threads wait for each other, 20 s in all."""
+    threads = []
+
+    def counted(*arguments):
+        threads.append({p["num_threads"] for p in threadpool_info() if p["user_api"] == "blas"})
+        return jacobian(*arguments)
+
+    jacobian = equilibrium._jacobian
+    monkeypatch.setattr(equilibrium, "_jacobian", counted)
+    system = read_system("gearbox").with_values({"gear_mesh.pinion.tau": 200.0})
+    with threadpool_limits(limits=2, user_api="blas"), pytest.raises(EquilibriumError):
+        equilibrium.equilibrium(system)
+    assert equilibrium._PATIENCE < len(threads) < equilibrium._ITERATIONS
+    assert all(found == {1} for found in threads)

@@ -5,24 +5,17 @@ grow, and one just below it decay, by the predicted factor in every macro step, 
 prediction is made of: the runs step the parts themselves, thousands of times, and know no matrix.
 """
 
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from support.rig_limits import predicted, rig
 
-from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.limits import default_algorithms, warn_if_unstable
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.components.in_process import InProcessPart
-from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import LI, FixedPoint
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.structure.system_file import find_system, read_system
-from herringbone.running.start import started
-from herringbone.scenes import find_scene, read_scene
 
 SEATS = "gearbox.modal_housing."
 MARGIN = 0.02
@@ -38,48 +31,6 @@ LARGEST = 2e-4
 KICKED = {"y_1": 1.0, "y_2": -0.5, "y_3": 0.5, "z_3": 1.0, "z_4": 0.5, "approach": 0.5}
 FEWEST, MOST = 200, 40000
 VARIANTS = 3
-SEED = 2016
-STIFFNESS = "radial_stiffness", "axial_stiffness"
-DAMPING = "radial_damping", "axial_damping"
-
-
-def variant(number, system):
-    """Bearing stiffness x 0.1 to 100, bearing damping x 0.5 to 2, pinion mass x 0.5 to 2."""
-    random = np.random.default_rng(SEED + number)
-    bounds = ((0.1, 100.0), (0.5, 2.0), (0.5, 2.0))
-    stiffness, damping, mass = (np.exp(random.uniform(*np.log(b))) for b in bounds)
-    damping *= np.sqrt(stiffness)
-    scale = {f"bearing_supports.{g}.{q}": stiffness for g in ("pinion", "wheel") for q in STIFFNESS}
-    scale |= {f"bearing_supports.{g}.{q}": damping for g in ("pinion", "wheel") for q in DAMPING}
-    scale |= {"gear_mesh.pinion.mass": mass, "gear_mesh.pinion.inertia": mass}
-    return system.with_values({name: x * start(system, name) for name, x in scale.items()})
-
-
-def start(system, path):
-    """Value of a parameter in a system."""
-    instance, name = system.split(path)
-    part = system.part(instance)
-    declared = COMPONENTS[part.component].declaration.variable(name).start
-    return float(part.values.get(name, declared))
-
-
-@cache
-def rig(number):
-    """The test rig under load, in equilibrium: 0 as it is, else a random variant."""
-    scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
-    system = read_system("test_rig")
-    return started(variant(number, system) if number else system, scene)[0]
-
-
-@cache
-def predicted(number, algorithm):
-    """Growth over the step, and unstable bands [s]."""
-    network, instances = linear_network(rig(number))
-    amplification = Amplification(network, instances, algorithm)
-    growth = cache(amplification.growth)
-    frequency = highest_frequency(network, instances)
-    smallest, largest = 0.02 / frequency, 25.0 / frequency
-    return growth, unstable_bands(growth, smallest, largest)
 
 
 def measured(number, algorithm, step, expected, frequency):

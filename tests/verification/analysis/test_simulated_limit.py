@@ -5,10 +5,9 @@ prevails. The non-linear rig, whose mesh stiffness varies and whose teeth may se
 unstable near the limit of its linear parts.
 """
 
-from functools import cache
-
 import numpy as np
 import pytest
+from support.rig_limits import predicted, rig
 
 from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability import atlas
@@ -20,12 +19,8 @@ from herringbone.analysis.stability.simulated_limit import (
     nonlinear_limit,
     run_steps,
 )
-from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.cosim.algorithms import LI, Jacobi
-from herringbone.cosim.structure.system_file import find_system, read_system
-from herringbone.running.start import started
-from herringbone.scenes import find_scene, read_scene
 
 FOLDS = 12.0
 """Powers of e by which a motion grows or decays in a run: to 6e-6, above rounding."""
@@ -54,12 +49,6 @@ def test_growth_is_that_of_the_matrix(algorithm, h_w):
     assert found == pytest.approx(expected, rel=RATE)
 
 
-@cache
-def rig():
-    scene = read_scene(find_scene(find_system("test_rig"), "loaded"))
-    return started(read_system("test_rig"), scene)[0]
-
-
 @pytest.mark.parametrize(
     "algorithm",
     [
@@ -69,8 +58,7 @@ def rig():
     ids=str,
 )
 def test_non_linear_limit_is_near_the_predicted_one(algorithm):
-    growth = cache(Amplification(*linear_network(rig()), algorithm).growth)
-    bands = unstable_bands(growth)
+    growth, bands = predicted(0, algorithm)
     limit = bands[0][0]
     found = nonlinear_limit(rig(), algorithm, limit, bands)
     assert found is not None

@@ -11,7 +11,7 @@ from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import GROWTH, Amplification, Growth
 from herringbone.analysis.stability.limits import step_limits
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
-from herringbone.analysis.stability.step_map import MappedPart
+from herringbone.analysis.stability.step_map import MappedPart, linear_part
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.loops.calls import do_step
@@ -143,6 +143,17 @@ def test_mapped_step_is_the_part_s_own_step(degree):
     moved = np.abs(own - base)
     assert (np.abs(mapped - own) <= 1e-6 * moved + 1e-12 * np.abs(own)).all()
     assert moved.max() > 0.0
+
+
+def test_the_step_of_a_mapped_part_is_not_compiled(monkeypatch):
+    """Half a second for the gear mesh, in every first run."""
+    asked = []
+    monkeypatch.setattr("herringbone.components.in_process._do_step_address", asked.append)
+    _, instances = linear_network(rig())
+    for instance in instances:
+        assert linear_part(instance).addresses.can_restore
+    mapped = {"gear_mesh", "drive_motor", "load_motor"}
+    assert set(asked) == {i.component.name for i in instances} - mapped
 
 
 def test_stiffer_mesh_has_a_higher_tangent():

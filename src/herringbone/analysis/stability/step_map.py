@@ -84,8 +84,12 @@ class MappedPart(LinearPart):
     def addresses(self) -> Addresses:
         """As in-process, on the map's memory."""
         memory = self._memory.ctypes.data_as(ctypes.c_void_p).value or 0
-        do_step = affine_step.affine_step.address
-        return super().addresses._replace(component=memory, do_step=do_step)
+        return super().addresses._replace(component=memory)
+
+    @property
+    def _do_step(self) -> int:
+        """Of the map: the component's own is not compiled."""
+        return affine_step.affine_step.address
 
     def new_state(self) -> int:
         """Memory for a saved state: header and values."""

@@ -4,6 +4,9 @@ import ast
 import hashlib
 from typing import NamedTuple
 
+_INSIDE = (ast.expr, ast.expr_context, ast.operator)
+"""Most nodes: what holds neither imports nor statements."""
+
 
 class Syntax(NamedTuple):
     """A source file, as far as what it computes depends on it.
@@ -20,8 +23,9 @@ class Syntax(NamedTuple):
 def syntax_of(source: str) -> Syntax:
     """The syntax of a Python source; raises SyntaxError."""
     tree = ast.parse(source)
-    imports = {name for node in ast.walk(tree) for name in _imported(node)}
-    for node in ast.walk(tree):
+    nodes = [node for node in ast.walk(tree) if not isinstance(node, _INSIDE)]
+    imports = {name for node in nodes for name in _imported(node)}
+    for node in nodes:
         for field in ("body", "orelse", "finalbody"):
             if isinstance(statements := getattr(node, field, None), list):
                 setattr(node, field, [s for s in statements if not _is_text(s)])

@@ -1,6 +1,5 @@
 """An FMU 3.0 as participant."""
 
-from collections.abc import Callable
 from ctypes import CFUNCTYPE, POINTER, Array, c_double, c_int, c_size_t, c_uint32, c_void_p
 
 import numpy as np
@@ -11,6 +10,7 @@ from herringbone.core.part import Addresses
 from herringbone.cosim.fmu import fmi3_calls
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.variables import Element, read_elements
+from herringbone.kernels.linking import CFunction
 
 _WARNING = 1
 _FUNCTIONS = {
@@ -23,8 +23,6 @@ _FUNCTIONS = {
     "get_derivatives": "fmi3GetOutputDerivatives",
 }
 _EXCHANGE = CFUNCTYPE(c_int, c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double))
-_set_real = _EXCHANGE(fmi3_calls.set_real.address)
-_get_real = _EXCHANGE(fmi3_calls.get_real.address)
 
 
 class Fmu3Part(FmuPart):
@@ -85,9 +83,8 @@ class Fmu3Part(FmuPart):
 
     def _write(self, kind: str, reference: int, value: float | str) -> None:
         if kind == "Float64":
-            self._exchange(
-                _set_real, "fmi3SetFloat64", (c_uint32 * 1)(reference), (c_double * 1)(float(value))
-            )
+            number, content = (c_uint32 * 1)(reference), (c_double * 1)(float(value))
+            self._exchange(fmi3_calls.set_real, "fmi3SetFloat64", number, content)
             return
         setter = "setInt64" if kind == "Enumeration" else f"set{kind}"
         getattr(self.slave, setter)([reference], [value])
@@ -95,13 +92,19 @@ class Fmu3Part(FmuPart):
     def _read(self, references: list[int]) -> list[float]:
         count = len(references)
         values = (c_double * count)()
-        self._exchange(_get_real, "fmi3GetFloat64", (c_uint32 * count)(*references), values)
+        numbers = (c_uint32 * count)(*references)
+        self._exchange(fmi3_calls.get_real, "fmi3GetFloat64", numbers, values)
         return list(values)
 
     def _exchange(
-        self, adapter: Callable, function: str, references: Array[c_uint32], values: Array[c_double]
+        self,
+        adapter: CFunction,
+        function: str,
+        references: Array[c_uint32],
+        values: Array[c_double],
     ) -> None:
-        status = adapter(self._memory.ctypes.data, references, len(references), values)
+        call = _EXCHANGE(adapter.address)
+        status = call(self._memory.ctypes.data, references, len(references), values)
         if status > _WARNING:
             raise FMICallException(function=function, status=status)
 

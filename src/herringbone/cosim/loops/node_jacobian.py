@@ -5,11 +5,34 @@ import numpy as np
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
-from herringbone.kernels.jit import seldom
+from herringbone.kernels.jit import inlined, seldom
+
+
+@inlined
+def keep(buffers: Buffers, base: np.ndarray, first: np.ndarray) -> None:
+    """Keep the residual and the signals at the nodes."""
+    for k in range(base.shape[0]):
+        for i in range(base.shape[1]):
+            base[k, i] = buffers.rest[k, i]
+    for k in range(first.shape[0]):
+        for i in range(first.shape[1]):
+            first[k, i] = buffers.nodes[k, i]
+
+
+@inlined
+def write_column(
+    buffers: Buffers, base: np.ndarray, jacobian: np.ndarray, column: int, change: float
+) -> None:
+    """A column of the Jacobian, from the residual and the one without the change."""
+    count = base.shape[1]
+    for row in range(jacobian.shape[0]):
+        difference = buffers.rest[row // count, row % count] - base[row // count, row % count]
+        same = 1.0 if row == column else 0.0
+        jacobian[row, column] = difference / change + same
 
 
 @seldom
-def sensitivity(  # noqa: PLR0912 (loops instead of array expressions)
+def sensitivity(
     layout: Layout,
     nodes: NodeLayout,
     buffers: Buffers,
@@ -35,32 +58,22 @@ def sensitivity(  # noqa: PLR0912 (loops instead of array expressions)
         -1, or the part that failed.
     """
     failed = begin(layout, nodes, buffers, order, known, t, h, True)
-    if failed < 0:
-        failed = one_pass(layout, nodes, buffers, t, h)
-    count = nodes.unknown.size
-    for k in range(base.shape[0]):
-        for i in range(count):
-            base[k, i] = buffers.rest[k, i]
-    for k in range(first.shape[0]):
-        for i in range(first.shape[1]):
-            first[k, i] = buffers.nodes[k, i]
-    for column in range(jacobian.shape[1]):
+    count, columns = nodes.unknown.size, jacobian.shape[1]
+    for column in range(-1, columns + 1):  # the first and the last pass change nothing
+        if failed < 0 and column >= 0:
+            failed = restore(layout, nodes, buffers, False)
         if failed >= 0:
             break
-        k, i = column // count, column % count
-        failed = restore(layout, nodes, buffers, False)
-        buffers.trial[k, i] += change[i]
-        if failed < 0:
-            failed = one_pass(layout, nodes, buffers, t, h)
-        buffers.trial[k, i] -= change[i]
-        for row in range(jacobian.shape[0]):
-            difference = buffers.rest[row // count, row % count] - base[row // count, row % count]
-            same = 1.0 if row == column else 0.0
-            jacobian[row, column] = difference / change[i] + same
-    if failed < 0:
-        failed = restore(layout, nodes, buffers, False)
-    if failed < 0:
+        changed = 0 <= column < columns
+        k, i = (column // count, column % count) if changed else (0, 0)
+        if changed:
+            buffers.trial[k, i] += change[i]
         failed = one_pass(layout, nodes, buffers, t, h)
+        if column < 0:
+            keep(buffers, base, first)
+        elif changed:
+            buffers.trial[k, i] -= change[i]
+            write_column(buffers, base, jacobian, column, change[i])
     for i in range(off.size):
         off[i] = 0.0
         for k in range(nodes.degree + 1):

@@ -88,20 +88,21 @@ def converge(
     h: float,
 ) -> tuple[int, float]:
     """Correct one macro step until the residual is small; who failed (or -1), and contraction."""
-    failed = one_pass(layout, nodes, buffers, t, h)
-    before, contraction = residual(buffers), 0.0
-    for done in range(control.most):
-        if failed >= 0 or (done >= control.corrections and before <= control.tolerance):
-            break
-        correct(buffers, correction)
-        failed = restore(layout, nodes, buffers, False)
+    failed, before, contraction = -1, 0.0, 0.0
+    for done in range(control.most + 1):
+        if done > 0:
+            if failed >= 0 or (done > control.corrections and before <= control.tolerance):
+                break
+            correct(buffers, correction)
+            failed = restore(layout, nodes, buffers, False)
         if failed < 0:
             failed = one_pass(layout, nodes, buffers, t, h)
         after = residual(buffers)
-        if before > control.tolerance:
-            contraction = max(contraction, after / before)
+        if done > 0:
+            buffers.counts[1] += 1
+            if before > control.tolerance:
+                contraction = max(contraction, after / before)
         before = after
-        buffers.counts[1] += 1
     buffers.worst[0] = max(buffers.worst[0], before)
     buffers.worst[1] = max(buffers.worst[1], contraction)
     return failed, contraction
