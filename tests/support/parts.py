@@ -51,6 +51,7 @@ class FakePart:
     variables: dict[str, PartVariable] = field(default_factory=dict)
     has_states: bool | None = None
     once: bool = False
+    one_step: bool = False
 
     def real(self, name, causality, unit="1", dependencies=None, **more):
         """Add a variable; outputs depend on nothing unless told."""
@@ -81,7 +82,7 @@ class CallbackPart:
 
     feedthrough = False
     has_states = None
-    once = False
+    once = one_step = False
 
     def __init__(self, name, inputs, outputs, *, nodes=True, state=True, start=None):
         self.name, self.inputs, self.outputs = name, tuple(inputs), tuple(outputs)

@@ -87,7 +87,7 @@ class InProcessPart:
         self.name = instance.name
         self.variables = part_variables(instance.component.name)
         self.has_states: bool | None = None
-        self.once = False
+        self.once = self.one_step = False
         self._start_time: float | None = None
         self._stale = False
         self._states: list[np.ndarray] = []

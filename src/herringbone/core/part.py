@@ -72,12 +72,14 @@ class Part(Protocol):
         has_states: whether outputs depend on what inputs were before; None if only the declared
             dependencies tell, by which a part that passes inputs to outputs has none.
         once: True if there can be no second instance.
+        one_step: True if the part declares that its steps must all have one length.
     """
 
     name: str
     variables: Mapping[str, PartVariable]
     has_states: bool | None
     once: bool
+    one_step: bool
 
     @property
     def addresses(self) -> Addresses:

@@ -16,6 +16,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
@@ -60,6 +61,8 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
     inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
     if part.once:
         return _unknown(inputs, outputs, step, "it can be instantiated once only: no trials")
+    if part.one_step:
+        return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
     try:
         start = _start(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
@@ -107,11 +110,28 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
         return part, lines
     lines += _contradictions(part.variables, signature)
-    if part.addresses.set_derivatives or signature.tick:
+    if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
         return part, lines
+    lines.append(
+        f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which "
+        "makes the coupling second order in the step"
+    )
     return NodalPart(part, signature), lines
+
+
+def _loops_without_end(part: Part, signature: Signature) -> bool:
+    """True if forces move the part directly, and its steps cannot be repeated.
+
+    Then extrapolated forces would come back around the algebraic loop enlarged; held ones do not.
+    """
+    moved = any(
+        motion_of_force(name)
+        for passed in signature.dependencies().values()
+        for name in passed or ()
+    )
+    return moved and not (part.addresses.can_restore and signature.restores)
 
 
 def _measured(

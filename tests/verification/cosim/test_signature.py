@@ -27,8 +27,8 @@ MAY_BE_UNKNOWN = {
     "dog_clutch": "it is not linear there",
     "single_flywheel": "it can be instantiated once only: no trials",
     "c_single_flywheel": "it can be instantiated once only: no trials",
-    "press_ram": "refuses a step of",
-    "c_press_ram": "refuses a step of",
+    "press_ram": "its steps cannot vary: no trials",
+    "c_press_ram": "its steps cannot vary: no trials",
 }
 """FMUs whose nature trials cannot find, and why."""
 

@@ -44,7 +44,9 @@ class FmuPart(ABC):
         self._running = False
         self.model = model or read_fmu(file)
         self.variables: Mapping[str, PartVariable] = read_variables(self.model)
-        self.once = bool(self.model.coSimulation.canBeInstantiatedOnlyOncePerProcess)
+        abilities = self.model.coSimulation
+        self.once = bool(abilities.canBeInstantiatedOnlyOncePerProcess)
+        self.one_step = not abilities.canHandleVariableCommunicationStepSize
         self._log = FmuLog()
         self._folder = folder or extract_fmu(file)
         self._owned = folder is None

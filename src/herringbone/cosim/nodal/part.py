@@ -28,7 +28,7 @@ class NodalPart:
         self.name, self.part, self.signature = part.name, part, signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
-        self.once = part.once
+        self.once, self.one_step = part.once, part.one_step
         self.variables: Mapping[str, PartVariable] = self._variables()
         self._memory = self._make_memory(pieces)
 
