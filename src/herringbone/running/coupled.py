@@ -2,14 +2,20 @@
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
 from herringbone.core.activity import activity
 from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
-from herringbone.cosim.algorithms import LI, Algorithm, choose_algorithm, with_tolerance
+from herringbone.cosim.algorithms import (
+    LI,
+    Algorithm,
+    Jacobi,
+    choose_algorithm,
+    with_tolerance,
+)
 from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
@@ -89,7 +95,11 @@ def coupled(
     lines, algorithm = list(asked.notes), asked.algorithm
     with same_folder(), exit_guard(), closing_all(open_parts(system, asked.fmu)) as opened:
         parts: Sequence[Part] = opened
-        if asked.probe:
+        if not system.connections and algorithm is None and asked.tolerance is None:
+            asked = replace(asked, step=asked.step or min(scene.record_step, scene.t_end))
+            algorithm = Jacobi(order=0)
+            lines.append(f"auto: {algorithm}, once per record, because nothing is connected")
+        elif asked.probe and system.connections:
             trial = asked.step or (algorithm or LI()).start_step
             parts, said = understood(system, opened, instances, trial)
             lines += said

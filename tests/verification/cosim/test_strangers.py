@@ -150,3 +150,15 @@ def test_motor_and_vehicle_on_the_gearbox(kinds, converged, step, plain):
     mean = np.abs(converged).mean()
     assert np.std(torque - converged) < 0.01 * mean
     assert abs(torque[1] - converged[1]) < 0.01 * mean
+
+
+def test_a_single_fmu_is_stepped_once_per_record(kinds, tmp_path):
+    """12 kg and 8 N s/m under 10 N, exact in the FMU: v = F / c (1 - exp(-c t / m))."""
+    system = write_system(tmp_path, "alone", [], {"mass": kinds / "LinearCarriage.fmu"})
+    run = hb.run(system, start="rest", t_end=0.01, record_step=1e-3, values={"mass.force_in": 10.0})
+    assert run.info.macro_steps == 10
+    assert run.info.passes == {"mass": 10}
+    time = run.data["time"].to_numpy()
+    exact = 10.0 / 8.0 * (1.0 - np.exp(-8.0 * time / 12.0))
+    assert run.data["mass.velocity"].to_numpy() == pytest.approx(exact, rel=1e-12)
+    assert not any(row.source == "coupling" for row in run.budget)

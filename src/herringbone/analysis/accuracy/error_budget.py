@@ -48,7 +48,7 @@ def error_budget(result: Result, bond_frequency: float = 0.0) -> tuple[BudgetRow
     """
     rows = [
         *_tables(result),
-        coupling_row(result, bond_frequency),
+        *([coupling_row(result, bond_frequency)] if len(result.info.model) > 1 else []),
         *_inner_steps(result),
         *_housings(result),
         *_assumptions(result),
