@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import pytest
 from threadpoolctl import threadpool_limits
 
+from herringbone.commands import output
 from herringbone.core.paths import cache_folder
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
@@ -15,6 +16,13 @@ from herringbone.fmi.native import build_native_fmus, find_compiler, own_platfor
 def one_blas_thread():
     """Threads of two test processes would wait for each other: ten times the time."""
     with threadpool_limits(limits=1, user_api="blas"):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def seldom_collected():
+    """Searching numba's millions of objects for cycles takes a tenth of the time."""
+    with output.seldom_collected():
         yield
 
 

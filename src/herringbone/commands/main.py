@@ -26,7 +26,14 @@ from herringbone.commands.options import (
     files_of_parts,
     start_values,
 )
-from herringbone.commands.output import check_writable, logged, say, show, terminable
+from herringbone.commands.output import (
+    check_writable,
+    logged,
+    say,
+    seldom_collected,
+    show,
+    terminable,
+)
 from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
@@ -41,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        with terminable(), logged():
+        with terminable(), logged(), seldom_collected():
             return options.command(options)
     except HerringboneError as error:
         say(f"herringbone: {error}")

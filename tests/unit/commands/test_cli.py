@@ -1,13 +1,16 @@
 """The command line: help, list, version, build, check, export, exit codes."""
 
+import gc
 import zipfile
 
 import pytest
 
 import herringbone
+from herringbone.commands import main as main_module
+from herringbone.commands import output
 from herringbone.commands.main import BAD_INPUT, EXIT_CODES, main
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import OutcomeKind
+from herringbone.core import HerringboneError, OutcomeKind
 
 
 def shown(capsys, *arguments, code=0):
@@ -146,3 +149,22 @@ def test_export_of_bad_input(capsys, tmp_path):
 def test_modal_data_belong_to_the_test_of_a_housing(capsys):
     said = refused(capsys, "check", "housing.fmu", "--against", "data")
     assert "--against belongs to the test of a housing; add --as housing" in said
+
+
+def test_cycles_are_seldom_searched_while_a_command_runs(monkeypatch, capsys):
+    def command(_):
+        found.append(gc.get_threshold())
+        raise HerringboneError("no")
+
+    found = []
+    monkeypatch.setattr("herringbone.commands.main._list", command)
+    main_module._parser.cache_clear()
+    before = gc.get_threshold()
+    gc.set_threshold(700, 10, 10)
+    try:
+        assert "no" in refused(capsys, "list")
+        assert found == [output._SELDOM]
+        assert gc.get_threshold() == (700, 10, 10)
+    finally:
+        gc.set_threshold(*before)
+        main_module._parser.cache_clear()
