@@ -137,7 +137,8 @@ from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.frozen import freeze_mesh
 from herringbone.components.gear_mesh.loading import LOADER
 from herringbone.components.gear_mesh.of_pair import of_pair
-from herringbone.components.resources import transmission_error
+from herringbone.components.gear_mesh.ramp import start
+from herringbone.components.resources import tooth_deviations, transmission_error
 from herringbone.core import Component, Kernels
 from herringbone.kernels import force_law, steppers
 
@@ -147,7 +148,10 @@ _CLOSED = 5e-6  # a usual deflection [m], where the search for an equilibrium be
 def _guess(block: np.ndarray) -> None:
     """Both meshes closed on the flank that carries, whatever deviations there are."""
     closed = abs(block[at.F_A]) * math.tan(abs(block[at.BETA])) + _CLOSED
-    closed += transmission_error.largest(block, at.ERRORS) / math.cos(block[at.BETA])
+    if block[at.RAMP_TURNS] == 0.0:
+        of_teeth = tooth_deviations.largest(block, at.DEVIATIONS)
+        of_teeth += transmission_error.largest(block, at.ERRORS)
+        closed += of_teeth / math.cos(block[at.BETA])
     if block[at.FLANK] < 0.0:
         closed = -closed - block[at.BACKLASH] / math.cos(block[at.BETA])
     block[at.APPROACH] = closed
@@ -159,6 +163,7 @@ GEAR_MESH = Component(
     f"{__doc__}\n### Force law\n\n{inspect.cleandoc(force_law.__doc__)}",
     load=LOADER,
     verify=LOADER.verify,
+    start=start,
     guess=_guess,
     indicators=motion.indicators,
     indicator_count=4,

@@ -183,11 +183,12 @@ def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     other = 1 if b[at.FLANK] >= 0.0 else 0
     inside, carried = True, True
     for side in range(2):
-        drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
+        depths = at.DEPTH if b[at.DEVIATIONS] == 0.0 else at.PRESSED
+        drive, coast = b[depths + 2 * side], b[depths + 2 * side + 1]
         inside = inside and force_law.inside(
             b, at.TABLE[0] + side * force_law.TABLE_SIZE, max(drive, coast)
         )
-        carried = carried and b[at.DEPTH + 2 * side + other] <= 0.0
+        carried = carried and b[depths + 2 * side + other] <= 0.0
     if not inside:
         b[at.OUTSIDE] += h
     if not carried:
