@@ -24,6 +24,7 @@ ERRORS = [
 PARAMETERS = {
     "symmetry_deviation": 40e-6,
     "stagger": 0.3,
+    "ramp_turns": 0.0,
     "pinion_restraint": 1e7,
     "drag_torque": 2.0,
     "pinion.unbalance": 2e-3,

@@ -30,7 +30,7 @@ from herringbone.gears.stiffness.point_mesh import PointMesh, Progress, silent
 from herringbone.gears.stiffness.slices import SliceMesh
 from herringbone.kernels import tooth_pair_law
 
-PER_PERIOD = 24
+PER_PERIOD = 48
 """Nodes in a mesh period."""
 _MARGIN = 3
 """Nodes around those where a pair may touch."""
