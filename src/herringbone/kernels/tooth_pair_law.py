@@ -144,29 +144,25 @@ def node(at: int, i: int, j: int, k: int) -> int:
 
 
 @kernel
-def _weights(f: float) -> tuple[float, float, float, float]:
-    """Of the four coefficients around a place f in [0, 1] between nodes."""
+def _value(f: float, c0: float, c1: float, c2: float, c3: float) -> float:
+    """Value of the spline at a place f in [0, 1] between nodes, with the coefficients around."""
     g = 1.0 - f
-    w0, w3 = _SIXTH * g * g * g, _SIXTH * f * f * f
-    return w0, _TWO_THIRDS - f * f * (1.0 - 0.5 * f), _TWO_THIRDS - g * g * (1.0 - 0.5 * g), w3
+    ends = _SIXTH * (g * g * g * c0 + f * f * f * c3)
+    near = _TWO_THIRDS - f * f * (1.0 - 0.5 * f)
+    return ends + near * c1 + (_TWO_THIRDS - g * g * (1.0 - 0.5 * g)) * c2
 
 
 @kernel
-def _slopes(f: float) -> tuple[float, float, float, float]:
-    """Derivatives of the weights."""
+def _slope(f: float, c0: float, c1: float, c2: float, c3: float) -> float:
+    """Derivative of the value over f."""
     g = 1.0 - f
-    return -0.5 * g * g, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f * f
+    return 0.5 * (f * f * c3 - g * g * c0) + f * (1.5 * f - 2.0) * c1 + g * (2.0 - 1.5 * g) * c2
 
 
 @kernel
-def _bends(f: float) -> tuple[float, float, float, float]:
-    """Second derivatives of the weights."""
-    return 1.0 - f, 3.0 * f - 2.0, 1.0 - 3.0 * f, f
-
-
-@kernel
-def _sum(w: tuple[float, float, float, float], v0: float, v1: float, v2: float, v3: float) -> float:
-    return w[0] * v0 + w[1] * v1 + w[2] * v2 + w[3] * v3
+def _bend(f: float, c0: float, c1: float, c2: float, c3: float) -> float:
+    """Second derivative of the value over f."""
+    return (1.0 - f) * c0 + (3.0 * f - 2.0) * c1 + (1.0 - 3.0 * f) * c2 + f * c3
 
 
 @kernel
@@ -174,9 +170,9 @@ def _over_depths(b: np.ndarray, at: int, f: float) -> tuple[float, float, float]
     """M, M_u and M_uu (per interval) of the four coefficients at `b[at:]`."""
     v0, v1, v2, v3 = b[at], b[at + 1], b[at + 2], b[at + 3]
     return (
-        _sum(_weights(f), v0, v1, v2, v3),
-        _sum(_slopes(f), v0, v1, v2, v3),
-        _sum(_bends(f), v0, v1, v2, v3),
+        _value(f, v0, v1, v2, v3),
+        _slope(f, v0, v1, v2, v3),
+        _bend(f, v0, v1, v2, v3),
     )
 
 
@@ -189,14 +185,13 @@ def _over_tilts(
     v1, d1, e1 = _over_depths(b, at + _COLUMN, u)
     v2, d2, e2 = _over_depths(b, at + 2 * _COLUMN, u)
     v3, d3, e3 = _over_depths(b, at + 3 * _COLUMN, u)
-    w, s = _weights(f), _slopes(f)
     return (
-        _sum(w, v0, v1, v2, v3),
-        _sum(s, v0, v1, v2, v3),
-        _sum(_bends(f), v0, v1, v2, v3),
-        _sum(w, d0, d1, d2, d3),
-        _sum(s, d0, d1, d2, d3),
-        _sum(w, e0, e1, e2, e3),
+        _value(f, v0, v1, v2, v3),
+        _slope(f, v0, v1, v2, v3),
+        _bend(f, v0, v1, v2, v3),
+        _value(f, d0, d1, d2, d3),
+        _slope(f, d0, d1, d2, d3),
+        _value(f, e0, e1, e2, e3),
     )
 
 
@@ -211,14 +206,13 @@ def line(b: np.ndarray, at: int, q: float) -> tuple[int, float, float, float, fl
         return -1, 0.0, 0.0, 0.0, 0.0, 0.0
     i = int(place)
     f, c = place - i, at + _LINES + 2 * i
-    w, d = _weights(f), _slopes(f)
     return (
         i,
         f,
-        _sum(w, b[c], b[c + 2], b[c + 4], b[c + 6]),
-        _sum(w, b[c + 1], b[c + 3], b[c + 5], b[c + 7]),
-        b[at + 1] * _sum(d, b[c], b[c + 2], b[c + 4], b[c + 6]),
-        b[at + 1] * _sum(d, b[c + 1], b[c + 3], b[c + 5], b[c + 7]),
+        _value(f, b[c], b[c + 2], b[c + 4], b[c + 6]),
+        _value(f, b[c + 1], b[c + 3], b[c + 5], b[c + 7]),
+        b[at + 1] * _slope(f, b[c], b[c + 2], b[c + 4], b[c + 6]),
+        b[at + 1] * _slope(f, b[c + 1], b[c + 3], b[c + 5], b[c + 7]),
     )
 
 
@@ -250,17 +244,16 @@ def law(
     m1, s1, ss1, u1, su1, uu1 = _over_tilts(b, c + _ROW, j_place, k_place)
     m2, s2, ss2, u2, su2, uu2 = _over_tilts(b, c + 2 * _ROW, j_place, k_place)
     m3, s3, ss3, u3, su3, uu3 = _over_tilts(b, c + 3 * _ROW, j_place, k_place)
-    w = _weights(f)
-    m = _sum(w, m0, m1, m2, m3)
-    m_q = b[at + 1] * _sum(_slopes(f), m0, m1, m2, m3)
+    m = _value(f, m0, m1, m2, m3)
+    m_q = b[at + 1] * _slope(f, m0, m1, m2, m3)
     turn = 0.5 * (1.0 + s * s) * _PER_TILT  # of s over the angle of (x, y), in intervals
-    per_s = _sum(w, s0, s1, s2, s3)
+    per_s = _value(f, s0, s1, s2, s3)
     per_angle = turn * per_s
-    twice = turn * (turn * _sum(w, ss0, ss1, ss2, ss3) + s * per_s)
+    twice = turn * (turn * _value(f, ss0, ss1, ss2, ss3) + s * per_s)
     grow = 0.5 * u * (1.0 - u * u)  # of u over the logarithm of rho
-    per_u = _PER_DEPTH * _sum(w, u0, u1, u2, u3)
-    both = turn * _PER_DEPTH * _sum(w, su0, su1, su2, su3)
-    bend = _PER_DEPTH * _PER_DEPTH * _sum(w, uu0, uu1, uu2, uu3)
+    per_u = _PER_DEPTH * _value(f, u0, u1, u2, u3)
+    both = turn * _PER_DEPTH * _value(f, su0, su1, su2, su3)
+    bend = _PER_DEPTH * _PER_DEPTH * _value(f, uu0, uu1, uu2, uu3)
     a, across = 2.0 * m + grow * per_u, per_angle
     a_u = (2.5 - 1.5 * u * u) * per_u + grow * bend
     force = cos * a - sin * across

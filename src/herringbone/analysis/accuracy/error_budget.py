@@ -167,9 +167,10 @@ def _housings(result: Result) -> Iterator[BudgetRow]:
 
 def _assumptions(result: Result) -> Iterator[BudgetRow]:
     for gear in result.parts_with(Role.GEAR_PAIR):
-        column = result.info.anatomy.column(gear, Quantity.TOOTH_ERRORS)
-        file = result.info.resources.get(column or "", "")
-        if file and not Path(file).is_absolute():
+        kinds = (Quantity.TOOTH_ERRORS, Quantity.TOOTH_DEVIATIONS)
+        columns = [result.info.anatomy.column(gear, kind) or "" for kind in kinds]
+        files = [file for c in columns if (file := result.info.resources.get(c, ""))]
+        if files and not any(Path(file).is_absolute() for file in files):
             how = "none are given: perfect teeth"
             yield BudgetRow(f"tooth errors of {gear}", _FORCE, None, Known.UNKNOWN, how)
     if result.parts_with(Role.GEAR_PAIR):

@@ -14,6 +14,8 @@ from herringbone.kernels.jit import kernel, rare
 
 _OPEN = 1e-12
 """Depth [m] at which flanks that are open have their tangent stiffness."""
+_SOFT = 1e-3
+"""Least tangent stiffness [N/m] whose root is taken."""
 
 
 @kernel
@@ -152,6 +154,38 @@ def _elastic(
 
 
 @rare
+def _pressure(
+    b: np.ndarray,
+    side: int,
+    f: float,
+    phase: float,
+    depth: float,
+    rate: float,
+    force: float,
+    tangent: float,
+    x: float,
+) -> float:
+    """Pressure [N] of flanks whose teeth deviate, from their elastic force and tangent.
+
+    Args:
+        b, side, f, phase, depth, rate: as of `_flank`.
+        force, tangent: elastic [N, N/m].
+        x: how deep they press [m].
+    """
+    if b[at.GATE] == 0.0:
+        table = at.TABLE[0] + side * force_law.TABLE_SIZE
+        _, tangent, _ = force_law.law(b, table, phase, max(depth, _OPEN))
+    damping = 2.0 * b[at.ZETA] * math.sqrt(max(tangent, _SOFT) * b[at.PATH_MASS])
+    g = max(0.0, min(1.0, x * b[at.PER_TRANSITION]))
+    g *= g * (3.0 - 2.0 * g)
+    if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
+        force += g * _impact(b, phase)
+    if b[at.GATE] == 0.0:
+        return force + damping * rate
+    return max(0.0, force + damping * g * rate)
+
+
+@rare
 def _deviating(
     b: np.ndarray,
     side: int,
@@ -162,7 +196,7 @@ def _deviating(
     phase: float,
 ) -> tuple[float, float]:
     """Normal force and push [N] of a mesh with deviations of single teeth; see `_mesh`."""
-    normal, push, carried = 0.0, b[at.HELD + side], False
+    normal, push, open_flanks = 0.0, b[at.HELD + side], b[at.GATE] == 0.0
     for k in range(2):
         flank = 1 - k  # coast first: without a gate open flanks are damped as the drive flank
         f, own, depth, rate = 1.0, phase, drive, drive_rate
@@ -170,26 +204,13 @@ def _deviating(
             f, own, depth, rate = -1.0, b[at.COAST_PHASE] - phase, coast, coast_rate
         force, tangent, slope, x = _elastic(b, side, flank, own, depth)
         b[at.PRESSED + 2 * side + flank] = x if force > 0.0 else 0.0
-        carries = force > 0.0
-        if not carries and (b[at.GATE] > 0.0 or flank == 1 or carried):
-            continue
-        carried = True
-        if b[at.GATE] == 0.0:
-            table = at.TABLE[0] + side * force_law.TABLE_SIZE
-            _, tangent, _ = force_law.law(b, table, own, max(depth, _OPEN))
-        damping = 2.0 * b[at.ZETA] * math.sqrt(max(0.0, tangent) * b[at.PATH_MASS])
-        g = max(0.0, min(1.0, x * b[at.PER_TRANSITION]))
-        g *= g * (3.0 - 2.0 * g)
-        if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-            force += g * _impact(b, own)
-        if b[at.GATE] == 0.0:
-            pressure = force + damping * rate
-        else:
-            pressure = max(0.0, force + damping * g * rate)
-        normal += f * pressure
-        push += f * slope
-        if b[at.ERRORS] > 0.0:
-            _turn_errors(b, side, flank, pressure)
+        if force > 0.0 or (open_flanks and flank == 0):
+            open_flanks = False
+            pressure = _pressure(b, side, f, own, depth, rate, force, tangent, x)
+            normal += f * pressure
+            push += f * slope
+            if b[at.ERRORS] > 0.0:
+                _turn_errors(b, side, flank, pressure)
     return normal, b[at.COS] * normal + b[at.PER_PITCH] * push
 
 

@@ -32,7 +32,8 @@ def _unbalance(b: np.ndarray, gear: int, half: int) -> tuple[float, float, float
 @rare
 def _come_in(b: np.ndarray, gear: int) -> None:
     """Add the torques of an unbalance that comes in: on its halves, and on what brings it in."""
-    u, (_, slope) = 0.5 * b[at.UNBALANCE[0] + gear * at.GEAR], ramp(b)
+    _, slope = ramp(b)
+    u = 0.5 * b[at.UNBALANCE[0] + gear * at.GEAR]
     for half in range(2):
         body = 2 * gear + half
         s, _, w = _unbalance(b, gear, half)

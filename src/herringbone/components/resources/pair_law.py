@@ -112,9 +112,12 @@ def _factor(
     """Energy of a stiffness table over that of all pairs with ideal teeth, at a node of q and u."""
     n, u = int(values[PER_PERIOD]), k / (DEPTHS - 1.0)
     rho = values[UNIT] * (u * u / (1.0 - u * u) if k > 0 else _SMALLEST)
-    total = 0.0
-    for other in range((i - 2) % n + 2, count - 2, n):
+    total, other = 0.0, i
+    while other >= 2 + n:
+        other -= n
+    while other < count - 2:
         total += _value(values, other, TILTS // 2, k)
+        other += n
     if total == 0.0:
         return 1.0
     phase = (first + i) / n
