@@ -46,7 +46,7 @@ def ramp(gear: Instance, th: np.ndarray) -> tuple[float, float]:
 
 
 def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, float, float]:
-    """R e [m] of a flank (f: 1, -1); R times e's slopes over the angles of pinion and wheel half."""
+    """R e [m] of a flank (f: 1, -1), and R de/dtheta of pinion and wheel half [m/rad]."""
     file = Path(gear.resources / gear.texts["tooth_errors"])
     total = np.zeros(3)
     for line in file.read_text().splitlines():

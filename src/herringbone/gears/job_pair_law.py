@@ -52,6 +52,4 @@ def pair_law_for(job: GearJob) -> PairLaw:
     )
     arrays = stored_arrays("pair_laws", key, make)
     per_period, first = (int(number) for number in arrays["nodes"])
-    return PairLaw(
-        job.pair, str(arrays["method"]), per_period, first, unit, arrays["stiffness"]
-    )
+    return PairLaw(job.pair, str(arrays["method"]), per_period, first, unit, arrays["stiffness"])

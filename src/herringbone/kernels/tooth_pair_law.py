@@ -23,7 +23,7 @@ M = 0; over u, c = v at the first and the last node, and c[-1] = 2 c[0] - c[1], 
 
 **Derivatives**, of one function that is twice differentiable; M_s = dM/ds and so on:
 
-    dU/dx = rho (A x - B y) / rho,   dU/dy = rho (A y + B x) / rho,   dU/dq = rho^2 M_q
+    dU/dx = A x - B y,   dU/dy = A y + B x,   dU/dq = rho^2 M_q
     A = 2 M + u (1 - u^2) M_u / 2,   B = (1 + s^2) M_s / 2
 
 Table part: [first, n, count, D], then m and h by node, then M by node of q, s (from j = -1 to 33)

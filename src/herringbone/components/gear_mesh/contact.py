@@ -5,17 +5,11 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.gear_mesh.ramp import ramp
-from herringbone.components.gear_mesh.teeth import toothed
-from herringbone.components.resources import tooth_deviations, transmission_error
+from herringbone.components.gear_mesh.excitation import error, impact, turn_errors, wheel
+from herringbone.components.gear_mesh.toothed_mesh import OPEN, deviating
 from herringbone.kernels import force_law
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
-from herringbone.kernels.jit import kernel, rare
-
-_OPEN = 1e-12
-"""Depth [m] at which flanks that are open have their tangent stiffness."""
-_SOFT = 1e-3
-"""Least tangent stiffness [N/m] whose root is taken."""
+from herringbone.kernels.jit import kernel
 
 
 @kernel
@@ -38,13 +32,6 @@ def derive(b: np.ndarray) -> None:
 
 
 @kernel
-def wheel(b: np.ndarray, order: int) -> float:
-    """Angle [rad] (order 0) or speed [rad/s] (order 1) of the wheel's left half."""
-    o = order * at.RATE
-    return (b[at.RB[0]] * b[at.ANGLE + o] - b[at.APPROACH + o]) * b[at.PER_WHEEL_RB]
-
-
-@kernel
 def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
     """eps_z [m], its rate [m/s], its slopes over the mean angles of pinion and wheel [m/rad]."""
     if b[at.F_A] == 0.0:
@@ -58,13 +45,6 @@ def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
     return offset, rate, per_pinion, per_wheel
 
 
-@rare
-def _impact(b: np.ndarray, phase: float) -> float:
-    """Force [N] of the meshing impact."""
-    into = (phase - math.floor(phase)) / b[at.IMPACT_DURATION]
-    return 0.5 * b[at.IMPACT] * (1.0 - cosine(at.TWO_PI * into)) if into < 1.0 else 0.0
-
-
 @kernel
 def _flank(
     b: np.ndarray, side: int, f: float, phase: float, depth: float, rate: float
@@ -73,7 +53,7 @@ def _flank(
 
     Open flanks have the damping that their contact begins with; it acts if it is not gated.
     """
-    x = depth if depth > 0.0 else _OPEN
+    x = depth if depth > 0.0 else OPEN
     force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
     damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
     if depth <= 0.0:
@@ -81,38 +61,10 @@ def _flank(
     g = min(1.0, depth * b[at.PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
     if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-        force += g * _impact(b, phase)
+        force += g * impact(b, phase)
     if b[at.GATE] == 0.0:
         return force + damping * rate, slope
     return max(0.0, force + damping * g * rate), slope
-
-
-@rare
-def _error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, float, float]:
-    """e [m] of a side's flank, its rate, its slopes over the angles of pinion and wheel half.
-
-    The last one is the slope of the ramp, over the angle of the pinion's left half.
-    """
-    pinion, gear = b[at.ANGLE] + side * b[at.TWIST_P], wheel(b, 0) + side * b[at.TWIST_W]
-    errors = transmission_error.group(at.ERRORS, side, flank)
-    e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, gear)
-    share, slope = ramp(b)
-    per_angle = e * slope
-    e, per_pinion, per_wheel = share * e, share * per_pinion, share * per_wheel
-    rate = per_angle * b[at.ANGLE + at.RATE] + per_pinion * (
-        b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE]
-    )
-    rate += per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
-    return e, rate, per_pinion, per_wheel, per_angle
-
-
-@rare
-def _turn_errors(b: np.ndarray, side: int, flank: int, pressure: float) -> None:
-    """Add the torques on what moves the error under a pressure [N]."""
-    _, _, per_pinion, per_wheel, per_angle = _error(b, side, flank)
-    b[at.TORQUE] += pressure * per_angle
-    b[at.TORQUE + side] += pressure * per_pinion
-    b[at.TORQUE + 2 + side] += pressure * per_wheel
 
 
 @kernel
@@ -133,87 +85,6 @@ def _approach(b: np.ndarray, side: int, eps: float, eps_rate: float) -> tuple[fl
     return delta, rate, phase
 
 
-@rare
-def _elastic(
-    b: np.ndarray, side: int, flank: int, phase: float, depth: float
-) -> tuple[float, float, float, float]:
-    """Force [N], tangent [N/m] and dU/d(phase) [J] of flanks, and how deep they press [m].
-
-    Adds the torque of what brings the deviations in.
-    """
-    if tooth_deviations.given(b, at.DEVIATIONS, side, flank):
-        share, slope = ramp(b)
-        force, tangent, of_phase, of_ramp, x, _ = toothed(b, side, flank, phase, depth, share)
-        b[at.TORQUE] -= of_ramp * slope
-        return force, tangent, of_phase, x
-    if depth <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    table = at.TABLE[0] + side * force_law.TABLE_SIZE
-    force, tangent, of_phase = force_law.law(b, table, phase, depth)
-    return force, tangent, of_phase, depth
-
-
-@rare
-def _pressure(
-    b: np.ndarray,
-    side: int,
-    f: float,
-    phase: float,
-    depth: float,
-    rate: float,
-    force: float,
-    tangent: float,
-    x: float,
-) -> float:
-    """Pressure [N] of flanks whose teeth deviate, from their elastic force and tangent.
-
-    Args:
-        b, side, f, phase, depth, rate: as of `_flank`.
-        force, tangent: elastic [N, N/m].
-        x: how deep they press [m].
-    """
-    if b[at.GATE] == 0.0:
-        table = at.TABLE[0] + side * force_law.TABLE_SIZE
-        _, tangent, _ = force_law.law(b, table, phase, max(depth, _OPEN))
-    damping = 2.0 * b[at.ZETA] * math.sqrt(max(tangent, _SOFT) * b[at.PATH_MASS])
-    g = max(0.0, min(1.0, x * b[at.PER_TRANSITION]))
-    g *= g * (3.0 - 2.0 * g)
-    if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-        force += g * _impact(b, phase)
-    if b[at.GATE] == 0.0:
-        return force + damping * rate
-    return max(0.0, force + damping * g * rate)
-
-
-@rare
-def _deviating(
-    b: np.ndarray,
-    side: int,
-    drive: float,
-    drive_rate: float,
-    coast: float,
-    coast_rate: float,
-    phase: float,
-) -> tuple[float, float]:
-    """Normal force and push [N] of a mesh with deviations of single teeth; see `_mesh`."""
-    normal, push, open_flanks = 0.0, b[at.HELD + side], b[at.GATE] == 0.0
-    for k in range(2):
-        flank = 1 - k  # coast first: without a gate open flanks are damped as the drive flank
-        f, own, depth, rate = 1.0, phase, drive, drive_rate
-        if flank == 1:
-            f, own, depth, rate = -1.0, b[at.COAST_PHASE] - phase, coast, coast_rate
-        force, tangent, slope, x = _elastic(b, side, flank, own, depth)
-        b[at.PRESSED + 2 * side + flank] = x if force > 0.0 else 0.0
-        if force > 0.0 or (open_flanks and flank == 0):
-            open_flanks = False
-            pressure = _pressure(b, side, f, own, depth, rate, force, tangent, x)
-            normal += f * pressure
-            push += f * slope
-            if b[at.ERRORS] > 0.0:
-                _turn_errors(b, side, flank, pressure)
-    return normal, b[at.COS] * normal + b[at.PER_PITCH] * push
-
-
 @kernel
 def _mesh(
     b: np.ndarray, side: int, delta: float, delta_rate: float, phase: float
@@ -222,13 +93,13 @@ def _mesh(
     drive, coast = delta, -b[at.BACKLASH] - delta
     rate, coast_rate = delta_rate, -delta_rate
     if b[at.ERRORS] > 0.0:
-        e, e_rate, _, _, _ = _error(b, side, 0)
+        e, e_rate, _, _, _ = error(b, side, 0)
         drive, rate = drive - e, rate - e_rate
-        e, e_rate, _, _, _ = _error(b, side, 1)
+        e, e_rate, _, _, _ = error(b, side, 1)
         coast, coast_rate = coast - e, coast_rate - e_rate
     b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1] = drive, coast
     if b[at.DEVIATIONS] > 0.0:
-        return _deviating(b, side, drive, rate, coast, coast_rate, phase)
+        return deviating(b, side, drive, rate, coast, coast_rate, phase)
     normal, push = 0.0, b[at.HELD + side]
     first = 0 if drive > 0.0 or (b[at.GATE] == 0.0 and coast <= 0.0) else 1
     last = 2 if coast > 0.0 else 1
@@ -240,7 +111,7 @@ def _mesh(
         normal += f * pressure
         push += f * slope
         if b[at.ERRORS] > 0.0:
-            _turn_errors(b, side, flank, pressure)
+            turn_errors(b, side, flank, pressure)
     return normal, b[at.COS] * normal + b[at.PER_PITCH] * push
 
 

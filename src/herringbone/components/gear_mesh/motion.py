@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.gear_mesh.contact import derive, meshes, wheel
+from herringbone.components.gear_mesh.contact import derive, meshes
+from herringbone.components.gear_mesh.excitation import wheel
 from herringbone.components.gear_mesh.ramp import ramp
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import sine_and_cosine

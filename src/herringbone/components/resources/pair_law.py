@@ -1,19 +1,21 @@
-"""Force law of one pair of teeth, and what is refused.
+"""File of the force law of one pair of teeth, and what is refused.
 
-Columns: position q [1], tilt s [1], then the numbers of the nodes u, in their order, all with the
-unit that stands for `stiffness` [N/m]: M = U / rho^2 at the nodes of `kernels.tooth_pair_law`. q are
-whole multiples of 1 / n, n a whole number; every q has all s. At the two first and the two last q,
+Columns: position q [1], tilt s [1], then the numbers of the nodes u, in their order, under names of
+your choice: M = U / rho^2 [N/m]; their unit is given as that of `stiffness`. q are whole multiples
+of 1 / n, n a whole number, without a gap; every q has all s. At the two first and the two last q,
 and where |s| > 2.7, M counts as zero. The comment line
 
     # pair_law: z1 z2 r_b1 r_b2 beta_b b n g D
 
-tells of which pair the law is (see `stiffness_table`), n, the length g of the path of contact [m]
-and the depth D [m]. A file without that line has no law.
+tells of which pair the law is (as of the stiffness table: teeth, base radii [m], base helix angle
+[rad], face width [m]), n, the length g of the path of contact [m] and the depth D [m]. With p_bt =
+2 pi r_b1 / z1, eps_a = g / p_bt and eps_b = b tan(beta_b) / p_bt. A file without that line has no
+law.
 
-The law of a side is brought in line with the side's stiffness table: at the nodes with position
-q = p + j (p in [0, 1), j whole) M is multiplied by what U(p, rho) of the table is over the sum of
-rho^2 M(p + j, s = 0, u) over j; at u = 0 with rho = D / 10^4, at u = 1 as at u = 7/8; where that sum
-is zero, by 1.
+The law of a side is brought in line with the side's stiffness table: at the nodes of position q, M
+is multiplied by U(q, rho) of the table over the sum of rho^2 M(q + j, s = 0, u) over all whole
+numbers j. Here u = 0 is rho = D / 10^4; the factor of u = 7/8 holds for u = 1, too; where that sum
+is zero it is 1.
 """
 
 import math
@@ -142,7 +144,7 @@ def place(
         scratch: POSITIONS long.
     """
     n, count = values[PER_PERIOD], rows // TILTS
-    first = int(math.floor(values[_FIRST] * n + 0.5))
+    first = math.floor(values[_FIRST] * n + 0.5)
     for i in range(2, count - 2):
         for k in range(DEPTHS):
             factor = _factor(values, first, count, i, min(k, DEPTHS - 2), b, table)
