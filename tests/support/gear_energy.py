@@ -36,13 +36,14 @@ def apex(p: dict[str, float], th: np.ndarray) -> tuple[float, float, float]:
 
 
 def ramp(gear: Instance, th: np.ndarray) -> tuple[float, float]:
-    """R of the README, and its slope over theta1."""
+    """R of the README, and its slope over the mean angle of the pinion."""
     if gear["ramp_turns"] == 0.0:
         return 1.0, 0.0
     whole = 2 * math.pi * gear["ramp_turns"]
-    tau = min(1.0, abs(th[0] - gear["first_angle"]) / whole)
+    turned = 0.5 * (th[0] + th[1]) - gear["first_angle"]
+    tau = min(1.0, abs(turned) / whole)
     slope = 30 * tau**2 - 60 * tau**3 + 30 * tau**4
-    return 10 * tau**3 - 15 * tau**4 + 6 * tau**5, math.copysign(slope / whole, th[0])
+    return 10 * tau**3 - 15 * tau**4 + 6 * tau**5, math.copysign(slope / whole, turned)
 
 
 def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, float, float]:
@@ -151,7 +152,7 @@ def depth_rates(gear: Instance, x: np.ndarray) -> list[float]:
         rate += (1 - 2 * side) * s * (vz[side] - vz[side + 2] + apex_rate)
         e, of_pinion, of_wheel = error(gear, th, side, f)
         share, slope = ramp(gear, th)
-        late = e * slope / share * w[0] if slope != 0.0 else 0.0
+        late = e * slope / share * 0.5 * (w[0] + w[1]) if slope != 0.0 else 0.0
         rates.append(f * rate - of_pinion * w[side] - of_wheel * w[side + 2] - late)
     return rates
 

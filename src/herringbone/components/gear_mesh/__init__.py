@@ -47,7 +47,8 @@ harmonics 1 to 4 within 1 % (the fourth 3 % at 8 um). Against the load distribut
 see `herringbone.gears.stiffness.pair_law`. Such a run takes four times as long.
 
 **Ramp.** Errors, deviations and unbalance come in over the first turns of the pinion, so that a run
-can start in equilibrium: with t = |theta1 - first_angle| / (2 pi ramp_turns), at most 1,
+can start in equilibrium: with theta_m = (theta1 + theta2) / 2 and
+t = |theta_m - first_angle| / (2 pi ramp_turns), at most 1,
 
     R = t^3 (10 - 15 t + 6 t^2);   ramp_turns 0: R = 1
 
@@ -93,18 +94,18 @@ impact_duration, else 0.
 should touch).
 
 **Reactions** (virtual work): a contact does the power P x' and stores U(p, x), so that every
-generalised force is -(N d(delta)/dq + dU/dp dp/dq) + P de/dq, and on theta1, which R follows,
--dU/dR dR/dtheta1. With E = (dU/dp)_drive -
+generalised force is -(N d(delta)/dq + dU/dp dp/dq) + P de/dq, and on theta_m, which R follows,
+-dU/dR dR/dtheta_m, half of it on either half of the pinion. With E = (dU/dp)_drive -
 (dU/dp)_coast of a mesh, path force cos(beta_b) N and push G = cos(beta_b) N + E / p_bt:
 
     f_y: -+ cos(beta_b) N                          (pinion -, wheel +)
     f_z: -+ s tan(beta_b) G
     torque on theta1, theta2: - rb1 G + P de/dtheta - M de_z/d(mean pinion angle) / 2
     torque on theta3, theta4: + rb2 cos(beta_b) N + P de/dtheta - M de_z/d(mean wheel angle) / 2
-    torque on theta1 as well: - sum of dU/dR dR/dtheta1 at constant depth
+    torque on theta1 and theta2 as well: - 1/2 dR/dtheta_m sum of dU/dR at constant depth
     M = tan(beta_b) (G_L - G_R)
 
-de/dtheta1 of either half includes dR/dtheta1.
+de/dtheta of theta1 and theta2 includes what R has of theta_m, on both sides.
 
 **Equations of motion** (first index: this half, other: the half of the same gear; f, tau are the
 inputs; mesh: as above):
@@ -118,11 +119,11 @@ inputs; mesh: as above):
 share: torque_share_left for the left half, the rest for the right one. `pinion_restraint` holds the
 pinion axially against ground at the mean of its halves (0: it floats). With an unbalance u of the
 gear, half of it at each half, at psi = theta + unbalance_phase from +y, the equations of y and
-theta of a half (right-hand sides f and t) become, with R' = dR/dtheta1 theta1',
+theta of a half (right-hand sides f and t) become, with R' = dR/dtheta_m theta_m',
 
     m y'' - R u/2 sin(psi) theta'' = f + R u/2 cos(psi) theta'^2 + R' u/2 sin(psi) theta'
     I theta'' - R u/2 sin(psi) y'' = t + R' u/2 sin(psi) y'
-    on theta1 as well: - dR/dtheta1 u/2 sin(psi) theta' y' of every half with unbalance
+    on theta1 and theta2 as well: - 1/2 dR/dtheta_m u/2 sin(psi) theta' y' of each half with one
 
 States are theta1 ("angle"), the twists theta2 - theta1 and theta4 - theta3, and
 rb1 theta1 - rb2 theta3 ("approach"), so that precision does not decay with the number of

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.gear_mesh.ramp import ramp
+from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.components.resources import transmission_error
 from herringbone.kernels.elementary import cosine
 from herringbone.kernels.jit import kernel, rare
@@ -29,7 +29,7 @@ def impact(b: np.ndarray, phase: float) -> float:
 def error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, float, float]:
     """e [m] of a side's flank, its rate, its slopes over the angles of pinion and wheel half.
 
-    The last one is the slope of the ramp, over the angle of the pinion's left half.
+    The last one is the slope of the ramp, over the mean angle of the pinion's halves.
     """
     pinion, gear = b[at.ANGLE] + side * b[at.TWIST_P], wheel(b, 0) + side * b[at.TWIST_W]
     errors = transmission_error.group(at.ERRORS, side, flank)
@@ -37,7 +37,7 @@ def error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, fl
     share, slope = ramp(b)
     per_angle = e * slope
     e, per_pinion, per_wheel = share * e, share * per_pinion, share * per_wheel
-    rate = per_angle * b[at.ANGLE + at.RATE] + per_pinion * (
+    rate = per_angle * ramp_speed(b) + per_pinion * (
         b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE]
     )
     rate += per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
@@ -48,6 +48,6 @@ def error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, fl
 def turn_errors(b: np.ndarray, side: int, flank: int, pressure: float) -> None:
     """Add the torques on what moves the error under a pressure [N]."""
     _, _, per_pinion, per_wheel, per_angle = error(b, side, flank)
-    b[at.TORQUE] += pressure * per_angle
+    turn_ramp(b, pressure * per_angle)
     b[at.TORQUE + side] += pressure * per_pinion
     b[at.TORQUE + 2 + side] += pressure * per_wheel

@@ -7,7 +7,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.contact import derive, meshes
 from herringbone.components.gear_mesh.excitation import wheel
-from herringbone.components.gear_mesh.ramp import ramp
+from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import sine_and_cosine
 from herringbone.kernels.jit import kernel, rare
@@ -39,8 +39,8 @@ def _come_in(b: np.ndarray, gear: int) -> None:
         body = 2 * gear + half
         s, _, w = _unbalance(b, gear, half)
         push = u * slope * s * b[at.Y + body + at.RATE]
-        b[at.TORQUE + body] += push * b[at.ANGLE + at.RATE]
-        b[at.TORQUE] -= push * w
+        b[at.TORQUE + body] += push * ramp_speed(b)
+        turn_ramp(b, -push * w)
 
 
 @rare
@@ -50,7 +50,7 @@ def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple
     u, m, i = 0.5 * b[at.UNBALANCE[0] + own], b[at.MASSES[0] + own], b[at.INERTIAS[0] + own]
     share, slope = ramp(b)
     s, c, w = _unbalance(b, gear, half)
-    grow = u * s * slope * b[at.ANGLE + at.RATE]
+    grow = u * s * slope * ramp_speed(b)
     force, torque = m * a + share * u * c * w * w + grow * w, i * alpha
     us = share * u * s
     per = 1.0 / (m * i - us * us)

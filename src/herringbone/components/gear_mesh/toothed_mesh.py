@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.excitation import impact, turn_errors
-from herringbone.components.gear_mesh.ramp import ramp
+from herringbone.components.gear_mesh.ramp import ramp, turn_ramp
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.components.resources import tooth_deviations
 from herringbone.kernels import force_law
@@ -29,7 +29,7 @@ def _elastic(
     if tooth_deviations.given(b, at.DEVIATIONS, side, flank):
         share, slope = ramp(b)
         force, tangent, of_phase, of_ramp, x, _ = toothed(b, side, flank, phase, depth, share)
-        b[at.TORQUE] -= of_ramp * slope
+        turn_ramp(b, -of_ramp * slope)
         return force, tangent, of_phase, x
     if depth <= 0.0:
         return 0.0, 0.0, 0.0, 0.0

@@ -82,7 +82,9 @@ def _results() -> list[Variable]:
             "1: the table tells its pair, and it is this one; 0: it tells none",
         ),
         local("time_on_other_flank", "s", "time with a mesh loaded on the flank not in `flank`"),
-        local("first_angle", "rad", "`angle` at the end of initialisation"),
+        local(
+            "first_angle", "rad", "mean angle of the pinion's halves at the end of initialisation"
+        ),
     ]
 
 
