@@ -41,8 +41,7 @@ POSITIONS = 192
 TILTS, DEPTHS = 33, 9
 STEEPEST = 3.0
 """|s| at the first and last node."""
-_MIDDLE = TILTS // 2
-_PER_TILT, _PER_DEPTH = _MIDDLE / STEEPEST, DEPTHS - 1.0
+_PER_TILT, _PER_DEPTH = (TILTS - 1.0) / (2.0 * STEEPEST), DEPTHS - 1.0
 _COLUMN = DEPTHS + 2
 _ROW = (TILTS + 2) * _COLUMN
 _SIXTH, _TWO_THIRDS = 1.0 / 6.0, 2.0 / 3.0
@@ -50,17 +49,6 @@ _LINES = 4
 _VALUES = _LINES + 2 * (POSITIONS + 2)
 TABLE_SIZE = _VALUES + (POSITIONS + 2) * _ROW
 """Length of the table part."""
-
-
-def tilts() -> np.ndarray:
-    """(TILTS,) nodes s."""
-    return (np.arange(TILTS) - _MIDDLE) / _PER_TILT
-
-
-def depths(unit: float) -> np.ndarray:
-    """(DEPTHS,) rho [m] at the nodes u, the last infinite; unit: D [m]."""
-    u = np.arange(DEPTHS - 1) / _PER_DEPTH
-    return np.append(unit * u * u / (1.0 - u * u), np.inf)
 
 
 @kernel

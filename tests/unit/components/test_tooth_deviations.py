@@ -1,9 +1,11 @@
 """Files of teeth that deviate and of the law of a pair of teeth: what is taken and what refused."""
 
+import math
+
 import numpy as np
 import pytest
 from support.deviating_teeth import PAIR, UNIT, write_law, write_teeth
-from support.gear_mesh import gear_pair
+from support.gear_mesh import STATES, gear_pair, write_errors
 
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.core import ResourceError
@@ -124,6 +126,28 @@ def test_depth_where_teeth_press(teeth, law):
     gear = gear_pair(SHIPPED, {"tooth_deviations": str(teeth), "pair_law": str(law)})
     assert toothed(gear.block, 0, 0, 0.3, 3e-6, 0.0)[4] == pytest.approx(3e-6, rel=1e-12)
     assert toothed(gear.block, 0, 0, 0.3, -1e-4, 1.0) == (0.0,) * 6
+
+
+@pytest.mark.parametrize("ramp_turns", [0.0, 1.0])
+def test_frozen_mesh_keeps_the_operating_point(teeth, law, tmp_path, ramp_turns):
+    """Accelerations are those before, and the stiffness the one that was asked for."""
+    errors = write_errors(tmp_path / "e.csv", [("left", "drive", "wheel", 1, 1e-6, 0.3)])
+    files = {"tooth_deviations": str(teeth), "pair_law": str(law), "tooth_errors": str(errors)}
+    gear = gear_pair(SHIPPED, {"ramp_turns": ramp_turns, **files})
+    for name, value in {"approach": 9e-6, "angle": 0.4, "der(angle)": 50.0}.items():
+        gear.set(name, value)
+    rhs, out, before, after = *gear.component.kernels[1:], *np.zeros((2, STATES))
+    out(gear.block, 0.0)
+    force = gear["mesh_left.force"]
+    assert force > 100.0
+    rhs(gear.block, 0.0, before)
+    gear.component.freeze(gear, lambda tangents: 1e9)
+    rhs(gear.block, 0.0, after)
+    np.testing.assert_allclose(after, before, rtol=1e-6, atol=1e-9 * np.abs(before).max())
+    gear.set("approach", 9e-6 + 1e-9)
+    out(gear.block, 0.0)
+    rise = gear["mesh_left.force"] - force
+    assert rise == pytest.approx(1e9 * 1e-9 * math.cos(gear["base_helix_angle"]), rel=1e-3)
 
 
 def test_nodes_span_the_way_of_a_pair():

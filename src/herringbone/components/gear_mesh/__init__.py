@@ -25,9 +25,9 @@ e is R times the given transmission error of `tooth_errors`: of each side and fl
 amplitude cos(order theta + phase), theta the angle of the own half of the gear that is named; it is
 normal to the flank, positive where material is missing. It moves all pairs of teeth alike. Errors
 of single teeth share out the load anew as soon as they are of the size of the deflection (2.4 um at
-200 N m): use `tooth_deviations`. Where one gap for each pair, without its slope along the contact
-line, already is wrong: at 200 N m lines of the transmission error of class 4 by 23 %, of class 6 by
-40 %.
+200 N m): use `tooth_deviations`. With the unloaded transmission error of teeth of class 6 for e,
+mesh harmonics 1 to 4 of the loaded one are 2.3, 0.22, 5.1 and 2.1 times those they should be
+(27/81 pair, 200 N m), and the mean tangent stiffness is 877 N/um in place of 598.
 
 **Deviations of single teeth** (`tooth_deviations`, with `pair_law`). On a flank of a side that has
 them, F and U are sums over pairs of teeth. At the phase p of the flank the pair n, n = floor(p),

@@ -53,6 +53,22 @@ REFUSALS = (
 )  # fmt: skip
 
 
+def tilts() -> np.ndarray:
+    """(TILTS,) nodes s."""
+    return np.linspace(-tooth_pair_law.STEEPEST, tooth_pair_law.STEEPEST, TILTS)
+
+
+def depths(unit: float) -> np.ndarray:
+    """(DEPTHS,) rho [m] at the nodes u, the last infinite; unit: D [m]."""
+    u = np.arange(DEPTHS - 1) / (DEPTHS - 1.0)
+    return np.append(unit * u * u / (1.0 - u * u), np.inf)
+
+
+def line_ends(position: float, transverse: float, overlap: float) -> tuple[float, float]:
+    """m and h of the line at a position, by the contact ratios."""
+    return tooth_pair_law.ends(position, transverse, overlap)
+
+
 @kernel
 def is_law(values: np.ndarray) -> bool:
     """True if a file has a law; numbers as of `read_numbers`."""

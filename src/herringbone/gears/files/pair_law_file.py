@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
+from herringbone.components.resources.pair_law import DEPTHS, tilts
 from herringbone.core.roles import GEARS, SIDES
 from herringbone.gears.accuracy.deviations import ToothDeviations
 from herringbone.gears.files.table_file import fingerprint
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.deviating_teeth import normal_deviations
 from herringbone.gears.stiffness.pair_law import PairLaw
-from herringbone.kernels.tooth_pair_law import DEPTHS, tilts
 
 
 def pair_law_text(law: PairLaw) -> str:
