@@ -121,6 +121,28 @@ def test_teeth_come_round(teeth, law):
     assert abs(forces[1] / forces[0] - 1.0) > 0.01
 
 
+@pytest.mark.parametrize(("phase", "depth", "ramp"), [(0.31, 6e-6, 1.0), (27.8, 9e-6, 0.4)])
+def test_forces_are_slopes_of_the_energy(teeth, law, phase, depth, ramp):
+    """Central differences, whose own error goes with the square of the step."""
+    gear = gear_pair(SHIPPED, {"tooth_deviations": str(teeth), "pair_law": str(law)})
+
+    def contact(phase, depth, ramp):
+        return np.array(toothed(gear.block, 0, 0, phase, depth, ramp))
+
+    def slope(what, by):
+        after, before = (
+            contact(*(np.array([phase, depth, ramp]) + sign * np.array(by))) for sign in (1, -1)
+        )
+        return (after - before)[what] / (2.0 * np.max(by))
+
+    force, tangent, of_phase, of_ramp, _, energy = contact(phase, depth, ramp)
+    assert energy > 0.0
+    assert force == pytest.approx(slope(-1, (0.0, 1e-9, 0.0)), rel=1e-6)
+    assert tangent == pytest.approx(slope(0, (0.0, 1e-9, 0.0)), rel=1e-5)
+    assert of_phase == pytest.approx(slope(-1, (1e-5, 0.0, 0.0)), rel=1e-4)
+    assert of_ramp == pytest.approx(slope(-1, (0.0, 0.0, 1e-4)), rel=1e-4)
+
+
 def test_depth_where_teeth_press(teeth, law):
     """With ideal teeth it is the depth; teeth that are apart have none."""
     gear = gear_pair(SHIPPED, {"tooth_deviations": str(teeth), "pair_law": str(law)})
