@@ -6,12 +6,13 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from herringbone.core.activity import activity
+from herringbone.gears.finite_elements import FiniteElementMesh
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
-from herringbone.gears.stiffness.coupled_slices import CoupledSliceMesh
 from herringbone.gears.stiffness.methods import METHODS, chosen_method
 from herringbone.gears.stiffness.pair_law import PairLaw, pair_law
 from herringbone.gears.stiffness.point_mesh import silent
+from herringbone.gears.stiffness.slices import SliceMesh
 from herringbone.gears.stored import Arrays, content_key, stored_arrays
 
 _POINTS = 60
@@ -40,7 +41,7 @@ def pair_law_for(job: GearJob) -> PairLaw:
             threadpool_limits(limits=1, user_api="blas"),
         ):
             mesh = chosen.mesh(task, silent)
-            if not isinstance(mesh, CoupledSliceMesh):  # which know how many they need
+            if isinstance(mesh, SliceMesh | FiniteElementMesh):  # coupled ones know what they need
                 mesh = replace(mesh, slices=_POINTS)
             law = pair_law(mesh, unit)
         numbers = np.array([law.per_period, law.first])

@@ -27,8 +27,10 @@ from herringbone.core import Column
 from herringbone.kernels import force_law, tooth_pair_law
 from herringbone.kernels.elementary import cosine, sine
 from herringbone.kernels.jit import kernel
-from herringbone.kernels.tooth_pair_law import DEPTHS, POSITIONS, TILTS
 
+POSITIONS, TILTS = tooth_pair_law.POSITIONS, tooth_pair_law.TILTS
+DEPTHS = tooth_pair_law.DEPTHS
+"""Nodes: at most over q, over s, over u."""
 HEADER = ("pair_law", 9)
 COLUMNS = (
     Column("position", ("1",)),

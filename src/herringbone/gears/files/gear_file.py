@@ -109,13 +109,15 @@ def _deviations(
     """What the section gives, if it is there; files are beside the gear file."""
     if "deviations" not in content:
         return None
-    files = {side: str(folder / values[side]) for side in ("left", "right") if side in values}
+    for side in ("left", "right"):
+        if side in values:
+            values[side] = str(folder / values[side])
     grade = values.get("grade")
     if isinstance(grade, list):
         if len(grade) != 2:
             raise ParameterError(f"grade = {grade} of the deviations must be one or two classes")
         values["grade"] = tuple(grade)
-    return GivenDeviations(**values | files)
+    return GivenDeviations(**values)
 
 
 def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
