@@ -103,7 +103,7 @@ def test_same_refusals(
         file.write_text(mutate(lines, chance))
         wanted = python_refusal(component, text, file)
         told = native_refusal(component, text, file)
-        assert told[:LENGTH] == wanted[:LENGTH]
+        assert told[:LENGTH].rstrip() == wanted[:LENGTH].rstrip()  # a last name may be empty
         refused += bool(wanted)
     assert CASES // 5 < refused < CASES
 

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.components.gear_mesh import GEAR_MESH
+from herringbone.components.gear_mesh import GEAR_MESH, layout
+from herringbone.components.gear_mesh.teeth import toothed
+from herringbone.components.resources import tooth_deviations
 from herringbone.core import Instance
 from herringbone.core.roles import GEARS, HALVES
 from herringbone.kernels import force_law
@@ -33,8 +35,19 @@ def apex(p: dict[str, float], th: np.ndarray) -> tuple[float, float, float]:
     return p["symmetry_deviation"] * offset, *slopes
 
 
+def ramp(gear: Instance, th: np.ndarray) -> tuple[float, float]:
+    """R of the README, and its slope over the mean angle of the pinion."""
+    if gear["ramp_turns"] == 0.0:
+        return 1.0, 0.0
+    whole = 2 * math.pi * gear["ramp_turns"]
+    turned = 0.5 * (th[0] + th[1]) - gear["first_angle"]
+    tau = min(1.0, abs(turned) / whole)
+    slope = 30 * tau**2 - 60 * tau**3 + 30 * tau**4
+    return 10 * tau**3 - 15 * tau**4 + 6 * tau**5, math.copysign(slope / whole, turned)
+
+
 def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, float, float]:
-    """e [m] of a flank (f: 1, -1), and its slopes over the angles of pinion and wheel half."""
+    """R e [m] of a flank (f: 1, -1), and R de/dtheta of pinion and wheel half [m/rad]."""
     file = Path(gear.resources / gear.texts["tooth_errors"])
     total = np.zeros(3)
     for line in file.read_text().splitlines():
@@ -45,7 +58,27 @@ def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, flo
             psi = order * th[side + 2 * body] + phase
             total[0] += amplitude * math.cos(psi)
             total[1 + body] -= amplitude * order * math.sin(psi)
-    return tuple(total)
+    return tuple(ramp(gear, th)[0] * total)
+
+
+def deviates(gear: Instance, side: int, f: int) -> bool:
+    """True if teeth of a flank deviate; then it is the flank that carries in these tests."""
+    return tooth_deviations.given(gear.block, layout.DEVIATIONS, side, 0 if f > 0 else 1)
+
+
+def elastic(
+    gear: Instance, x: np.ndarray, side: int, f: int, phase: float, depth: float
+) -> tuple[float, float, float]:
+    """Force [N], dU/d(phase) [J] and U [J] of a flank."""
+    if deviates(gear, side, f):
+        share = ramp(gear, angles(x, gear))[0]
+        found = toothed(gear.block, side, 0 if f > 0 else 1, phase, depth, share)
+        return found[0], found[2], found[5]
+    if depth <= 0.0:
+        return 0.0, 0.0, 0.0
+    at = GEAR_MESH.declaration.first_table + side * force_law.TABLE_SIZE
+    force, _, slope = force_law.law(gear.block, at, phase, depth)
+    return force, slope, force_law.energy(gear.block, at, phase, depth)
 
 
 def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
@@ -61,7 +94,7 @@ def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
         shift = rho * math.tan(beta) * axial / p["pinion.base_radius"]
         phase = rho * th[side] + s * shift + side * p["stagger"]
         depth = delta - error(gear, th, side, 1)[0]
-        if depth > 0.0:
+        if depth > 0.0 or deviates(gear, side, 1):
             found.append((1, phase, depth))
         else:
             depth = -p["backlash"] - delta - error(gear, th, side, -1)[0]
@@ -71,36 +104,28 @@ def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
 
 def energy_slopes(gear: Instance, x: np.ndarray) -> list[float]:
     """dU/d(phase of the drive flank) of both meshes [J]."""
-    first = GEAR_MESH.declaration.first_table
-    return [
-        f * force_law.law(gear.block, first + side * force_law.TABLE_SIZE, phase, depth)[2]
-        if depth > 0.0
-        else 0.0
-        for side, (f, phase, depth) in enumerate(contacts(gear, x))
-    ]
+    found = enumerate(contacts(gear, x))
+    return [f * elastic(gear, x, side, f, *at)[1] for side, (f, *at) in found]
 
 
 def mesh_energy(gear: Instance, x: np.ndarray) -> float:
     """Elastic energy of both meshes [J]."""
-    first = GEAR_MESH.declaration.first_table
-    return sum(
-        force_law.energy(gear.block, first + side * force_law.TABLE_SIZE, phase, depth)
-        for side, (_, phase, depth) in enumerate(contacts(gear, x))
-        if depth > 0.0
-    )
+    found = enumerate(contacts(gear, x))
+    return sum(elastic(gear, x, side, f, *at)[2] for side, (f, *at) in found)
 
 
 def stored_energy(gear: Instance, x: np.ndarray) -> float:
     """Kinetic energy, and elastic energy of shafts and meshes [J]; the restraint's, too."""
     p = {n: gear[n] for n in INDEX}
     th, w = angles(x, gear), angles(x, gear, 12)
+    share = ramp(gear, th)[0]
     total = mesh_energy(gear, x) + p["pinion_restraint"] / 8 * (x[4] + x[5]) ** 2
     for body in range(4):
         name = GEARS[body // 2]
         total += 0.5 * p[f"{name}.mass"] * (x[12 + body] ** 2 + x[16 + body] ** 2)
         total += 0.5 * p[f"{name}.inertia"] * w[body] ** 2
         psi = th[body] + p[f"{name}.unbalance_phase"]
-        total -= 0.5 * p[f"{name}.unbalance"] * math.sin(psi) * w[body] * x[12 + body]
+        total -= 0.5 * share * p[f"{name}.unbalance"] * math.sin(psi) * w[body] * x[12 + body]
     for i, name in ((0, "pinion"), (2, "wheel")):
         for axis, s in (("y", x[0:4]), ("z", x[4:8]), ("t", th)):
             total += 0.5 * p[f"{name}.shaft_stiffness_{axis}"] * (s[i] - s[i + 1]) ** 2
@@ -125,8 +150,10 @@ def depth_rates(gear: Instance, x: np.ndarray) -> list[float]:
         rolled = p["pinion.base_radius"] * w[side] - p["wheel.base_radius"] * w[side + 2]
         rate = c * (vy[side] - vy[side + 2] + rolled)
         rate += (1 - 2 * side) * s * (vz[side] - vz[side + 2] + apex_rate)
-        _, of_pinion, of_wheel = error(gear, th, side, f)
-        rates.append(f * rate - of_pinion * w[side] - of_wheel * w[side + 2])
+        e, of_pinion, of_wheel = error(gear, th, side, f)
+        share, slope = ramp(gear, th)
+        late = e * slope / share * 0.5 * (w[0] + w[1]) if slope != 0.0 else 0.0
+        rates.append(f * rate - of_pinion * w[side] - of_wheel * w[side + 2] - late)
     return rates
 
 
@@ -140,12 +167,9 @@ def power_lost(gear: Instance, x: np.ndarray) -> float:
         for axis, v in (("y", vy), ("z", vz), ("t", w)):
             total += p[f"{name}.shaft_damping_{axis}"] * (v[i] - v[i + 1]) ** 2
     rates = depth_rates(gear, x)
-    for side, (_, phase, depth) in enumerate(contacts(gear, x)):
-        if depth > 0.0:
-            at = GEAR_MESH.declaration.first_table + side * force_law.TABLE_SIZE
-            elastic = force_law.law(gear.block, at, phase, depth)[0]
-            pressure = abs(p[("mesh_left.force", "mesh_right.force")[side]])
-            total += (pressure - elastic) * rates[side]
+    for side, (f, *at) in enumerate(contacts(gear, x)):
+        pressure = abs(p[("mesh_left.force", "mesh_right.force")[side]])
+        total += (pressure - elastic(gear, x, side, f, *at)[0]) * rates[side]
     return total
 
 

@@ -69,6 +69,8 @@ class Quantity(StrEnum):
     WORKING_PRESSURE_ANGLE = "working pressure angle"
     STIFFNESS_TABLE = "stiffness table"
     TOOTH_ERRORS = "tooth errors"
+    TOOTH_DEVIATIONS = "tooth deviations"
+    PAIR_LAW = "force law of a pair of teeth"
     MESH_FORCE = "mesh force"
     MESH_DEFLECTION = "mesh deflection"
     ELECTRICAL_POWER = "electrical power"

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
+from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.mesh_assumptions import MeshAssumptions
@@ -34,6 +35,7 @@ class GearJob:
         slices: across the face, of the slice method.
         corner_contact: follow tip corners outside the path of contact.
         mesh: what geometry does not tell, see `MeshAssumptions`; no table depends on it.
+        deviations: of the teeth, for runs; None: perfect teeth. No table depends on them.
     """
 
     pair: GearPair
@@ -46,6 +48,7 @@ class GearJob:
     slices: int = SLICES
     corner_contact: bool = False
     mesh: MeshAssumptions = field(default_factory=MeshAssumptions)
+    deviations: GivenDeviations | None = None
 
     @property
     def pinion_torque(self) -> float:

@@ -1,12 +1,15 @@
-"""The stiffness table of a job as a file in the cache, made if it is not there."""
+"""Tables of a job as files in the cache, made if they are not there."""
 
 from pathlib import Path
 
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.paths import cache_folder
+from herringbone.gears.accuracy.given import GivenDeviations
+from herringbone.gears.files.pair_law_file import pair_law_text, tooth_deviations_text
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
+from herringbone.gears.job_pair_law import pair_law_for
 from herringbone.gears.job_stiffness import stiffness_for
 
 
@@ -16,9 +19,28 @@ def cached_table(job: GearJob) -> Path:
     Raises:
         ParameterError, ResourceError: see `stiffness_for`.
     """
-    content = table_text(stiffness_for(job)).encode()
+    return _cached("mesh_stiffness", job, table_text(stiffness_for(job)))
+
+
+def cached_pair_law(job: GearJob) -> Path:
+    """File of the force law of one pair of teeth, as `cached_table`."""
+    return _cached("pair_law", job, pair_law_text(pair_law_for(job)))
+
+
+def cached_deviations(job: GearJob, deviations: GivenDeviations) -> Path:
+    """File of the deviations of the teeth, as `cached_table`.
+
+    Raises:
+        ParameterError, ResourceError: see `GivenDeviations.of_halves`.
+    """
+    text = tooth_deviations_text(job.pair, deviations.of_halves(job.pair))
+    return _cached("tooth_deviations", job, text)
+
+
+def _cached(kind: str, job: GearJob, text: str) -> Path:
+    content = text.encode()
     first, second = job.pair.number_of_teeth
-    name = f"mesh_stiffness-{first}-{second}-{digest_of(content)}.csv"
+    name = f"{kind}-{first}-{second}-{digest_of(content)}.csv"
     file = cache_folder("stiffness-tables") / name
     if not is_stored(file):
         store(file, content)

@@ -13,10 +13,11 @@ from herringbone.core.anatomy import Anatomy
 from herringbone.core.part_path import PartPath
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.read_job import is_rexs, read_mounted_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import pair_values
-from herringbone.gears.table_cache import cached_table
+from herringbone.gears.table_cache import cached_deviations, cached_pair_law, cached_table
 
 Gear = str | Path | GearJob
 """A gear file (TOML or REXS), or what it would give."""
@@ -81,6 +82,9 @@ def _values(
             values |= {f"{part.name}.{variable}": value for variable, value in found.items()}
     if table := known.column(gear, Quantity.STIFFNESS_TABLE):
         values[table] = str(cached_table(job))
+    if job.deviations is not None:
+        values |= _deviating(known, gear, job, job.deviations)
+        notes.append(f"{option}: {job.deviations}")
     pairs = known.with_role(Role.GEAR_PAIR)
     if len(pairs) > 1:
         notes += [
@@ -88,6 +92,18 @@ def _values(
             for part in known.with_role(Role.CONTROLLER)
         ]
     return values, notes
+
+
+def _deviating(
+    known: Anatomy, gear: PartPath, job: GearJob, deviations: GivenDeviations
+) -> dict[str, float | str]:
+    """Files of teeth that deviate, by `part.variable`."""
+    found: dict[str, float | str] = {}
+    if column := known.column(gear, Quantity.TOOTH_DEVIATIONS):
+        found[column] = str(cached_deviations(job, deviations))
+    if column := known.column(gear, Quantity.PAIR_LAW):
+        found[column] = str(cached_pair_law(job))
+    return found
 
 
 def _touched(system: System, known: Anatomy, gear: PartPath) -> Iterator[PartSpec]:

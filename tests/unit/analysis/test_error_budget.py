@@ -71,6 +71,25 @@ def test_rows_of_a_gearbox_the_largest_first(table):
         assert found.how
 
 
+@pytest.mark.parametrize(
+    ("errors", "deviations", "how"),
+    [
+        ("perfect_teeth.csv", "ideal_teeth.csv", "none are given: perfect teeth"),
+        ("/e.csv", "ideal_teeth.csv", "as a whole: where teeth differ, harmonics may be wrong"),
+        ("perfect_teeth.csv", "/teeth.csv", None),
+        ("/e.csv", "/teeth.csv", None),
+    ],
+)
+def test_what_is_known_of_the_teeth(table, errors, deviations, how):
+    """Deviations of every tooth are all that there is to know."""
+    result = result_with(table)
+    result.info.resources["gear_mesh.tooth_errors"] = errors
+    result.info.resources["gear_mesh.tooth_deviations"] = deviations
+    found = [r.how for r in error_budget(result, 2e4) if r.source == "tooth errors of gear_mesh"]
+    assert len(found) == (how is not None)
+    assert all(said.startswith(how) for said in found)
+
+
 def hand_calculation(harmonics):
     """Lines of the bearing forces are 1 and 0.4 at harmonics 1 and 2; see support.result."""
     shares = [bound / amplitude for bound, amplitude in zip(BOUNDS[1:], harmonics, strict=False)]

@@ -173,3 +173,23 @@ def test_gear_outside_the_standard_has_no_dynamic_factor(tmp_path, capsys):
     assert "face width 3 mm is outside the scope of ISO 1328-1" in capsys.readouterr().out
     assert main(["gear", str(file), "-o", str(tmp_path), "--accuracy", "7"]) == 2
     assert "face width 3 mm is outside the scope" in capsys.readouterr().err
+
+
+def test_teeth_that_deviate_over_a_turn_of_the_wheel(tmp_path, capsys):
+    """Cumulative pitches of both gears make most of the error; line loads rise by a multiple."""
+    file = tmp_path / "pair.toml"
+    file.write_text(THESIS.read_text(encoding="utf-8") + "[deviations]\ngrade = 6\nseed = 1\n")
+    assert main(["gear", str(file), *PLAIN, "-o", str(tmp_path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    loaded = found["loaded"]
+    teeth, ideal = loaded["deviating_teeth"], loaded["flank_load"][0]["largest_line_load"]
+    error = np.array(teeth["transmission_error"])
+    assert error.shape == (2, 4 * 81)
+    job = read_gear_file(file)
+    for half, curve in zip(job.deviations.of_halves(job.pair), error, strict=True):
+        pitches = sum(np.ptp(gear.cumulative_pitch) for gear in half)
+        assert np.ptp(curve) == pytest.approx(pitches, rel=0.3)
+    assert min(teeth["largest_line_load"]) > 3.0 * ideal
+    assert main(["gear", str(file), *PLAIN, "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "Over a turn of the wheel, coupled slices: teeth deviate as ISO 1328-1 class 6" in said

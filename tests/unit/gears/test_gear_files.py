@@ -4,11 +4,14 @@ import math
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.gears import THESIS, gear_pair
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.paths import component_folder
+from herringbone.gears.accuracy.deviation_file import write_deviations
+from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.read_job import read_mounted_job
 from herringbone.gears.files.rexs import read_rexs
@@ -89,10 +92,40 @@ def test_pair_of_the_gear_mesh_component():
         ("slices = 0.88", 'slices = "much"', "[table] calibration slices = 'much' is no number"),
         ('"slices"', "3", "[table] method = 3 must be a text"),
         ('"5 um"', '"-5 um"', "not negative"),
+        ("[modification]", "[deviations]\n[modification]",
+         "deviations of teeth take a grade, or files left and right"),
+        ("[modification]", '[deviations]\ngrade = 6\nleft = "a.csv"\n[modification]',
+         "take a grade, or files left and right; they have grade = 6, left"),
+        ("[modification]", "[deviations]\ngrade = 6.5\n[modification]", "must be an integer"),
+        ("[modification]", "[deviations]\ngrade = [6, 6, 6]\n[modification]", "one or two classes"),
+        ("[modification]", "[deviations]\nleft = 6\n[modification]", "left = 6 must be a text"),
     ],
 )  # fmt: skip
 def test_bad_gear_file(message, old, new, expected):
     assert expected in message(old, new)
+
+
+def test_deviations_of_a_class(tmp_path):
+    """Two classes are those of pinion and wheel; halves are cut on their own."""
+    file = tmp_path / "pair.toml"
+    file.write_text(GOOD + "[deviations]\ngrade = [5, 7]\nseed = 3\n", encoding="utf-8")
+    job = read_gear_file(file)
+    left, right = job.deviations.of_halves(job.pair)
+    for ours, wanted in zip(left, deviations(job.pair, (5, 7), 3, 0), strict=True):
+        assert np.array_equal(ours.cumulative_pitch, wanted.cumulative_pitch)
+    assert not np.array_equal(left[0].helix_slope, right[0].helix_slope)
+    assert str(job.deviations) == "teeth deviate as ISO 1328-1 class 5 and 7 lets pass, seed 3"
+
+
+def test_deviations_of_files_beside_the_gear_file(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(GOOD + '[deviations]\nleft = "l.csv"\nright = "r.csv"\n', encoding="utf-8")
+    job = read_gear_file(file)
+    for half, name in enumerate(("l.csv", "r.csv")):
+        write_deviations(deviations(job.pair, 6, 1, half), tmp_path / name)
+    right = job.deviations.of_halves(job.pair)[1]
+    wanted = deviations(job.pair, 6, 1, 1)
+    assert np.array_equal(right[1].profile_slope, wanted[1].profile_slope)
 
 
 def test_missing_gear_file(tmp_path):

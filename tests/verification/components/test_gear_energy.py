@@ -5,12 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.deviating_teeth import PAIR, mirrored_teeth, write_law, write_teeth
 from support.gear_energy import INDEX, angles, residual
 from support.gear_mesh import STATES, Seats, equilibrium, gear_pair, on_seats, write_errors
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core import Instance
 from herringbone.core.paths import component_folder
+from herringbone.gears.stiffness.slices import SliceMesh
 
 SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
 SPEED = 1000 * math.pi / 30
@@ -24,6 +26,7 @@ ERRORS = [
 PARAMETERS = {
     "symmetry_deviation": 40e-6,
     "stagger": 0.3,
+    "ramp_turns": 0.0,
     "pinion_restraint": 1e7,
     "drag_torque": 2.0,
     "pinion.unbalance": 2e-3,
@@ -33,6 +36,15 @@ PARAMETERS = {
     "pinion.torque_share_left": 0.3,
     "wheel.torque_share_left": 0.8,
 }
+
+
+@pytest.fixture(scope="module")
+def deviating(tmp_path_factory):
+    """Parameters of teeth of class 6."""
+    folder = tmp_path_factory.mktemp("teeth")
+    law = write_law(folder / "law.csv", SliceMesh(PAIR, slices=60))
+    teeth = write_teeth(folder / "teeth.csv", 6)
+    return {"pair_law": str(law), "tooth_deviations": str(teeth)}
 
 
 @pytest.fixture
@@ -48,17 +60,23 @@ def moved(gear: Instance, seats: Seats) -> np.ndarray:
     return x
 
 
-def test_power_integrated_as_a_state(errors):
-    """At most 1e-9 of the energy passed at 1 us, falling with the order of the stepper."""
+@pytest.mark.parametrize("ramp_turns", [0.0, 0.05])
+@pytest.mark.parametrize("ideal", [True, False])
+def test_power_integrated_as_a_state(errors, deviating, ideal, ramp_turns):
+    """At most 1e-9 of the energy passed at 1 us, falling with the order of the stepper.
+
+    Of ideal teeth and of some that deviate; all at once, and coming in during the run.
+    """
+    more = {"tooth_errors": errors, "ramp_turns": ramp_turns} | ({} if ideal else deviating)
     found = []
     for step in (8e-6, 4e-6, 2e-6, 1e-6):
-        gear, seats = gear_pair(SHIPPED, PARAMETERS | {"tooth_errors": errors}), Seats()
+        gear, seats = gear_pair(SHIPPED, PARAMETERS | more), Seats()
         x = moved(gear, seats)
         found.append(abs(residual(gear, on_seats(gear, seats), x, step, round(2e-3 / step))))
     assert found[-1] < 1e-9
     # Order 4 from end to end; between two steps the kinks of the law in u may hide it, and 2000
-    # sums have a rounding.
-    assert found[-1] < found[0] / 8**4 + 2000 * np.finfo(float).eps
+    # sums have a rounding, of an energy ten times that passed.
+    assert found[-1] < found[0] / 8**4 + 2000 * 10 * np.finfo(float).epsneg
 
 
 # --- the mirror: torque and rotation reversed, sides exchanged -----------------------------------
@@ -128,10 +146,14 @@ def run(gear: Instance, x: np.ndarray, forces: list[float]) -> list[list[float]]
     return record
 
 
-def test_mirror(tmp_path, errors):
+@pytest.mark.parametrize("ideal", [True, False])
+@pytest.mark.parametrize("ramp_turns", [0.0, 0.05])
+def test_mirror(tmp_path, errors, deviating, ideal, ramp_turns):
     """Coast load and reversed rotation are drive load and rotation, seen from the other side."""
     left, right = mirrored_table(tmp_path, 0.9)
-    gear = gear_pair(left, PARAMETERS | {"tooth_errors": errors})
+    teeth = {} if ideal else deviating
+    own = {"tooth_errors": errors, "ramp_turns": ramp_turns}
+    gear = gear_pair(left, PARAMETERS | own | teeth)
     x = moved(gear, Seats())
     torques = [gear["pinion.tau"], gear["wheel.tau"]]
     turn = 2 * math.pi / 27 * (gear["coast_phase"] - gear["stagger"])
@@ -143,7 +165,11 @@ def test_mirror(tmp_path, errors):
          name, order, amplitude, -phase - order * turns[name])
         for side, flank, name, order, amplitude, phase in ERRORS
     ]  # fmt: skip
-    reflected = {"tooth_errors": str(write_errors(tmp_path / "m.csv", rows))}
+    reflected = teeth | own | {"tooth_errors": str(write_errors(tmp_path / "m.csv", rows))}
+    if not ideal:
+        seen = mirrored_teeth(Path(teeth["tooth_deviations"]), tmp_path / "teeth.csv")
+        reflected["tooth_deviations"] = str(seen)
+    reflected["angle"] = turn
     other = gear_pair(right, PARAMETERS | reflected | mirror(gear, turns))
     y = mirrored_state(gear, x, turn)
     first = np.array(run(gear, x, torques))

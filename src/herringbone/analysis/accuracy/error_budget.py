@@ -9,7 +9,7 @@
     inner steps     floor of the gear's micro steps, by the same rule
     housing         certified bound of a reduction up to the end of its band
     dampings        assumed ones: nobody has measured them
-    tooth errors    none are given: perfect teeth
+    tooth errors    none are given: perfect teeth; or as a whole, not of single teeth
 
 Rows are sorted by their value, the largest first, then those without.
 """
@@ -172,10 +172,15 @@ def _housings(result: Result) -> Iterator[BudgetRow]:
 
 def _assumptions(result: Result) -> Iterator[BudgetRow]:
     for gear in result.parts_with(Role.GEAR_PAIR):
-        column = result.info.anatomy.column(gear, Quantity.TOOTH_ERRORS)
-        file = result.info.resources.get(column or "", "")
-        if file and not Path(file).is_absolute():
+        given = {
+            kind: Path(result.info.resources.get(column or "", "")).is_absolute()
+            for kind in (Quantity.TOOTH_ERRORS, Quantity.TOOTH_DEVIATIONS)
+            if (column := result.info.anatomy.column(gear, kind)) in result.info.resources
+        }
+        if given and not given.get(Quantity.TOOTH_DEVIATIONS):
             how = "none are given: perfect teeth"
+            if given.get(Quantity.TOOTH_ERRORS):
+                how = "as a whole: where teeth differ, harmonics may be wrong by a multiple"
             yield BudgetRow(f"tooth errors of {gear}", _FORCE, None, Known.UNKNOWN, how)
     if result.parts_with(Role.GEAR_PAIR):
         how = "damping ratios are assumed; the height of a resonance goes with their reciprocal"

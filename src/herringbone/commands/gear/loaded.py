@@ -4,8 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
+import numpy as np
+
 from herringbone.core.roles import SIDES
 from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.load.deviating_teeth import DeviatingLoad
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.flank_load import FlankLoad, axial_position
 
@@ -41,7 +44,21 @@ def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
         ),
         ("at this place on the path, from A", f"{_sides([f.where[0] for f in flanks], 1e3, 1)} mm"),
         ("and on the face", f"{_sides([f.where[1] for f in flanks], 1e3, 1)} mm"),
+        *_teeth_rows(loaded.teeth),
         *_factor_rows(loaded),
+    ]
+
+
+def _teeth_rows(teeth: DeviatingLoad | None) -> list[tuple[str, str]]:
+    if teeth is None:
+        return []
+    heading = f"Over a turn of the wheel, coupled slices: {teeth.deviations}"
+    peaks = np.ptp(teeth.transmission_error, axis=1).tolist()
+    return [
+        (heading, ""),
+        ("transmission error, peak to peak", f"{_sides(peaks, 1e6, 3)} um"),
+        ("largest line load", f"{_sides(teeth.largest_line_load.tolist(), 1e-3, 1)} N/mm"),
+        ("largest contact pressure", f"{_sides(teeth.largest_pressure.tolist(), 1e-6, 0)} MPa"),
     ]
 
 
@@ -106,7 +123,20 @@ def loaded_json(loaded: Loaded) -> dict:
             }
             for flank in loaded.flanks
         ],
+        "deviating_teeth": _teeth_json(loaded.teeth),
         "dynamic_factor": {"unknown": factor} if isinstance(factor, str) else asdict(factor),
+    }
+
+
+def _teeth_json(teeth: DeviatingLoad | None) -> dict | None:
+    if teeth is None:
+        return None
+    return {
+        "deviations": str(teeth.deviations),
+        "phase": teeth.phases.tolist(),
+        "transmission_error": teeth.transmission_error.tolist(),
+        "largest_line_load": teeth.largest_line_load.tolist(),
+        "largest_pressure": teeth.largest_pressure.tolist(),
     }
 
 

@@ -5,13 +5,11 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.resources import transmission_error
+from herringbone.components.gear_mesh.excitation import error, impact, turn_errors, wheel
+from herringbone.components.gear_mesh.toothed_mesh import OPEN, deviating
 from herringbone.kernels import force_law
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
-from herringbone.kernels.jit import kernel, rare
-
-_OPEN = 1e-12
-"""Depth [m] at which flanks that are open have their tangent stiffness."""
+from herringbone.kernels.jit import kernel
 
 
 @kernel
@@ -34,13 +32,6 @@ def derive(b: np.ndarray) -> None:
 
 
 @kernel
-def wheel(b: np.ndarray, order: int) -> float:
-    """Angle [rad] (order 0) or speed [rad/s] (order 1) of the wheel's left half."""
-    o = order * at.RATE
-    return (b[at.RB[0]] * b[at.ANGLE + o] - b[at.APPROACH + o]) * b[at.PER_WHEEL_RB]
-
-
-@kernel
 def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
     """eps_z [m], its rate [m/s], its slopes over the mean angles of pinion and wheel [m/rad]."""
     if b[at.F_A] == 0.0:
@@ -54,13 +45,6 @@ def _apex(b: np.ndarray) -> tuple[float, float, float, float]:
     return offset, rate, per_pinion, per_wheel
 
 
-@rare
-def _impact(b: np.ndarray, phase: float) -> float:
-    """Force [N] of the meshing impact."""
-    into = (phase - math.floor(phase)) / b[at.IMPACT_DURATION]
-    return 0.5 * b[at.IMPACT] * (1.0 - cosine(at.TWO_PI * into)) if into < 1.0 else 0.0
-
-
 @kernel
 def _flank(
     b: np.ndarray, side: int, f: float, phase: float, depth: float, rate: float
@@ -69,7 +53,7 @@ def _flank(
 
     Open flanks have the damping that their contact begins with; it acts if it is not gated.
     """
-    x = depth if depth > 0.0 else _OPEN
+    x = depth if depth > 0.0 else OPEN
     force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
     damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
     if depth <= 0.0:
@@ -77,29 +61,10 @@ def _flank(
     g = min(1.0, depth * b[at.PER_TRANSITION])
     g *= g * (3.0 - 2.0 * g)
     if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):
-        force += g * _impact(b, phase)
+        force += g * impact(b, phase)
     if b[at.GATE] == 0.0:
         return force + damping * rate, slope
     return max(0.0, force + damping * g * rate), slope
-
-
-@rare
-def _error(b: np.ndarray, side: int, flank: int) -> tuple[float, float, float, float]:
-    """e [m] of a side's flank, its rate, its slopes over the angles of pinion and wheel half."""
-    pinion, gear = b[at.ANGLE] + side * b[at.TWIST_P], wheel(b, 0) + side * b[at.TWIST_W]
-    errors = transmission_error.group(at.ERRORS, side, flank)
-    e, per_pinion, per_wheel = transmission_error.error(b, errors, pinion, gear)
-    rate = per_pinion * (b[at.ANGLE + at.RATE] + side * b[at.TWIST_P + at.RATE])
-    rate += per_wheel * (wheel(b, 1) + side * b[at.TWIST_W + at.RATE])
-    return e, rate, per_pinion, per_wheel
-
-
-@rare
-def _turn_errors(b: np.ndarray, side: int, flank: int, pressure: float) -> None:
-    """Add the torques on what moves the error under a pressure [N]."""
-    _, _, per_pinion, per_wheel = _error(b, side, flank)
-    b[at.TORQUE + side] += pressure * per_pinion
-    b[at.TORQUE + 2 + side] += pressure * per_wheel
 
 
 @kernel
@@ -128,11 +93,13 @@ def _mesh(
     drive, coast = delta, -b[at.BACKLASH] - delta
     rate, coast_rate = delta_rate, -delta_rate
     if b[at.ERRORS] > 0.0:
-        e, e_rate, _, _ = _error(b, side, 0)
+        e, e_rate, _, _, _ = error(b, side, 0)
         drive, rate = drive - e, rate - e_rate
-        e, e_rate, _, _ = _error(b, side, 1)
+        e, e_rate, _, _, _ = error(b, side, 1)
         coast, coast_rate = coast - e, coast_rate - e_rate
     b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1] = drive, coast
+    if b[at.DEVIATIONS] > 0.0:
+        return deviating(b, side, drive, rate, coast, coast_rate, phase)
     normal, push = 0.0, b[at.HELD + side]
     first = 0 if drive > 0.0 or (b[at.GATE] == 0.0 and coast <= 0.0) else 1
     last = 2 if coast > 0.0 else 1
@@ -144,7 +111,7 @@ def _mesh(
         normal += f * pressure
         push += f * slope
         if b[at.ERRORS] > 0.0:
-            _turn_errors(b, side, flank, pressure)
+            turn_errors(b, side, flank, pressure)
     return normal, b[at.COS] * normal + b[at.PER_PITCH] * push
 
 

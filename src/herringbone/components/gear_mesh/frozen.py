@@ -8,7 +8,8 @@ K:
 
 so that the states at which the mesh was frozen are still an equilibrium. The axial offset of the
 chevron's apex, the given transmission error and the reactions on what moved them stay at their
-values; meshing impact and unbalance are off.
+values; meshing impact and unbalance are off. Teeth that deviate become ideal ones, as deep in each
+other as the deviating ones press in the mean; a constant error makes up for the difference.
 """
 
 from collections.abc import Callable
@@ -17,7 +18,8 @@ import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.contact import meshes
-from herringbone.components.resources import transmission_error
+from herringbone.components.gear_mesh.ramp import ramp
+from herringbone.components.resources import tooth_deviations, transmission_error
 from herringbone.core import Instance, ParameterError
 from herringbone.core.roles import GEARS, SIDES
 from herringbone.kernels import force_law
@@ -31,6 +33,14 @@ def _carrying(gear: Instance) -> int:
 
 
 def _depth(gear: Instance, side: int) -> float:
+    """Depth [m] of the flanks that carry; of those that deviate where they press."""
+    if tooth_deviations.given(gear.block, at.DEVIATIONS, side, _carrying(gear)):
+        return float(gear.block[at.PRESSED + 2 * side + _carrying(gear)])
+    return _approach(gear, side)
+
+
+def _approach(gear: Instance, side: int) -> float:
+    """Depth [m] of ideal flanks."""
     deflection = gear[f"mesh_{SIDES[side]}.deflection"]
     return -gear["backlash"] - deflection if _carrying(gear) else deflection
 
@@ -57,6 +67,7 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
     for name in ("impact_force", *(f"{g}.unbalance" for g in GEARS)):
         gear.block[index[name]] = 0.0
     reactions = _reactions(gear)
+    missing = [_approach(gear, side) - _depth(gear, side) for side in range(2)]
     for side, name in enumerate(SIDES):
         depth, force = _depth(gear, side), abs(gear[f"mesh_{name}.force"])
         if depth <= 0.0 or force <= 0.0:
@@ -67,7 +78,8 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
             )
         tangent = stiffness(tangent_stiffness(gear, side))
         _write_line(gear.block, at.TABLE[side], depth, force, tangent)
-    _hold_errors(gear)
+    _hold_errors(gear, missing)
+    gear.block[at.DEVIATIONS : at.DEVIATIONS + tooth_deviations.TABLE_SIZE] = 0.0
     gear.block[at.HELD : at.HELD + len(reactions)] = reactions
     gear.block[index["symmetry_pinion"]] = gear.block[index["symmetry_wheel"]] = 0.0
     gear.block[index["symmetry_constant"]] = offset / share if share else 0.0
@@ -84,8 +96,9 @@ def _reactions(gear: Instance) -> list[float]:
     return [*slopes, *block[at.TORQUE : at.TORQUE + 4]]
 
 
-def _hold_errors(gear: Instance) -> None:
-    """Make a constant of the transmission error of each flank."""
+def _hold_errors(gear: Instance, missing: list[float]) -> None:
+    """Make a constant of the transmission error of each flank; add what the deviations take [m]."""
+    share, _ = ramp(gear.block)
     pinion = gear["angle"]
     wheel = gear["pinion.base_radius"] * pinion - gear["approach"]
     wheel /= gear["wheel.base_radius"]
@@ -93,9 +106,13 @@ def _hold_errors(gear: Instance) -> None:
         angles = pinion + side * gear["pinion_twist"], wheel + side * gear["wheel_twist"]
         for flank in range(2):
             group = transmission_error.group(at.ERRORS, side, flank)
-            if gear.block[group] > 0.0:
-                e = transmission_error.error(gear.block, group, *angles)[0]
+            e = share * transmission_error.error(gear.block, group, *angles)[0]
+            if flank == _carrying(gear):
+                e += missing[side]
+            if e != 0.0 or gear.block[group] > 0.0:
+                gear.block[at.ERRORS] = 1.0
                 gear.block[group : group + 5] = 1.0, 0.0, 0.0, e, 0.0
+    gear.block[at.RAMP_TURNS] = 0.0
 
 
 def _write_line(block: np.ndarray, first: int, depth: float, force: float, tangent: float) -> None:

@@ -5,10 +5,15 @@ from itertools import pairwise
 
 from herringbone.components.gear_mesh.variables import VARIABLES
 from herringbone.components.ports import HALVES, flange, journals
-from herringbone.components.resources import stiffness_table, transmission_error
+from herringbone.components.resources import (
+    pair_law,
+    stiffness_table,
+    tooth_deviations,
+    transmission_error,
+)
 from herringbone.core import Declaration, Text
 from herringbone.core.roles import GEARS, Quantity, Role
-from herringbone.kernels import force_law, steppers
+from herringbone.kernels import force_law, steppers, tooth_pair_law
 
 
 def _apart(places: tuple[int, ...]) -> int:
@@ -22,8 +27,10 @@ INPUTS = 10
 _DERIVED = 13
 _PAIR = 1 + stiffness_table.PAIR[1]
 _HELD = 6
+_RATIOS = 2
 _TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR + _HELD
-_RESULTS = 8
+_TEETH = 2 * tooth_pair_law.TABLE_SIZE + tooth_deviations.TABLE_SIZE + _PAIR + _RATIOS
+_RESULTS = 12
 
 DECLARATION = Declaration(
     "gear_mesh",
@@ -46,8 +53,24 @@ DECLARATION = Declaration(
             transmission_error.COLUMNS,
             Quantity.TOOTH_ERRORS,
         ),
+        Text(
+            "tooth_deviations",
+            "deviations of single teeth, CSV",
+            "ideal_teeth.csv",
+            tooth_deviations.COLUMNS,
+            Quantity.TOOTH_DEVIATIONS,
+        ),
+        Text(
+            "pair_law",
+            "force law of one pair of teeth, CSV; needed with tooth_deviations",
+            "no_pair_law.csv",
+            pair_law.COLUMNS,
+            Quantity.PAIR_LAW,
+            header=pair_law.HEADER[0],
+            header_count=pair_law.HEADER[1],
+        ),
     ],
-    tables=_TABLES + STATES + _DERIVED + _RESULTS,
+    tables=_TABLES + _TEETH + STATES + _DERIVED + _RESULTS,
     work=steppers.body_work(STATES, INPUTS),
     roles=[Role.GEAR_PAIR],
     ports=[*journals(), *(flange(gear, gear) for gear in GEARS)],
@@ -79,12 +102,13 @@ HALF, GEAR, FLANGE = _apart(F_Y), _apart(RB), _apart(TAU)
 """How far apart lie the forces of the halves, the parameters of the gears, the flanges' torques."""
 FORCE = _d.indices("mesh_left.force", "mesh_right.force")
 DEFLECTION = _d.indices("mesh_left.deflection", "mesh_right.deflection")
-TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN = _d.indices(
+TE, OFFSET, OUTSIDE, OTHER_FLANK, PAIR_KNOWN, RAMP_FROM = _d.indices(
     "transmission_error",
     "axial_offset",
     "time_outside_table",
     "time_on_other_flank",
     "table_of_this_pair",
+    "first_angle",
 )
 BETA, ZETA, TRANSITION, GATE, BACKLASH, FLANK, COAST_PHASE, STAGGER = _d.indices(
     "base_helix_angle", "mesh_damping_ratio", "damping_transition", "damping_gate", "backlash",
@@ -94,9 +118,9 @@ F_A, C0, C1, C2, PHI1, PHI2 = _d.indices(
     "symmetry_deviation", "symmetry_constant", "symmetry_pinion", "symmetry_wheel",
     "symmetry_pinion_phase", "symmetry_wheel_phase",
 )  # fmt: skip
-IMPACT, IMPACT_DURATION, RESTRAINT, AXIAL_DRAG, DRAG, MICRO_STEP = _d.indices(
+IMPACT, IMPACT_DURATION, RESTRAINT, AXIAL_DRAG, DRAG, RAMP_TURNS, MICRO_STEP = _d.indices(
     "impact_force", "impact_duration", "pinion_restraint", "pinion_axial_drag", "drag_torque",
-    "micro_step",
+    "ramp_turns", "micro_step",
 )  # fmt: skip
 FACE_WIDTH = _i["face_width"]
 DEGREE = _i["interface_degree"]
@@ -109,7 +133,15 @@ PAIR = ERRORS + transmission_error.TABLE_SIZE
 """1 if the table tells its pair, then the pair: see `stiffness_table`."""
 HELD = PAIR + _PAIR
 """Zero unless the meshes are frozen: by side dU/d(phase) [J], by body torque [N m]."""
-SCRATCH = HELD + _HELD
+LAW = (HELD + _HELD, HELD + _HELD + tooth_pair_law.TABLE_SIZE)
+"""Force laws of a pair of teeth, left and right."""
+DEVIATIONS = LAW[1] + tooth_pair_law.TABLE_SIZE
+"""The deviations of single teeth."""
+LAW_PAIR = DEVIATIONS + tooth_deviations.TABLE_SIZE
+"""1 if there is a law of a pair of teeth, then the pair it is of."""
+TRANSVERSE, OVERLAP = LAW_PAIR + _PAIR, LAW_PAIR + _PAIR + 1
+"""Contact ratios of that pair."""
+SCRATCH = OVERLAP + 1
 """Room for the derivatives of all states."""
 
 _derived = SCRATCH + STATES
@@ -124,7 +156,9 @@ PER_MASS, PER_INERTIA = (_derived + 9, _derived + 10), (_derived + 11, _derived 
 _results = _derived + _DERIVED
 DEPTH = _results
 """By side, drive flank, then coast flank: how deep the flanks are in each other [m]."""
-TORQUE = _results + 4
+PRESSED = _results + 4
+"""In the order of the depths, if teeth deviate: mean depth where they press [m]."""
+TORQUE = _results + 8
 """By body: torque [N m] of what moves the flanks by a rotation."""
 
 TWO_PI = 2.0 * math.pi

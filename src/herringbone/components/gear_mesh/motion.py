@@ -5,7 +5,9 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.gear_mesh.contact import derive, meshes, wheel
+from herringbone.components.gear_mesh.contact import derive, meshes
+from herringbone.components.gear_mesh.excitation import wheel
+from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.kernels import force_law, steppers
 from herringbone.kernels.elementary import sine_and_cosine
 from herringbone.kernels.jit import kernel, rare
@@ -18,18 +20,39 @@ def _drag(b: np.ndarray, w: float) -> float:
 
 
 @rare
-def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
-    """Accelerations of y and theta of a half with unbalance, from those without."""
-    own = gear * at.GEAR
-    u, m, i = 0.5 * b[at.UNBALANCE[0] + own], b[at.MASSES[0] + own], b[at.INERTIAS[0] + own]
+def _unbalance(b: np.ndarray, gear: int, half: int) -> tuple[float, float, float]:
+    """Sine and cosine of the angle of a half's unbalance from +y, and its speed [rad/s]."""
     twist = at.TWIST_P + 2 * gear
     psi, w = b[at.ANGLE], b[at.ANGLE + at.RATE]
     if gear == 1:
         psi, w = wheel(b, 0), wheel(b, 1)
-    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[0] + own])
-    w += half * b[twist + at.RATE]
-    force, torque = m * a + u * c * w * w, i * alpha
-    us = u * s
+    s, c = sine_and_cosine(psi + half * b[twist] + b[at.UNBALANCE_PHASE[0] + gear * at.GEAR])
+    return s, c, w + half * b[twist + at.RATE]
+
+
+@rare
+def _come_in(b: np.ndarray, gear: int) -> None:
+    """Add the torques of an unbalance that comes in: on its halves, and on what brings it in."""
+    _, slope = ramp(b)
+    u = 0.5 * b[at.UNBALANCE[0] + gear * at.GEAR]
+    for half in range(2):
+        body = 2 * gear + half
+        s, _, w = _unbalance(b, gear, half)
+        push = u * slope * s * b[at.Y + body + at.RATE]
+        b[at.TORQUE + body] += push * ramp_speed(b)
+        turn_ramp(b, -push * w)
+
+
+@rare
+def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple[float, float]:
+    """Accelerations of y and theta of a half with unbalance, from those without."""
+    own = gear * at.GEAR
+    u, m, i = 0.5 * b[at.UNBALANCE[0] + own], b[at.MASSES[0] + own], b[at.INERTIAS[0] + own]
+    share, slope = ramp(b)
+    s, c, w = _unbalance(b, gear, half)
+    grow = u * s * slope * ramp_speed(b)
+    force, torque = m * a + share * u * c * w * w + grow * w, i * alpha
+    us = share * u * s
     per = 1.0 / (m * i - us * us)
     return per * (i * force + us * torque), per * (m * torque + us * force)
 
@@ -44,6 +67,9 @@ def _derivatives(
     push_right: float,
 ) -> None:
     """Derivatives of all states under the forces of `meshes`."""
+    for gear in range(2):
+        if b[at.UNBALANCE[0] + gear * at.GEAR] > 0.0:
+            _come_in(b, gear)
     for i in range(at.RATE):
         dx[i] = b[i + at.RATE]
     thrust_left, thrust_right = b[at.TAN] * push_left, b[at.TAN] * push_right
@@ -183,11 +209,12 @@ def step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     other = 1 if b[at.FLANK] >= 0.0 else 0
     inside, carried = True, True
     for side in range(2):
-        drive, coast = b[at.DEPTH + 2 * side], b[at.DEPTH + 2 * side + 1]
+        depths = at.DEPTH if b[at.DEVIATIONS] == 0.0 else at.PRESSED
+        drive, coast = b[depths + 2 * side], b[depths + 2 * side + 1]
         inside = inside and force_law.inside(
             b, at.TABLE[0] + side * force_law.TABLE_SIZE, max(drive, coast)
         )
-        carried = carried and b[at.DEPTH + 2 * side + other] <= 0.0
+        carried = carried and b[depths + 2 * side + other] <= 0.0
     if not inside:
         b[at.OUTSIDE] += h
     if not carried:

@@ -82,6 +82,9 @@ def _results() -> list[Variable]:
             "1: the table tells its pair, and it is this one; 0: it tells none",
         ),
         local("time_on_other_flank", "s", "time with a mesh loaded on the flank not in `flank`"),
+        local(
+            "first_angle", "rad", "mean angle of the pinion's halves at the end of initialisation"
+        ),
     ]
 
 
@@ -161,6 +164,8 @@ def _mesh_parameters() -> list[Variable]:
         p("pinion_axial_drag", "N.s/m", "axial drag of each pinion half against ground", 50.0,
           minimum=0),
         p("drag_torque", "N.m", "drag torque on the pinion", 0.0, minimum=0),
+        p("ramp_turns", "1", "pinion turns in which errors, deviations, unbalance come in", 1.0,
+          minimum=0),
         p("micro_step", "s", "longest Runge-Kutta step", 2.5e-6, minimum=1e-9, maximum=1e-4,
           quantity=Quantity.MICRO_STEP),
     ]  # fmt: skip

@@ -18,6 +18,11 @@ slices = 0.88
 
 [mesh]                           # optional; see `MeshAssumptions`
 backlash = "180 um"
+
+[deviations]                     # optional, of the teeth, for runs; see `GivenDeviations`
+grade = 6                        # ISO 1328-1 tolerance class; two numbers: pinion, wheel
+seed = 1
+# or files of both halves, beside this one: left = "left.csv", right = "right.csv"
 """
 
 import tomllib
@@ -26,7 +31,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ParameterError, ResourceError, reason
+from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.quantity import quantity
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
@@ -47,9 +53,11 @@ _KINDS = {
     "torque": "torque",
     "loads": "force",
 }
-_INTEGERS = {"number_of_teeth", "halves", "phases", "slices"}
+_INTEGERS = {"number_of_teeth", "halves", "phases", "slices", "grade", "seed"}
 _FLAGS = {"corner_contact"}
-_TABLE_KEYS = {field.name for field in fields(GearJob)} - {"pair", "modification", "mesh"}
+_OTHER_KEYS = {"pair", "modification", "mesh", "deviations"}
+_TABLE_KEYS = {field.name for field in fields(GearJob)} - _OTHER_KEYS
+_TEXTS = {"method", "left", "right"}
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
 
@@ -70,6 +78,7 @@ def read_gear_file(file: str | Path) -> GearJob:
         "modification": {field.name for field in fields(Modification)},
         "table": _TABLE_KEYS,
         "mesh": {field.name for field in fields(MeshAssumptions)},
+        "deviations": {field.name for field in fields(GivenDeviations)},
     }
     for section, keys in content.items():
         if section not in known or not isinstance(keys, dict):
@@ -89,8 +98,26 @@ def read_gear_file(file: str | Path) -> GearJob:
         GearPair(**values["gear_pair"]),
         Modification(**values["modification"]),
         mesh=MeshAssumptions(**values["mesh"]),
+        deviations=_deviations(content, values["deviations"], file.parent),
         **values["table"],
     )
+
+
+def _deviations(
+    content: Mapping[str, Any], values: dict[str, Any], folder: Path
+) -> GivenDeviations | None:
+    """What the section gives, if it is there; files are beside the gear file."""
+    if "deviations" not in content:
+        return None
+    for side in ("left", "right"):
+        if side in values:
+            values[side] = str(folder / values[side])
+    grade = values.get("grade")
+    if isinstance(grade, list):
+        if len(grade) != 2:
+            raise ParameterError(f"grade = {grade} of the deviations must be one or two classes")
+        values["grade"] = tuple(grade)
+    return GivenDeviations(**values)
 
 
 def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
@@ -103,7 +130,7 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def _value(name: str, value: object, where: str) -> Any:  # noqa: ANN401 (by the name)
-    if name == "method":
+    if name in _TEXTS:
         if not isinstance(value, str):
             raise ResourceError(f"{where} = {value!r} must be a text")
         return value

@@ -13,7 +13,7 @@ def table_text(stiffness: MeshStiffness) -> str:
     """The table as CSV (grammar: `components.resources.stiffness_table`), origin in comments."""
     lines = [
         "# units: load N, phase 1, stiffness N/m",
-        f"# pair: {_fingerprint(stiffness.pair)}",
+        f"# pair: {fingerprint(stiffness.pair)}",
         *_uncertainty(stiffness),
         *(f"# {line}" for line in origin(stiffness)),
     ]
@@ -27,7 +27,7 @@ def table_text(stiffness: MeshStiffness) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _fingerprint(pair: GearPair) -> str:
+def fingerprint(pair: GearPair) -> str:
     """Whose table it is: teeth, base radii [m], base helix angle [rad], face width [m]."""
     lengths = (*pair.base_radius, abs(pair.base_helix_angle), pair.face_width)
     numbers = (*pair.number_of_teeth, *(f"{x:.10g}" for x in lengths))

@@ -24,8 +24,8 @@ from herringbone.gears.finite_elements.compliance import ToothCompliance, teeth_
 from herringbone.gears.finite_elements.layer import scikit_fem
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
-from herringbone.gears.stiffness.contact_slices import ContactSlices
-from herringbone.gears.stiffness.point_mesh import Line, PointMesh, Progress, silent
+from herringbone.gears.stiffness.contact_slices import ContactSlices, Line
+from herringbone.gears.stiffness.point_mesh import PointMesh, Progress, silent
 
 SLICES = 120
 

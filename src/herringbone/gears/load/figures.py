@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from herringbone.core import ParameterError
 from herringbone.gears.job import GearJob
+from herringbone.gears.load.deviating_teeth import DeviatingLoad, deviating_load
 from herringbone.gears.load.dynamic_factor import (
     DynamicFactor,
     dynamic_factor,
@@ -53,6 +54,7 @@ class Loaded:
         torques: the pair over the torques of its table.
         flanks: of the left and the right half, or of the only one.
         factor: N and K_v; or why not.
+        teeth: of teeth that deviate; None: the job has none.
     """
 
     conditions: Conditions
@@ -60,6 +62,7 @@ class Loaded:
     torques: Sequence[LoadedPair]
     flanks: tuple[FlankLoad, ...]
     factor: DynamicFactor | str
+    teeth: DeviatingLoad | None = None
 
 
 def loaded_figures(
@@ -89,6 +92,7 @@ def loaded_figures(
         over_torque(stiffness, conditions.symmetry),
         flanks if conditions.symmetry else flanks * job.pair.halves,
         _dynamic_factor(job, conditions),
+        deviating_load(job, job.deviations) if job.deviations else None,
     )
 
 

@@ -72,6 +72,10 @@ class Slices(NamedTuple):
     gap: np.ndarray
 
 
+Line = tuple[np.ndarray, np.ndarray, Slices]
+"""Positions on path and face [m] and slices of one contact line, each (n,)."""
+
+
 class LineLoad(NamedTuple):
     """Load on the contact lines of one half at one phase, each (n,).
 
@@ -119,9 +123,9 @@ class ContactSlices:
             raise ParameterError(f"hertz = '{self.hertz}' is none of {', '.join(HERTZ)}")
         plane_modulus(self.pair, self.plane)
 
-    def lines(self, phase: float) -> list[tuple[np.ndarray, np.ndarray, Slices]]:
+    def lines(self, phase: float) -> list[Line]:
         """Lines in contact at a phase: positions on path and face [m] and slices, each (n,)."""
-        path, face, share = cut_lines(self.pair, self.slices, np.array([phase]), *self._limits())
+        path, face, share = cut_lines(self.pair, self.slices, np.array([phase]), *self.limits())
         length = share * self.pair.face_width / self.slices / math.cos(self.pair.base_helix_angle)
         slices = self.at(path, face, length)
         found = []
@@ -132,7 +136,7 @@ class ContactSlices:
                 found.append((path[0, here], face[0, here], Slices(*(v[0, here] for v in slices))))
         return found
 
-    def _limits(self) -> tuple[float, float]:
+    def limits(self) -> tuple[float, float]:
         """Where lines may touch, on the path of contact [m]."""
         reach = _CORNER_REACH * self.pair.transverse_base_pitch if self.corner_contact else 0.0
         return -reach, self.pair.length_of_path_of_contact + reach
@@ -141,7 +145,7 @@ class ContactSlices:
         self, phases: np.ndarray, low: float | None = None, high: float | None = None
     ) -> Slices:
         """Slices at phases (n,) [mesh periods]; limits on the path of contact [m], if others."""
-        begin, end = self._limits()
+        begin, end = self.limits()
         path, face, share = cut_lines(
             self.pair,
             self.slices,

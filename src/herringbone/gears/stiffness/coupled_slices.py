@@ -44,8 +44,8 @@ from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.given import Pair
 from herringbone.gears.geometry.modification import Modification
-from herringbone.gears.stiffness.contact_slices import ContactSlices
-from herringbone.gears.stiffness.point_mesh import Line, PointMesh
+from herringbone.gears.stiffness.contact_slices import ContactSlices, Line
+from herringbone.gears.stiffness.point_mesh import PointMesh
 from herringbone.gears.stiffness.tooth_compliance import PLANES, tooth_compliance
 
 LENGTHS = (1.15, 3.1)

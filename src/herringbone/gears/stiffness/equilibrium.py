@@ -17,6 +17,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from herringbone.core import ParameterError
+from herringbone.gears.stiffness.contact_slices import Slices
 
 _STEPS = 100
 _TOLERANCE = 1e-10
@@ -102,3 +103,44 @@ def _newton(
     unit, rest = np.zeros((2, line.size))
     unit[active], rest[active] = cho_solve(factor, right[active], check_finite=False).T
     return unit, rest
+
+
+def pressed(
+    compliance: np.ndarray,
+    slices: Slices,
+    contact: Callable[[Slices, np.ndarray], tuple[np.ndarray, np.ndarray]],
+    depth: np.ndarray,
+) -> np.ndarray:
+    """Forces (m, n) [N] of the n points of a line at m given depths of the flanks in each other.
+
+    Args:
+        compliance: among the points, shape (n, n) [m/N].
+        slices: the points, arrays of shape (m, n).
+        contact: secant and tangent compliance of points at line loads, see `ContactSlices`.
+        depth: shape (m, n) [m], each row positive somewhere.
+
+    Raises:
+        ParameterError: no equilibrium was found.
+    """
+    forces, active = np.zeros_like(depth), depth > 0.0
+    todo, identity = np.arange(len(depth)), np.eye(depth.shape[1])
+    for _ in range(_STEPS):
+        part, own, pressing = Slices(*(v[todo] for v in slices)), forces[todo], active[todo]
+        line = own / part.length
+        secant, slope = contact(part, line)
+        matrix = compliance + identity * (slope / part.length)[:, None, :]
+        matrix = np.where(pressing[:, :, None] & pressing[:, None, :], matrix, identity)
+        right = np.where(pressing, depth[todo] - (secant - slope) * line, 0.0)
+        moved = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+        held = np.maximum(0.0, moved)
+        presses = np.where(pressing, moved > 0.0, depth[todo] > held @ compliance)
+        settled = np.abs(moved - own).max(axis=1) <= _TOLERANCE * held.sum(axis=1)
+        settled &= (presses == pressing).all(axis=1)
+        forces[todo], active[todo] = held, presses
+        todo = todo[~settled]
+        if todo.size == 0:
+            return forces
+    raise ParameterError(
+        f"no equilibrium of a pair of teeth at a depth of {1e6 * depth[todo[0]].max():g} um after "
+        f"{_STEPS} steps; it is too large for the pair"
+    )

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from herringbone.gears.stiffness.contact_slices import ContactSlices, LineLoad, Slices
+from herringbone.gears.stiffness.contact_slices import ContactSlices, Line, LineLoad, Slices
 from herringbone.gears.stiffness.equilibrium import ContactPoints, balance
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, checked_loads
 from herringbone.gears.stiffness.slices import PHASES
@@ -15,8 +15,6 @@ from herringbone.gears.stiffness.slices import PHASES
 _TOUCHING = 1e-3
 """Load [N] at which the stiffness at zero load is taken; the contact is linear far above it."""
 
-Line = tuple[np.ndarray, np.ndarray, Slices]
-"""Positions on path and face [m] and slices of one contact line, each (n,)."""
 Progress = Callable[[str, float], None]
 """Called with what is done and how much of it, 0 to 1."""
 
@@ -41,9 +39,10 @@ class PointMesh(ABC):
 
     def points(self, phase: float) -> ContactPoints:
         """Points that may touch at a phase [mesh periods]."""
-        return self._points(self.lines.lines(phase))
+        return self.points_of(self.lines.lines(phase))
 
-    def _points(self, lines: list[Line]) -> ContactPoints:
+    def points_of(self, lines: list[Line]) -> ContactPoints:
+        """Points of some lines."""
         slices = Slices(*(np.concatenate(v) for v in zip(*(s for _, _, s in lines), strict=True)))
         return ContactPoints(
             self.compliance(lines), slices.length, slices.gap, partial(self.lines.contact, slices)
@@ -51,8 +50,11 @@ class PointMesh(ABC):
 
     def line_load(self, phase: float, force: float) -> LineLoad:
         """Load on the contact lines at a phase and a normal force of the half [N]."""
-        lines = self.lines.lines(phase)
-        points = self._points(lines)
+        return self.load_of(self.lines.lines(phase), force)
+
+    def load_of(self, lines: list[Line], force: float) -> LineLoad:
+        """Load on some lines at a normal force of the half [N]."""
+        points = self.points_of(lines)
         pressed = balance(points, force).forces if force > 0.0 else np.zeros_like(points.length)
         path, face = (np.concatenate([line[i] for line in lines]) for i in range(2))
         return LineLoad(path, face, points.length, pressed / points.length)

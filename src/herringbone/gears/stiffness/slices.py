@@ -35,7 +35,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.gears.stiffness.contact_slices import ContactSlices, LineLoad, Slices
+from herringbone.gears.stiffness.contact_slices import ContactSlices, Line, LineLoad, Slices
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, checked_loads
 
 PHASES = 64
@@ -68,14 +68,14 @@ class SliceMesh(ContactSlices):
         tangent = np.empty_like(deflection)
         for i, force in enumerate(forces):
             if force > 0.0:
-                deflection[i], tangent[i] = self._loaded(slices, force)
+                deflection[i], tangent[i] = self.loaded(slices, force)
             else:
                 deflection[i], tangent[i] = self._least_gap(slices), touching
         self.check_contact_ratio(forces[-1], deflection[-1].max())
         return MeshStiffness(
             self.pair,
             self.modification,
-            self._describe(),
+            self.describe(),
             forces,
             at,
             deflection,
@@ -99,11 +99,15 @@ class SliceMesh(ContactSlices):
 
     def line_load(self, phase: float, force: float) -> LineLoad:
         """Load on the contact lines at a phase and a normal force of the half [N]."""
-        path, face, parts = zip(*self.lines(phase), strict=True)
+        return self.load_of(self.lines(phase), force)
+
+    def load_of(self, lines: list[Line], force: float) -> LineLoad:
+        """Load on some lines at a normal force of the half [N]."""
+        path, face, parts = zip(*lines, strict=True)
         slices = Slices(*(np.concatenate(values)[None] for values in zip(*parts, strict=True)))
         load = np.zeros_like(slices.gap)
         if force > 0.0:
-            deflection, _ = self._loaded(slices, force)
+            deflection, _ = self.loaded(slices, force)
             load, _ = self._line_loads(slices, load, deflection)
         return LineLoad(np.concatenate(path), np.concatenate(face), slices.length[0], load[0])
 
@@ -129,7 +133,7 @@ class SliceMesh(ContactSlices):
         stiffness = (pressed > 0.0) * slices.length / (slices.compliance + slope)
         return load, stiffness.sum(axis=1)
 
-    def _loaded(self, slices: Slices, force: float) -> tuple[np.ndarray, np.ndarray]:
+    def loaded(self, slices: Slices, force: float) -> tuple[np.ndarray, np.ndarray]:
         """Deflection [m] and tangent stiffness [N/m] at a force, for every phase."""
         contact, _ = self.contact(slices, np.zeros_like(slices.gap))
         whole = np.sum(slices.length / (slices.compliance + contact), axis=1)
@@ -161,7 +165,8 @@ class SliceMesh(ContactSlices):
         contact, _ = self.contact(slices, np.zeros_like(slices.gap))
         return np.sum(slices.length / (slices.compliance + contact), axis=1)
 
-    def _describe(self) -> str:
+    def describe(self) -> str:
+        """The model in one line."""
         corner = ", corner contact" if self.corner_contact else ""
         return (
             f"slice method, {self.slices} slices, contact by {self.hertz}, compliance of the teeth "
