@@ -72,6 +72,7 @@ class Quantity(StrEnum):
     TOOTH_DEVIATIONS = "tooth deviations"
     PAIR_LAW = "force law of a pair of teeth"
     MESH_FORCE = "mesh force"
+    IMPACT_FORCE = "impact force"
     MESH_DEFLECTION = "mesh deflection"
     ELECTRICAL_POWER = "electrical power"
     RECOVERED_POWER = "recovered power"

@@ -34,7 +34,7 @@ import math
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.jit import kernel, rare
 
 POSITIONS = 192
 """Most nodes over q."""
@@ -64,7 +64,7 @@ def ends(q: float, transverse: float, overlap: float) -> tuple[float, float]:
     return 0.5 * (low + high), 0.5 * (high - low)
 
 
-@kernel
+@rare
 def _interpolate(
     b: np.ndarray, at: int, step: int, first: int, last: int, pivots: np.ndarray
 ) -> None:
@@ -164,7 +164,7 @@ def _over_depths(b: np.ndarray, at: int, f: float) -> tuple[float, float, float]
     )
 
 
-@kernel
+@rare
 def _over_tilts(
     b: np.ndarray, at: int, f: float, u: float
 ) -> tuple[float, float, float, float, float, float]:

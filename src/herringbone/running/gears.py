@@ -40,7 +40,7 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         part = system.part(name).name
         if system.part(part).foreign:
             raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
-        job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
+        job = job_of(gear)
         if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
             notes.append(
                 f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
@@ -50,6 +50,11 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
     return system, tuple(notes)
+
+
+def job_of(gear: Gear) -> GearJob:
+    """The job of a pair that is mounted in a gearbox; raises as `read_mounted_job` does."""
+    return gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
 
 
 def _fitted(system: System, values: Mapping[str, float | str]) -> tuple[System, list[str]]:

@@ -10,8 +10,9 @@ from herringbone.core.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.gears import Gear, with_gears
+from herringbone.running.gears import Gear, job_of, with_gears
 from herringbone.running.housings import split_housings, with_housing_data
+from herringbone.running.impacts import with_impacts
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
 from herringbone.running.open_flanges import balanced, unbalanced
 from herringbone.running.start import started
@@ -97,7 +98,9 @@ def prepared(
         structure, notes = started(structure, chosen)
     except EquilibriumError as error:
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
-    return Prepared(structure, chosen, (*said, *lines, *notes, *broken))
+    jobs = {part: job_of(gear) for part, gear in gears.items()}
+    structure, impacts = with_impacts(structure, jobs)
+    return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from herringbone.commands.gear.loaded import loaded_json, loaded_rows
-from herringbone.gears.geometry.corner_contact import Impact, meshing_impact
+from herringbone.gears.geometry.corner_contact import Impact
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Loaded
+from herringbone.gears.load.impact import impact_at
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
-from herringbone.gears.stiffness.slices import SliceMesh
 
 _RPM = math.pi / 30.0
 _PULSE = 0.02
@@ -50,7 +50,10 @@ def gear_tables(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> str:
 def gear_figures(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> dict:
     """What the tables show, in SI units and rad."""
     speed = loaded.conditions.speed
-    pair, impact = job.pair, _impact(job, stiffness, speed)
+    pair, impact = (
+        job.pair,
+        impact_at(job, stiffness, speed, job.pair.tooth_forces(job.pinion_torque).normal),
+    )
     forces = pair.tooth_forces(job.pinion_torque)
     return {
         "pair": {name: getattr(pair, name) for name in _PAIR_FIGURES},
@@ -161,11 +164,7 @@ def _stiffness_table(stiffness: MeshStiffness, loaded: Loaded) -> str:
 
 
 def _impact(job: GearJob, stiffness: MeshStiffness, speed: float) -> Impact:
-    """What the meshing impact may reach at the job's torque; an upper bound for helical teeth."""
-    load = job.pair.tooth_forces(job.pinion_torque).normal
-    mesh = SliceMesh(job.pair, calibration=job.task().calibration_of("slices"))
-    deflection = load / stiffness.mean(load)
-    return meshing_impact(job.pair, speed, deflection, mesh.single_pair_stiffness(load))
+    return impact_at(job, stiffness, speed, job.pair.tooth_forces(job.pinion_torque).normal)
 
 
 def _impact_rows(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> list[_Row]:

@@ -140,8 +140,8 @@ there the direction of the separating force is wrong. With deviations the mean d
 forces below 1e-4 also when teeth separate. On the test rig, against micro steps of 0.3 us:
 
     micro step      2.5 us    3.3 us    5 us      10 us
-    loaded teeth    3.7e-8    1.2e-7    5.9e-7    9.4e-6
-    separation      5.8e-5    4.4e-5    1.7e-4    1.4e-4
+    loaded teeth    8.9e-8    2.9e-7    1.4e-6    2.2e-5
+    separation      2.8e-5    1.8e-5    1.5e-4    3.5e-4
 
 **Refused**: teeth that do not fit the base radii (z1 / z2 against rb1 / rb2, 1e-3), and a table
 whose line `# pair: z1 z2 rb1 rb2 beta_b b` differs from the parameters (teeth; the others by 1e-4).
