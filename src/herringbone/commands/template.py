@@ -17,10 +17,12 @@ class Template(NamedTuple):
     Attributes:
         file: the shipped one.
         use: what it is for, in a line.
+        more: what is shown, of the file's text.
     """
 
     file: Callable[[], Path]
     use: str
+    more: Callable[[str], str] = str
 
 
 def _of(role: Role, name: str) -> Callable[[], Path]:
@@ -32,10 +34,17 @@ def _of(role: Role, name: str) -> Callable[[], Path]:
     return file
 
 
+def _with_optional_keys(text: str) -> str:
+    from herringbone.gears.files.known_keys import optional_keys  # noqa: PLC0415 (numba)
+
+    return f"{text}\n{optional_keys(text)}"
+
+
 TEMPLATES = {
     "gear": Template(
         _of(Role.GEAR_PAIR, "gear_pair.toml"),
         "A gear pair: herringbone gear FILE; herringbone run SYSTEM --gear FILE",
+        _with_optional_keys,
     ),
     "housing": Template(
         _of(Role.HOUSING, "welded_housing.toml"),
@@ -72,7 +81,7 @@ def template(kind: str, output: Path | None) -> str:
     if kind not in TEMPLATES:
         raise ParameterError(f"there is no template '{kind}': give one of {', '.join(TEMPLATES)}")
     found = TEMPLATES[kind]
-    text = f"# {found.use}\n#\n{found.file().read_text(encoding='utf-8')}"
+    text = f"# {found.use}\n#\n{found.more(found.file().read_text(encoding='utf-8'))}"
     if output is None:
         return text.rstrip("\n")
     if output.exists():

@@ -35,7 +35,7 @@ _HEADER = '''"""Tangents of kernels; generated, not to be edited."""
 import math
 
 from herringbone.kernels.elementary import cosine, exponential, sine
-from herringbone.kernels.jit import rare
+from herringbone.kernels.jit import kernel
 '''
 
 
@@ -107,7 +107,7 @@ class _Function(DualExpressions):
                 arguments.append(a.arg + SUFFIX)
         module = ast.fix_missing_locations(ast.Module(body, []))
         text = textwrap.indent(ast.unparse(module) or "pass", "    ")
-        return f"\n\n@rare\ndef {name}({', '.join(arguments)}):\n{text}\n"
+        return f"\n\n@kernel\ndef {name}({', '.join(arguments)}):\n{text}\n"
 
     # Statements.
 

@@ -1,5 +1,7 @@
 """Templates: each is what its command takes, and none is written over a file."""
 
+import re
+
 import pytest
 
 import herringbone as hb
@@ -9,6 +11,7 @@ from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core.paths import component_folder
 from herringbone.core.roles import HALVES
 from herringbone.cosim.structure.system_file import read_system
+from herringbone.gears.files.known_keys import SECTIONS, keys_of
 from herringbone.gears.files.read_job import read_mounted_job
 from herringbone.gears.pair_values import pair_values
 from herringbone.housing.importers.seat_file import read_seats
@@ -34,6 +37,15 @@ def written(tmp_path, capsys):
 
 def test_gear(written):
     assert pair_values(read_mounted_job(written("gear", "pair.toml")))[0] == SHIPPED_PAIR
+
+
+def test_gear_tells_every_key(written):
+    """Those of the file, and all others as comments; each one is taken where it is uncommented."""
+    text = written("gear", "pair.toml").read_text(encoding="utf-8")
+    for section in SECTIONS:
+        for key in keys_of(section):
+            assert re.search(rf"^(# )?{key}( =|:)", text, re.MULTILINE), (section, key)
+    assert "# tip_relief: amounts at the tips of pinion and wheel [m]." in text
 
 
 def test_housing(written):

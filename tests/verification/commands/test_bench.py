@@ -17,8 +17,9 @@ pytestmark = pytest.mark.skipif(
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-SYSTEMS = {"gearbox": 310_000, "test_rig": 330_000}
-"""Systems as one FMU miss it by 3 and 8 %, since their meshes have the slopes of an energy."""
+BEYOND = {"gear_mesh": 330_000, "gearbox": 395_000, "test_rig": 405_000}
+"""What misses it, by 6, 28 and 32 %: the law of single teeth takes 14 kB per platform, and the
+slopes of an energy what systems missed it by before."""
 
 
 def test_the_plain_loop_ends_where_the_compiled_loop_ends():
@@ -48,8 +49,8 @@ def test_fmus_are_small(capsys):
     assert main(["bench", "fmus", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["fmus"]
     sizes = {name: fmu["bytes"] for name, fmu in found["fmus"].items()}
-    for system, limit in SYSTEMS.items():
-        assert sizes.pop(system) <= limit
+    for name, limit in BEYOND.items():
+        assert sizes.pop(name) <= limit
     assert {name: size for name, size in sizes.items() if size > LARGEST} == {}
 
 

@@ -27,12 +27,12 @@ seed = 1
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError, ResourceError, reason
 from herringbone.gears.accuracy.given import GivenDeviations
+from herringbone.gears.files.known_keys import SECTIONS, keys_of
 from herringbone.gears.files.quantity import quantity
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
@@ -55,8 +55,6 @@ _KINDS = {
 }
 _INTEGERS = {"number_of_teeth", "halves", "phases", "slices", "grade", "seed"}
 _FLAGS = {"corner_contact"}
-_OTHER_KEYS = {"pair", "modification", "mesh", "deviations"}
-_TABLE_KEYS = {field.name for field in fields(GearJob)} - _OTHER_KEYS
 _TEXTS = {"method", "left", "right"}
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
@@ -73,13 +71,7 @@ def read_gear_file(file: str | Path) -> GearJob:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ResourceError(f"cannot read {file}: {reason(error)}") from error
-    known = {
-        "gear_pair": {field.name for field in fields(GearPair)},
-        "modification": {field.name for field in fields(Modification)},
-        "table": _TABLE_KEYS,
-        "mesh": {field.name for field in fields(MeshAssumptions)},
-        "deviations": {field.name for field in fields(GivenDeviations)},
-    }
+    known = {section: set(keys_of(section)) for section in SECTIONS}
     for section, keys in content.items():
         if section not in known or not isinstance(keys, dict):
             raise ResourceError(f"{file}: [{section}] is unknown; it takes {', '.join(known)}")
