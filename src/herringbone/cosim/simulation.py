@@ -99,8 +99,8 @@ def simulate(
     run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
     if loop is None:
         run.loop_notes = tuple(
-            f"{parts[p].name} declares that its motion depends directly on forces, but shows none "
-            "of it in initialisation mode: the gain of the algebraic loop is not known"
+            f"the motion of {parts[p].name} depends directly on forces, which does not show in "
+            "initialisation mode: the gain of the algebraic loop is not known"
             for p in sorted(network.feedthrough)
         )
     return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)

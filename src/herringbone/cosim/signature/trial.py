@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Part
 
-_WARNING = 1
+_WARNING, _DISCARD = 1, 2
 _Pointer, _Count, _Real, _Flag = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
 _exchange_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Pointer, _Count, _Pointer)
 _step_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Real, _Real, _Flag)
@@ -112,5 +112,9 @@ class Trial:
             raise Refused(self._refusal(what, status))
 
     def _refusal(self, what: str, status: int) -> str:
+        """The message; after an error FMI allows nothing but to free the part."""
+        if status > _DISCARD:
+            self.part.failed()
+            self._saved.clear()
         said = "; ".join(self.part.messages())
         return f"{self.part.name} refuses {what} (status {status})" + (f": {said}" if said else "")
