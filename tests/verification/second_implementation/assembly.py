@@ -81,7 +81,7 @@ class Gearbox:
         found[speeds[0]], found[speeds[1]] = self.gear.flanges(gear[12:])
         return found
 
-    def solve(self, start, times):
+    def solve(self, start, times, relative=RELATIVE):
         """Outputs at rising times (n,) from a start (at the first one), by name, each (n,)."""
         size = self._sizes(start.size)
         edges = sorted({times[0], times[-1], *(b for b in self.breaks() if 0.0 < b < times[-1])})
@@ -91,7 +91,7 @@ class Gearbox:
             at = np.union1d(wanted, [last])
             run = solve_ivp(
                 self.derivative, (first, last), x, "DOP853", at,
-                rtol=RELATIVE, atol=RELATIVE * size, max_step=SPLIT,
+                rtol=relative, atol=relative * size, max_step=SPLIT,
             )  # fmt: skip
             states += [y for t, y in zip(at, run.y.T, strict=True) if t in wanted]
             x = run.y[:, -1]

@@ -12,15 +12,26 @@ import numpy as np
 import pytest
 
 from second_implementation import product
+from second_implementation.assembly import RELATIVE
 from second_implementation.cases import CASES, write_files
 from second_implementation.comparison import deviations
 from second_implementation.paths import PATHS, without
 
-_FROM_EQUILIBRIUM = [name for name, c in CASES.items() if not (c.offset or c.start or c.scene)]
-_SHORT = 51
-"""Records that are solved to see a path: 1 ms; of run-ups all."""
+_SEARCH_TURNS = pytest.mark.xfail(
+    strict=True,
+    reason="the search for a start counts the ramp from where it began, the run from what it found",
+)
+_FROM_EQUILIBRIUM = [
+    pytest.param(name, marks=[_SEARCH_TURNS] if c.values["gear_mesh.ramp_turns"] else [])
+    for name, c in CASES.items()
+    if not (c.offset or c.start or c.scene)
+]
+_SHORT, _SHORT_TEETH = 51, 21
+"""Records that are solved to see a path: 1 ms, of single teeth 0.4 ms; of run-ups all."""
 _SEEN = 100.0
 """How far beyond the bound a case is without a path."""
+_COARSE = 1e-8
+"""Tolerance of DOP853 where a path is left out: 1e-5 of a group must be seen."""
 _NEAR = 1e-12
 """How near the equilibrium the start is: over the approach's alternating part, 1e-4 [m]."""
 
@@ -34,17 +45,21 @@ def run(tmp_path_factory):
     def ran(name):
         case = CASES[name]
         values = {k: files.get(v, v) for k, v in case.values.items()}
-        given = product.run(case.system, case.t_end, values, case.scene, case.start, case.offset)
+        given = product.run(
+            case.system, case.t_end, values, case.scene, case.start, case.offset,
+            files.get(case.gear),
+        )  # fmt: skip
         assert given.result.outcome.reached_end
         return given
 
     return ran
 
 
-def apart(given, model, records=None):
+def apart(given, model, records=None, relative=RELATIVE):
     """Deviations of a model by group, over the first records of a run."""
     data = given.result.data[:records]
-    outputs = model.solve(product.start_state(given, model), data["time"].to_numpy())
+    start = product.start_state(given, model)
+    outputs = model.solve(start, data["time"].to_numpy(), relative)
     return deviations(data, outputs)
 
 
@@ -74,6 +89,9 @@ def test_path_is_seen(run, name):
     """Each path of the equations is in a comparison, which fails without it."""
     path = PATHS[name]
     case, given = CASES[path.case], run(path.case)
-    records = None if case.start == "rest" else _SHORT
-    found = apart(given, product.second(without(given, path)), records)
+    records = None if case.start == "rest" else _SHORT_TEETH if case.gear else _SHORT
+    model = product.second(without(given, path))
+    if path.change:
+        path.change(model)
+    found = apart(given, model, records, _COARSE)
     assert max(found.values()) > _SEEN * case.bound, found
