@@ -1,6 +1,7 @@
 """What happens if the second implementation leaves a path out: the product must be elsewhere."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 from second_implementation.product import FMUS
@@ -20,7 +21,7 @@ class LeftOut(NamedTuple):
 
     case: str
     part: str = "files"
-    values: dict = {}
+    values: Mapping = MappingProxyType({})
     change: Callable | None = None
 
 
@@ -43,11 +44,25 @@ def _without_column(column):
     """Deviations of teeth without position, profile or helix (0, 1, 2)."""
 
     def change(model):
-        for teeth in model.gear.contacts.teeth.values():
-            if isinstance(teeth, DeviatingTeeth):
-                teeth.pinion[:, column] = teeth.wheel[:, column] = 0.0
+        for teeth in _deviating(model):
+            teeth.pinion[:, column] = teeth.wheel[:, column] = 0.0
 
     return change
+
+
+def _without_slope(name):
+    """Energy of deviating teeth that does not depend on the phase, or on R."""
+
+    def change(model):
+        for teeth in _deviating(model):
+            load = teeth.load
+            teeth.load = lambda *at, load=load: load(*at)._replace(**{name: 0.0})
+
+    return change
+
+
+def _deviating(model):
+    return [t for t in model.gear.contacts.teeth.values() if isinstance(t, DeviatingTeeth)]
 
 
 _TEETH, _COAST_TEETH = "gearbox, single teeth", "gearbox, single teeth, coast"
@@ -79,7 +94,10 @@ PATHS = {
     "profile of teeth": LeftOut(_TEETH, change=_without_column(1)),
     "helix of teeth": LeftOut(_TEETH, change=_without_column(2)),
     "ramp of single teeth": _gear(_TEETH_RAMP, ramp_turns=0.0),
-    "reaction of the ramp of single teeth": LeftOut(_TEETH_RAMP, change=_without_reaction_of_ramp),
+    "energy of single teeth over the phase": LeftOut(_TEETH, change=_without_slope("phase_slope")),
+    "energy of single teeth over the ramp": LeftOut(
+        _TEETH_RAMP, change=_without_slope("ramp_slope")
+    ),
     "torque share, pinion": _gear(_BOX, pinion__torque_share_left=0.5),
     "torque share, wheel": _gear(_BOX, wheel__torque_share_left=0.5),
     "symmetry deviation": _gear(_BOX, symmetry_deviation=0.0),

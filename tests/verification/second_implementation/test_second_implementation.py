@@ -1,9 +1,14 @@
 """Product and second implementation move alike, and start at rest alike.
 
 The product's inner steps are 0.25 us, the error of its coupling (li of degree 2 at 0.5 us) is far
-below; the second implementation solves the monolithic equations to 1e-10 of what alternates. So the
+below; the second implementation solves the monolithic equations to a thousandth of the bound. The
 bound is 1e-7 of a group's alternating part where teeth stay loaded, and 1e-6 where contacts change:
 there the product's Runge-Kutta steps go over kinks.
+
+Single pairs of teeth that enter and leave are no such kinks: their line of contact grows from
+nothing, and their energy is twice differentiable. But while the ramp is near 0 teeth hardly lean,
+and a pair whose gap closes does so over its whole line at once: the stiffness all but jumps. There
+the bound is 1e-6, and the difference becomes eight times smaller with half the inner step.
 """
 
 from functools import cache
@@ -12,7 +17,6 @@ import numpy as np
 import pytest
 
 from second_implementation import product
-from second_implementation.assembly import RELATIVE
 from second_implementation.cases import CASES, write_files
 from second_implementation.comparison import deviations
 from second_implementation.paths import PATHS, without
@@ -30,8 +34,8 @@ _SHORT, _SHORT_TEETH = 51, 21
 """Records that are solved to see a path: 1 ms, of single teeth 0.4 ms; of run-ups all."""
 _SEEN = 100.0
 """How far beyond the bound a case is without a path."""
-_COARSE = 1e-8
-"""Tolerance of DOP853 where a path is left out: 1e-5 of a group must be seen."""
+_FINE, _COARSE = 1e-3, 1e-8
+"""Tolerance of DOP853: over the bound; and where a path is left out."""
 _NEAR = 1e-12
 """How near the equilibrium the start is: over the approach's alternating part, 1e-4 [m]."""
 
@@ -55,7 +59,7 @@ def run(tmp_path_factory):
     return ran
 
 
-def apart(given, model, records=None, relative=RELATIVE):
+def apart(given, model, relative, records=None):
     """Deviations of a model by group, over the first records of a run."""
     data = given.result.data[:records]
     start = product.start_state(given, model)
@@ -65,9 +69,9 @@ def apart(given, model, records=None, relative=RELATIVE):
 
 @pytest.mark.parametrize("name", CASES)
 def test_same_motion(run, name):
-    given = run(name)
-    found = apart(given, product.second(given))
-    assert max(found.values()) < CASES[name].bound, found
+    given, bound = run(name), CASES[name].bound
+    found = apart(given, product.second(given), _FINE * bound)
+    assert max(found.values()) < bound, found
 
 
 @pytest.mark.parametrize("name", _FROM_EQUILIBRIUM)
@@ -93,5 +97,5 @@ def test_path_is_seen(run, name):
     model = product.second(without(given, path))
     if path.change:
         path.change(model)
-    found = apart(given, model, records, _COARSE)
+    found = apart(given, model, _COARSE, records)
     assert max(found.values()) > _SEEN * case.bound, found
