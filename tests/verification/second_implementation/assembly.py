@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from second_implementation.gear_pair import SIDES
 from second_implementation.housing import AXES, SEATS
 
-RELATIVE, SPLIT = 1e-10, 5e-6
-"""Tolerance of DOP853 over the sizes below, and its longest step [s]."""
+SPLIT = 5e-6
+"""Longest step of DOP853 [s]."""
 _LENGTH, _RATE = 1e-7, 1e-3
 """Of what alternates: lengths [m] (angles [rad]) and their rates."""
 
@@ -81,8 +81,14 @@ class Gearbox:
         found[speeds[0]], found[speeds[1]] = self.gear.flanges(gear[12:])
         return found
 
-    def solve(self, start, times):
-        """Outputs at rising times (n,) from a start (at the first one), by name, each (n,)."""
+    def solve(self, start, times, relative):
+        """Outputs by name, each (n,).
+
+        Args:
+            start: state at the first time.
+            times: (n,) rising.
+            relative: tolerance of DOP853, over the sizes of what alternates.
+        """
         size = self._sizes(start.size)
         edges = sorted({times[0], times[-1], *(b for b in self.breaks() if 0.0 < b < times[-1])})
         states, x = [start], start
@@ -91,7 +97,7 @@ class Gearbox:
             at = np.union1d(wanted, [last])
             run = solve_ivp(
                 self.derivative, (first, last), x, "DOP853", at,
-                rtol=RELATIVE, atol=RELATIVE * size, max_step=SPLIT,
+                rtol=relative, atol=relative * size, max_step=SPLIT,
             )  # fmt: skip
             states += [y for t, y in zip(at, run.y.T, strict=True) if t in wanted]
             x = run.y[:, -1]

@@ -27,6 +27,12 @@ left,coast,wheel,2,1.5e-6,0.1
 right,coast,pinion,27,0.3e-6,0.0
 right,coast,wheel,81,0.1e-6,0.9
 """
+_PAIR = FMUS / "gear_mesh" / "gear_pair.toml"
+_DEVIATIONS = """
+[deviations]
+grade = 6
+seed = 1
+"""
 _CYCLE = """# units: time s, speed rad/s, torque N.m
 time,speed,torque
 0.0005,0,40
@@ -34,13 +40,17 @@ time,speed,torque
 0.0035,-2,60
 """
 
+ERRORS = {
+    "gear_mesh.stiffness_table": "table.csv",
+    "gear_mesh.tooth_errors": "errors.csv",
+    "gear_mesh.ramp_turns": 0.0,
+}
 TEETH = {
+    **ERRORS,
     "gear_mesh.symmetry_deviation": 10e-6,
     "gear_mesh.stagger": 0.37,
     "gear_mesh.impact_force": 150.0,
     "gear_mesh.impact_duration": 0.3,
-    "gear_mesh.stiffness_table": "table.csv",
-    "gear_mesh.tooth_errors": "errors.csv",
 }
 SHAFTS = {
     "gear_mesh.pinion.torque_share_left": 0.3,
@@ -60,6 +70,9 @@ BEARINGS = {
     "bearing_supports.axial_per_shaft": 1.0,
 }
 EVERY = {**TEETH, **SHAFTS, **BEARINGS}
+RAMP, QUICK = {"gear_mesh.ramp_turns": 0.02}, {"gear_mesh.ramp_turns": 0.01}
+"""Over after 1.2 ms and 0.6 ms at 1000 r/min."""
+BACKWARDS = {"gear_mesh.der(angle)": -212.3}
 KICK = {"gear_mesh.der(angle)": 3.0, "gear_mesh.der(approach)": 0.150894}
 """The pinion 3 rad/s too fast; both meshes leave contact and come back."""
 MOTORS = {"gear_mesh.drag_torque": 1.5, "load_motor.viscous_friction": 0.2}
@@ -78,7 +91,7 @@ class Case(NamedTuple):
     """A run, and how near both implementations are.
 
     Attributes:
-        system, values, scene, start, offset, t_end: see `product.run`.
+        system, values, scene, start, offset, t_end, gear: see `product.run`.
         bound: largest deviation, over the group's alternating part.
     """
 
@@ -89,6 +102,7 @@ class Case(NamedTuple):
     start: str | None = None
     offset: dict | None = None
     t_end: float = 3e-3
+    gear: str | None = None
 
 
 def _torque(pinion):
@@ -97,6 +111,19 @@ def _torque(pinion):
 
 CASES = {
     "gearbox": Case("gearbox", EVERY),
+    "gearbox, ramp": Case("gearbox", {**EVERY, **RAMP}),
+    "gearbox, ramp, turning backwards": Case(
+        "gearbox", {**EVERY, **RAMP}, offset=BACKWARDS, t_end=1e-3
+    ),
+    "gearbox, single teeth": Case("gearbox", EVERY, t_end=1.5e-3, gear="pair.toml"),
+    "gearbox, single teeth, coast": Case(
+        "gearbox",
+        {**EVERY, **_torque(-150.0), "gear_mesh.tooth_deviations": "coast_teeth.csv"},
+        t_end=8e-4, gear="pair.toml",
+    ),
+    "gearbox, single teeth, ramp": Case(
+        "gearbox", {**ERRORS, **SHAFTS, **QUICK}, CONTACT_CHANGES, t_end=7e-4, gear="pair.toml"
+    ),
     "gearbox, coast": Case("gearbox", {**EVERY, **_torque(-150.0)}),
     "gearbox, deflections below the damping's transition": Case(
         "gearbox", {**TEETH, **SHAFTS, **_torque(20.0)}
@@ -129,10 +156,29 @@ def write_files(folder):
         "table.csv": _table(),
         "errors.csv": _ERRORS,
         "cycle.csv": _CYCLE,
+        "pair.toml": _pair(),
+        "coast_teeth.csv": _coast_teeth(),
     }
     for name, content in contents.items():
         (folder / name).write_text(content, encoding="utf-8")
     return {name: str(folder / name) for name in contents}
+
+
+def _pair():
+    """The shipped pair, its teeth of class 6; the law of a pair of teeth by a quick method."""
+    text = _PAIR.read_text(encoding="utf-8")
+    return text.replace('"fe"', '"coupled-slices"\nphases = 8') + _DEVIATIONS
+
+
+def _coast_teeth():
+    """Deviations of teeth on the coast flank of the left half."""
+    rows = ["# units: tooth 1, position m, profile m, helix m",
+            "side,flank,gear,tooth,position,profile,helix"]  # fmt: skip
+    for gear, z in (("pinion", 27), ("wheel", 81)):
+        for n in range(z):
+            values = 5e-6 * math.sin(2.1 * n), 3e-6 * math.cos(1.3 * n), 4e-6 * math.sin(0.7 * n)
+            rows.append(",".join(map(str, ("left", "coast", gear, n + 1, *values))))
+    return "\n".join(rows) + "\n"
 
 
 def _table():

@@ -7,20 +7,38 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
-from second_implementation.stiffness_law import read_laws
+import numpy as np
 
-DRIVE, COAST = 1, -1
+from second_implementation.stiffness_law import read_laws
+from second_implementation.teeth import FLANKS, SIDES, Load, read_teeth
+
+DRIVE, COAST = FLANKS.values()
 _OPEN = 1e-12
 """Depth [m] whose tangent damps open flanks, where the damping is ungated."""
 
 
 class Reaction(NamedTuple):
-    """What a mesh does: N and E of the README, and P de/dtheta summed over both flanks."""
+    """What a mesh does: N and E of the README; and summed over both flanks, P de/dtheta at constant
+    R, and P de/dR - dU/dR [J].
+    """
 
     force: float
     energy_slope: float
     torque_pinion: float
     torque_wheel: float
+    ramp_energy: float
+
+
+class Contact(NamedTuple):
+    """A contact: x and x' as depth and rate, e without R, its slopes over both halves' angles."""
+
+    flank: int
+    phase: float
+    depth: float
+    rate: float
+    error: float
+    error_slopes: list[float]
+    load: Load
 
 
 class Contacts:
@@ -28,17 +46,19 @@ class Contacts:
 
     Args:
         parameters: of the component, by name.
-        table, tooth_errors: its resource files.
+        files: its resource files, by the name of their parameter.
     """
 
-    def __init__(self, parameters, table, tooth_errors):
+    def __init__(self, parameters, files):
         p = self.parameters = parameters
-        self.laws = read_laws(table)
-        self.errors = read_tooth_errors(tooth_errors)
+        self.tables = read_laws(files["stiffness_table"])
+        self.errors = read_tooth_errors(files["tooth_errors"])
+        counts = p["pinion.number_of_teeth"], p["wheel.number_of_teeth"]
+        self.teeth = read_teeth(files["tooth_deviations"], files["pair_law"], self.tables, counts)
         radii = p["pinion.base_radius"], p["wheel.base_radius"]
         self.mass = 1.0 / (radii[0] ** 2 / p["pinion.inertia"] + radii[1] ** 2 / p["wheel.inertia"])
 
-    def reaction(self, side, approach, approach_rate, phase, angles, rates):
+    def reaction(self, side, approach, approach_rate, phase, angles, rates, ramp):
         """Reaction of a mesh.
 
         Args:
@@ -46,47 +66,60 @@ class Contacts:
             approach, approach_rate: delta [m] and its rate [m/s].
             phase: of the drive flank, in mesh periods.
             angles, rates: of the side's pinion and wheel half [rad], [rad/s].
+            ramp: R and its rate [1/s].
         """
-        p = self.parameters
-        force = energy_slope = 0.0
-        torques = [0.0, 0.0]
-        opened = []
-        for flank in (DRIVE, COAST):
-            error, slopes = self._error(side, flank, angles)
-            error_rate = slopes[0] * rates[0] + slopes[1] * rates[1]
-            depth = flank * approach - error - (0.0 if flank == DRIVE else p["backlash"])
-            rate = flank * approach_rate - error_rate
-            own = phase if flank == DRIVE else p["coast_phase"] - phase
-            opened.append((depth, rate, own, slopes))
-            if depth <= 0.0:
-                continue
-            pressure, slope = self._pressure(side, flank, own, depth, rate)
-            force += flank * pressure
-            energy_slope += flank * slope
-            torques = [t + pressure * s for t, s in zip(torques, slopes, strict=True)]
-        depth, rate, own, slopes = opened[0]
-        if p["damping_gate"] == 0.0 and depth <= 0.0 and opened[1][0] <= 0.0:
-            pressure = self._damping(self.laws[side].at(own, _OPEN)[1]) * rate
-            force += pressure
-            torques = [pressure * s for s in slopes]
-        return Reaction(force, energy_slope, *torques)
+        contacts = [
+            self._contact(side, flank, approach, approach_rate, phase, angles, rates, ramp)
+            for flank in (DRIVE, COAST)
+        ]
+        apart = all(contact.load.force <= 0.0 for contact in contacts)
+        sums = np.zeros(5)
+        for contact in contacts:
+            pressure = self._pressure(side, contact, apart)
+            over_pinion, over_wheel = contact.error_slopes
+            sums += (
+                contact.flank * pressure,
+                contact.flank * contact.load.phase_slope,
+                ramp[0] * pressure * over_pinion,
+                ramp[0] * pressure * over_wheel,
+                pressure * contact.error - contact.load.ramp_slope,
+            )
+        return Reaction(*sums.tolist())
 
-    def _pressure(self, side, flank, phase, depth, rate):
-        """P [N] and dU/dp [J] of a contact that is closed."""
+    def _contact(self, side, flank, approach, approach_rate, phase, angles, rates, ramp):
+        """A contact of a mesh, closed or open."""
         p = self.parameters
-        force, tangent, energy_slope = self.laws[side].at(phase, depth)
-        v = min(1.0, depth / p["damping_transition"])
+        error, slopes = self._error(side, flank, angles)
+        error_rate = ramp[0] * (slopes[0] * rates[0] + slopes[1] * rates[1]) + ramp[1] * error
+        depth = flank * approach - ramp[0] * error - (0.0 if flank == DRIVE else p["backlash"])
+        rate = flank * approach_rate - error_rate
+        own = phase if flank == DRIVE else p["coast_phase"] - phase
+        load = self.teeth[side, flank].load(own, depth, ramp[0])
+        return Contact(flank, own, depth, rate, error, slopes, load)
+
+    def _pressure(self, side, contact, apart):
+        """P [N]; apart: no flank of the mesh touches."""
+        p, load = self.parameters, contact.load
+        gated = p["damping_gate"] != 0.0
+        if load.force <= 0.0 and (gated or contact.flank == COAST or not apart):
+            return 0.0
+        tangent = load.tangent
+        if not gated:
+            _, tangent, _ = self.tables[side].at(contact.phase, max(contact.depth, _OPEN))
+        v = min(1.0, max(0.0, load.depth / p["damping_transition"]))
         gate = v * v * (3.0 - 2.0 * v)
-        carries = flank == (COAST if p["flank"] < 0.0 else DRIVE)
-        force += p["impact_force"] * gate * self._impact(phase) if carries else 0.0
-        damping = self._damping(tangent) * rate
-        if p["damping_gate"] == 0.0:
-            return force + damping, energy_slope
-        return max(0.0, force + gate * damping), energy_slope
+        carries = contact.flank == (COAST if p["flank"] < 0.0 else DRIVE)
+        impact = p["impact_force"] * gate * self._impact(contact.phase) if carries else 0.0
+        damping = self._damping(tangent) * contact.rate
+        if gated:
+            return max(0.0, load.force + impact + gate * damping)
+        return load.force + impact + damping
 
     def _damping(self, tangent):
         """C [N s/m]."""
-        return 2.0 * self.parameters["mesh_damping_ratio"] * math.sqrt(tangent * self.mass)
+        return (
+            2.0 * self.parameters["mesh_damping_ratio"] * math.sqrt(max(0.0, tangent) * self.mass)
+        )
 
     def _impact(self, phase):
         """h of the README."""
@@ -112,8 +145,8 @@ def read_tooth_errors(file):
             continue
         side, flank, gear, order, amplitude, phase = line.split(",")
         found.append((
-            ("left", "right").index(side),
-            {"drive": DRIVE, "coast": COAST}[flank],
+            SIDES.index(side),
+            FLANKS[flank],
             ("pinion", "wheel").index(gear),
             float(order), float(amplitude), float(phase),
         ))  # fmt: skip

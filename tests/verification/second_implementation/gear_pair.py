@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from second_implementation.contacts import Contacts
+from second_implementation.ramp import Ramp
 
 GEARS = "pinion", "wheel"
 SIDES = ((1, 0, 2), (-1, 1, 3))
@@ -20,12 +21,14 @@ class GearPair:
 
     Args:
         parameters: of the component, by name.
-        table, tooth_errors: its resource files.
+        files: its resource files, by the name of their parameter.
+        first_angle: mean angle of the pinion's halves at which the ramp starts [rad].
     """
 
-    def __init__(self, parameters, table, tooth_errors):
+    def __init__(self, parameters, files, first_angle):
         p = self.parameters = parameters
-        self.contacts = Contacts(parameters, table, tooth_errors)
+        self.contacts = Contacts(parameters, files)
+        self.ramp = Ramp(p["ramp_turns"], first_angle)
         self.radii = [p[f"{gear}.base_radius"] for gear in GEARS]
         self.cos, self.tan = math.cos(p["base_helix_angle"]), math.tan(p["base_helix_angle"])
         self.sin = math.sin(p["base_helix_angle"])
@@ -67,6 +70,8 @@ class GearPair:
         offset_rate = sum(
             slope * (rates[2 * k] + rates[2 * k + 1]) / 2.0 for k, slope in enumerate(slopes)
         )
+        ramp, ramp_slope = self.ramp.at((angles[0] + angles[1]) / 2.0)
+        ramp_rate = ramp_slope * (rates[0] + rates[1]) / 2.0
         found = []
         for side, (s, a, b) in enumerate(SIDES):
             twists = side * (r1 * q[9] - r2 * q[11]), side * (r1 * v[9] - r2 * v[11])
@@ -83,6 +88,7 @@ class GearPair:
                     phase,
                     (angles[a], angles[b]),
                     (rates[a], rates[b]),
+                    (ramp, ramp_rate),
                 )
             )
         return found
@@ -91,7 +97,10 @@ class GearPair:
         """Rates of the state under the bearings' forces (4,) and the flanges' torques (2,)."""
         q, v = x[:12], x[12:]
         angles, rates = self.angles(q), self.angles(v)
-        f_y, f_z, t = self._mesh_loads(x, angles)
+        ramp, ramp_slope = self.ramp.at((angles[0] + angles[1]) / 2.0)
+        ramp_rate = ramp_slope * (rates[0] + rates[1]) / 2.0
+        f_y, f_z, t, ramp_energy = self._mesh_loads(x, angles)
+        ramp_energy -= sum(self._unbalance_energy(k, angles, rates, v) for k in range(4))
         acceleration_y, acceleration_z, acceleration_t = [0.0] * 4, [0.0] * 4, [0.0] * 4
         for body in range(4):
             gear, other = GEARS[body // 2], body ^ 1
@@ -101,10 +110,10 @@ class GearPair:
             t[body] += self._shaft(gear, "t", angles, rates, body, other)
             if gear == "pinion":
                 f_z[body] -= self._ground(q, v, body)
-                t[body] -= self._drag(rates[body])
+                t[body] += ramp_slope * ramp_energy / 2.0 - self._drag(rates[body])
             acceleration_z[body] = f_z[body] / self.parameters[f"{gear}.mass"]
             acceleration_y[body], acceleration_t[body] = self._with_unbalance(
-                gear, angles[body], rates[body], f_y[body], t[body]
+                gear, angles[body], (rates[body], v[body]), (f_y[body], t[body]), (ramp, ramp_rate)
             )
         r1, r2 = self.radii
         a = acceleration_t
@@ -112,10 +121,10 @@ class GearPair:
         return np.concatenate([v, acceleration_y, acceleration_z, rotations])
 
     def _mesh_loads(self, x, angles):
-        """Forces along y and z and torques of the meshes on the four bodies."""
+        """Forces along y and z and torques of the meshes on the four bodies; P de/dR - dU/dR."""
         r1, r2 = self.radii
         f_y, f_z, t = [0.0] * 4, [0.0] * 4, [0.0] * 4
-        run_out = 0.0
+        run_out = ramp_energy = 0.0
         for (s, a, b), mesh in zip(SIDES, self.reactions(x), strict=True):
             path = self.cos * mesh.force
             push = path + mesh.energy_slope / self.pitch
@@ -124,8 +133,9 @@ class GearPair:
             t[a] = -r1 * push + mesh.torque_pinion
             t[b] = r2 * path + mesh.torque_wheel
             run_out += s * self.tan * push
+            ramp_energy += mesh.ramp_energy
         _, slopes = self.apex(angles)
-        return f_y, f_z, [t[k] - run_out * slopes[k // 2] / 2.0 for k in range(4)]
+        return f_y, f_z, [t[k] - run_out * slopes[k // 2] / 2.0 for k in range(4)], ramp_energy
 
     def _shaft(self, gear, axis, position, velocity, body, other):
         """Load of the gap shaft on a half."""
@@ -144,13 +154,32 @@ class GearPair:
         """Drag torque [N m] on a half of the pinion."""
         return self.parameters["drag_torque"] * rate / (2.0 * math.sqrt(1.0 + rate * rate))
 
-    def _with_unbalance(self, gear, angle, rate, force, torque):
-        """Accelerations along y and about the axis of a half with its share of the unbalance."""
+    def _unbalance(self, gear, angle):
+        """Share of the unbalance of a half [kg m], and psi [rad]."""
         p = self.parameters
-        half = p[f"{gear}.unbalance"] / 2.0
-        psi = angle + p[f"{gear}.unbalance_phase"]
-        mass, inertia, coupled = p[f"{gear}.mass"], p[f"{gear}.inertia"], -half * math.sin(psi)
-        force += half * math.cos(psi) * rate * rate
+        return p[f"{gear}.unbalance"] / 2.0, angle + p[f"{gear}.unbalance_phase"]
+
+    def _unbalance_energy(self, body, angles, rates, v):
+        """u/2 sin(psi) theta' y' of a half [J]."""
+        half, psi = self._unbalance(GEARS[body // 2], angles[body])
+        return half * math.sin(psi) * rates[body] * v[body]
+
+    def _with_unbalance(self, gear, angle, motion, load, ramp):
+        """Accelerations along y and about the axis of a half with its share of the unbalance.
+
+        Args:
+            gear, angle: its name, and the half's angle.
+            motion: theta', y'.
+            load: force along y and torque.
+            ramp: R and its rate.
+        """
+        (rate, velocity), (force, torque) = motion, load
+        half, psi = self._unbalance(gear, angle)
+        across = half * math.sin(psi)
+        force += ramp[0] * half * math.cos(psi) * rate * rate + ramp[1] * across * rate
+        torque += ramp[1] * across * velocity
+        mass, inertia = (self.parameters[f"{gear}.{name}"] for name in ("mass", "inertia"))
+        coupled = -ramp[0] * across
         determinant = mass * inertia - coupled * coupled
         return (
             (inertia * force - coupled * torque) / determinant,

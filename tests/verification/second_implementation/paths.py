@@ -1,8 +1,11 @@
 """What happens if the second implementation leaves a path out: the product must be elsewhere."""
 
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 from second_implementation.product import FMUS
+from second_implementation.teeth import DeviatingTeeth
 
 _FILES = FMUS / "gear_mesh" / "resources"
 
@@ -13,11 +16,13 @@ class LeftOut(NamedTuple):
     Attributes:
         case: its name.
         part, values: parameters, or with part "files" resource files, that have no effect.
+        change: what is left out of the second implementation itself.
     """
 
     case: str
-    part: str
-    values: dict
+    part: str = "files"
+    values: Mapping = MappingProxyType({})
+    change: Callable | None = None
 
 
 def _gear(case, **values):
@@ -28,6 +33,41 @@ def _bearings(case, **values):
     return _gear(case, **values)._replace(part="bearing_supports")
 
 
+def _without_reaction_of_ramp(model):
+    """R is a given function of time: nothing is taken from the rotation."""
+    ramp = model.gear.ramp
+    at = ramp.at
+    ramp.at = lambda angle: (at(angle)[0], 0.0)
+
+
+def _without_column(column):
+    """Deviations of teeth without position, profile or helix (0, 1, 2)."""
+
+    def change(model):
+        for teeth in _deviating(model):
+            teeth.pinion[:, column] = teeth.wheel[:, column] = 0.0
+
+    return change
+
+
+def _without_slope(name):
+    """Energy of deviating teeth that does not depend on the phase, or on R."""
+
+    def change(model):
+        for teeth in _deviating(model):
+            load = teeth.load
+            teeth.load = lambda *at, load=load: load(*at)._replace(**{name: 0.0})
+
+    return change
+
+
+def _deviating(model):
+    return [t for t in model.gear.contacts.teeth.values() if isinstance(t, DeviatingTeeth)]
+
+
+_TEETH, _COAST_TEETH = "gearbox, single teeth", "gearbox, single teeth, coast"
+_TEETH_RAMP, _RAMP = "gearbox, single teeth, ramp", "gearbox, ramp"
+_IDEAL = {"tooth_deviations": _FILES / "ideal_teeth.csv"}
 _BOX, _COAST, _LIGHT = (
     "gearbox", "gearbox, coast", "gearbox, deflections below the damping's transition",
 )  # fmt: skip
@@ -45,6 +85,19 @@ PATHS = {
     ),
     "unbalance, pinion": _gear(_BOX, pinion__unbalance=0.0),
     "unbalance, wheel": _gear(_BOX, wheel__unbalance=0.0),
+    "ramp": _gear(_RAMP, ramp_turns=0.0),
+    "reaction of the ramp": LeftOut(_RAMP, change=_without_reaction_of_ramp),
+    "ramp, turning backwards": _gear("gearbox, ramp, turning backwards", ramp_turns=0.0),
+    "single teeth": LeftOut(_TEETH, values=_IDEAL),
+    "single teeth, coast": LeftOut(_COAST_TEETH, values=_IDEAL),
+    "position of teeth": LeftOut(_TEETH, change=_without_column(0)),
+    "profile of teeth": LeftOut(_TEETH, change=_without_column(1)),
+    "helix of teeth": LeftOut(_TEETH, change=_without_column(2)),
+    "ramp of single teeth": _gear(_TEETH_RAMP, ramp_turns=0.0),
+    "energy of single teeth over the phase": LeftOut(_TEETH, change=_without_slope("phase_slope")),
+    "energy of single teeth over the ramp": LeftOut(
+        _TEETH_RAMP, change=_without_slope("ramp_slope")
+    ),
     "torque share, pinion": _gear(_BOX, pinion__torque_share_left=0.5),
     "torque share, wheel": _gear(_BOX, wheel__torque_share_left=0.5),
     "symmetry deviation": _gear(_BOX, symmetry_deviation=0.0),

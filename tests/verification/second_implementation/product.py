@@ -38,16 +38,17 @@ class Given(NamedTuple):
     values: dict[str, dict[str, float]]
 
 
-def run(system, t_end, values, scene=None, start=None, offset=None):
+def run(system, t_end, values, scene=None, start=None, offset=None, gear=None):
     """Run the product.
 
     Args:
         system, t_end, values, scene, start: as in `herringbone.run`.
         offset: added to start values, the scene's if not given.
+        gear: gear file.
     """
     parts = ["gear_mesh"] if system == "gearbox" else ["gear_mesh", "drive_motor", "load_motor"]
     fine = {f"{part}.micro_step": MICRO_STEP for part in parts}
-    wishes = Wishes(t_end, RECORDS, start, {**fine, **values}, start_offset=offset)
+    wishes = Wishes(t_end, RECORDS, start, {**fine, **values}, start_offset=offset, gear=gear)
     structure, chosen, _ = prepared(system, scene, wishes)
     as_it_stands = replace(chosen, start=Start.REST, values={}, start_offset={})
     result = hb.run(
@@ -65,7 +66,8 @@ def run(system, t_end, values, scene=None, start=None, offset=None):
 def second(given):
     """The second implementation with the same parameters, files and torques."""
     parameters, files, values = given.parameters, given.files, given.values["gear_mesh"]
-    gear = GearPair(parameters["gear_mesh"], files["stiffness_table"], files["tooth_errors"])
+    first_angle = values.get("angle", 0.0) + values.get("pinion_twist", 0.0) / 2.0
+    gear = GearPair(parameters["gear_mesh"], files, first_angle)
     parts = gear, Bearings(parameters["bearing_supports"]), Housing(files["modes"], files["shapes"])
     if "drive_motor" in parameters:
         return Rig(*parts, Drivetrain(parameters, files["cycle"]))

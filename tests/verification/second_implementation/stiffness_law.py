@@ -37,6 +37,17 @@ class StiffnessLaw:
         energy_slope += beyond * (force_slope + beyond * tangent_slope / 2.0)
         return force + tangent * beyond, tangent, energy_slope
 
+    def energy(self, phase, deflection):
+        """U at a phase and a deflection >= 0 [J]."""
+        inside = min(deflection, self.limit)
+        u = INTERVALS * (inside / self.limit) ** 0.5
+        j = min(int(u), INTERVALS - 1)
+        value, _ = self._column(phase, j)
+        energy = 2.0 * self.limit**2 / INTERVALS**4 * _integral(value, j, u - j)
+        force, tangent, _ = self.at(phase, inside)
+        beyond = deflection - inside
+        return energy + force * beyond + tangent * beyond**2 / 2.0
+
     def _inside(self, phase, deflection):
         """F, dF/dx, dF/dp, dU/dp for 0 <= x <= limit."""
         u = INTERVALS * (deflection / self.limit) ** 0.5

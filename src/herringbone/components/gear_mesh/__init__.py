@@ -30,8 +30,9 @@ mesh harmonics 1 to 4 of the loaded one are 2.3, 0.22, 5.1 and 2.1 times those t
 (27/81 pair, 200 N m), and the mean tangent stiffness is 877 N/um in place of 598.
 
 **Deviations of single teeth** (`tooth_deviations`, with `pair_law`). On a flank of a side that has
-them, F and U are sums over pairs of teeth. At the phase p of the flank the pair n, n = floor(p),
-floor(p) - 1, ..., is at q = p - n; it is tooth n mod z, counted from 0, of pinion and wheel. On the
+them, F and U are sums over pairs of teeth. At the phase p of the flank the pair n is at q = p - n;
+it is tooth n mod z, counted from 0, of pinion and wheel. All pairs count whose q lies between the
+first and the last node of the law: n = floor(p) + 1, too, as the first node lies before 0. On the
 coast flank this counts teeth by the phase of that flank. With position P, profile A, helix H of the
 file (pinion 1, wheel 2), the contact ratios eps_a and eps_b of the law's pair, and m(q), h(q) of
 `Force law of a pair of teeth` below,
@@ -40,8 +41,9 @@ file (pinion 1, wheel 2), the contact ratios eps_a and eps_b of the law's pair, 
     y = R h ((A1 - A2) eps_b / eps_a + H1 + H2)
     U = sum over n of U_pair(q, x, y),   F = dU/d(depth),   k = d2U/d(depth)2
 
-dU/dp is taken with everything that depends on q. Depth stands for x of `Pressure` below in r: it is
-then the mean (sum of x dU_pair/dx + y dU_pair/dy) / F. Ungated damping takes k of ideal teeth.
+dU/dp is taken with everything that depends on q. Such a flank may touch while its depth is below 0;
+it is open where F <= 0. In `Pressure` below, depth stands for x, but the x of r is the mean
+(sum of x dU_pair/dx + y dU_pair/dy) / F. Ungated damping takes k of ideal teeth.
 Without deviations the sum is F of the stiffness table, but for the interpolation: its mesh
 harmonics 1 to 4 within 1 % (the fourth 3 % at 8 um). Against the load distribution with all gaps
 see `herringbone.gears.stiffness.pair_law`. Such a run takes four times as long.
@@ -51,6 +53,8 @@ can start in equilibrium: with theta_m = (theta1 + theta2) / 2 and
 t = |theta_m - first_angle| / (2 pi ramp_turns), at most 1,
 
     R = t^3 (10 - 15 t + 6 t^2);   ramp_turns 0: R = 1
+
+first_angle is theta_m at the end of initialisation, that of the start values.
 
 **Phase** of the contact lines, in mesh periods, p_bt = 2 pi rb1 / z_1:
 
@@ -72,10 +76,10 @@ pinion's teeth are thicker, along the base circle and over p_bt. Whole periods d
 **Pressure** P of a contact, from the force law F(p, x) of its side with tangent k, and the
 energy U(p, x) (both below); x' is the depth's rate:
 
-    damping_gate 1: P = max(0, F(p, x) + q r h(p) + C r x')       (0 where F = 0)
+    damping_gate 1: P = max(0, F(p, x) + q r h(p) + C r x')       (0 where F <= 0)
     damping_gate 0: P = F(p, x) + q r h(p) + C x';  open flanks: P = C x' on the drive flank, with
                     k at x = 1e-12 m, while x > -backlash
-    C = 2 zeta sqrt(k m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel),   I: of a half
+    C = 2 zeta sqrt(max(0, k) m_e),   m_e = 1 / (rb1^2 / I_pinion + rb2^2 / I_wheel),   I: of a half
     r = v^2 (3 - 2 v),   v = min(1, x / damping_transition)
 
 C is the corrected form of the thesis' mesh damping, whose base radii are swapped. Gated, damping
