@@ -21,15 +21,7 @@ from second_implementation.cases import CASES, write_files
 from second_implementation.comparison import deviations
 from second_implementation.paths import PATHS, without
 
-_SEARCH_TURNS = pytest.mark.xfail(
-    strict=True,
-    reason="the search for a start counts the ramp from where it began, the run from what it found",
-)
-_FROM_EQUILIBRIUM = [
-    pytest.param(name, marks=[_SEARCH_TURNS] if c.values["gear_mesh.ramp_turns"] else [])
-    for name, c in CASES.items()
-    if not (c.offset or c.start or c.scene)
-]
+_FROM_EQUILIBRIUM = [name for name, c in CASES.items() if not (c.offset or c.start or c.scene)]
 _SHORT, _SHORT_TEETH = 51, 21
 """Records that are solved to see a path: 1 ms, of single teeth 0.4 ms; of run-ups all."""
 _SEEN = 100.0

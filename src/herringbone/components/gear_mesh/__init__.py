@@ -193,9 +193,14 @@ _CLOSED = 5e-6  # a usual deflection [m], where the search for an equilibrium be
 
 
 def _guess(block: np.ndarray) -> None:
-    """Both meshes closed on the flank that carries, whatever deviations there are."""
+    """Both meshes closed on the flank that carries, whatever deviations there are.
+
+    The ramp of these begins where the search ends: while it turns the pinion, nothing comes in.
+    """
     closed = abs(block[at.F_A]) * math.tan(abs(block[at.BETA])) + _CLOSED
-    if block[at.RAMP_TURNS] == 0.0:
+    if block[at.RAMP_TURNS] > 0.0:
+        block[at.RAMP_TURNS] = math.inf
+    else:
         of_teeth = tooth_deviations.largest(block, at.DEVIATIONS)
         of_teeth += transmission_error.largest(block, at.ERRORS)
         closed += of_teeth / math.cos(block[at.BETA])
