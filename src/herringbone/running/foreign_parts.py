@@ -4,6 +4,7 @@ Parts with known feedthrough are given polynomial signals (`cosim.nodal`). Of ot
 structure is used, and a line says why.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -20,7 +21,7 @@ from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
-_NODE = ".node"
+_NODE = re.compile(r"\.node\d+$")
 
 Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
 
@@ -63,6 +64,8 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
         return _unknown(inputs, outputs, step, "it can be instantiated once only: no trials")
     if part.one_step:
         return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
+    if not inputs and any(v.causality == "input" for v in part.variables.values()):
+        return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     try:
         start = _start(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
@@ -75,7 +78,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     return [
         name
         for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and _NODE not in name
+        if v.causality == causality and v.is_real and not _NODE.search(name)
     ]
 
 
@@ -114,11 +117,20 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
         return part, lines
-    lines.append(
-        f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which "
-        "makes the coupling second order in the step"
-    )
+    lines.append(_coupled_as(signature))
     return NodalPart(part, signature), lines
+
+
+def _coupled_as(signature: Signature) -> str:
+    if signature.kind is Kind.ELEMENT:
+        return "an element by trial steps; its outputs follow its inputs at every signal node"
+    order = "second order in the step"
+    if signature.varies:
+        order += " at the start, and first order where its feedthrough is another one"
+    return (
+        f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which makes "
+        f"the coupling {order}"
+    )
 
 
 def _loops_without_end(part: Part, signature: Signature) -> bool:

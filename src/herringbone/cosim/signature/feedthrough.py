@@ -71,7 +71,7 @@ def _responses(
 def _one_number(
     by_change: np.ndarray, name: str, outputs: tuple[str, ...], largest: float, found: Findings
 ) -> np.ndarray:
-    """(m,) D of one input where amplitudes and signs agree; else that of the smaller ones, noted.
+    """(m,) D of one input where amplitudes and signs agree; else it is unknown, with a line.
 
     Args:
         by_change: (4, m) at the larger change, plus and minus, and at the smaller one.
@@ -90,7 +90,7 @@ def _one_number(
             f"d({outputs[row]})/d({name}) lies between {low:.3g} and {high:.3g} for changes up to "
             f"{largest:.3g}: it is not linear there"
         )
-        small[row] = by_change[np.argmax(np.abs(by_change[:, row])), row]
+        small[row] = np.nan
     return small
 
 

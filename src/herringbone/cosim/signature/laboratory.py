@@ -5,6 +5,7 @@ trial has a new instance.
 """
 
 from collections.abc import Callable, Sequence
+from time import perf_counter
 from types import TracebackType
 from typing import Self
 
@@ -33,6 +34,8 @@ class Laboratory:
             not offer it.
         repeats: True if two instances give equal bits.
         why: what is wrong with either, "" if nothing.
+        seconds: that a step takes [s].
+        start_outputs: (m,) before the first step.
     """
 
     def __init__(
@@ -53,6 +56,8 @@ class Laboratory:
         self.restores: bool | None = None
         self.repeats = True
         self.why = ""
+        self.seconds = 0.0
+        self.start_outputs = np.empty(0)
 
     def __enter__(self) -> Self:
         """Make the first instance, and test whether it repeats.
@@ -107,6 +112,20 @@ class Laboratory:
             raise
         return np.array(found)
 
+    def after(self, lead: Sequence[np.ndarray], last: np.ndarray, h: float) -> np.ndarray:
+        """(m,) outputs after whole steps on `lead` and one of h [s] on `last`; raises Refused."""
+        try:
+            trial = self.at_start()
+            for values in lead:
+                trial.set(values)
+                trial.step(self.step)
+            trial.set(last)
+            trial.step(h)
+            return trial.values()
+        except Refused:
+            self._close()
+            raise
+
     def at_rest(self, h: float) -> np.ndarray:
         """(m,) outputs after one step of h [s] on the start inputs; kept. Raises Refused."""
         if h not in self._rest:
@@ -132,7 +151,11 @@ class Laboratory:
     def _test(self) -> None:
         self._trial = self._instance()
         saved = self._saved()
+        self._trial.set(self.start)
+        self.start_outputs = self._trial.values()
+        begun = perf_counter()
         first = self._steps(self._trial)
+        self.seconds = (perf_counter() - begun) / _TESTED_STEPS
         if saved is not None:
             try:
                 self._trial.restore(saved)

@@ -16,6 +16,8 @@ from herringbone.cosim.signature.signature import Answer
 _STEPS = 8
 _LONG = 1024
 """Steps in which an input that seems to do nothing may still come out."""
+_PATIENCE = 0.5
+"""Time [s] that looking for a late answer may take."""
 _NOTHING = 1e-9
 """Differences over the largest one that are rounding."""
 _ROUNDING = 1e3 * float(np.finfo(float).eps)
@@ -42,7 +44,7 @@ def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
     remembers = False
     for number in range(n):
         apart = _differences(lab, number, float(changes[number]), lab.step, _STEPS)
-        if not apart.any():
+        if not apart.any() and lab.seconds * _LONG < _PATIENCE:
             apart = _differences(lab, number, float(changes[number]), lab.step, _LONG)
         seen = apart != 0.0
         first[:, number] = apart[0] / changes[number]

@@ -8,6 +8,7 @@ from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import RATIO, amplitude
 from herringbone.cosim.signature.feedthrough import feedthrough_of, runs_on
 from herringbone.cosim.signature.laboratory import Laboratory
+from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
 from herringbone.cosim.signature.rates import rates_of
 from herringbone.cosim.signature.rotation import Given, pairs, rule_of
@@ -22,6 +23,8 @@ _MOVES = {
 _SHORT = 1.001
 _LOUDER = 5
 """How often a change that nothing answers is made 16 times larger."""
+_SAME = 0.1
+"""Feedthrough at two places, over the larger one, that is one number."""
 _TINY = 1e-3
 """The first step that shows whether outputs are valid before it, over the step."""
 
@@ -44,6 +47,9 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
         return _signature(lab, found, Kind.NOISY, unknown)
     if lab.restores is False:
         found.note(f"its saved state is not trusted: {lab.why}")
+    if not np.isfinite(lab.start_outputs).all():
+        found.note("its outputs are not finite at the start")
+        return _signature(lab, found, Kind.UNKNOWN, unknown)
     try:
         changes = _amplitudes(lab, variables)
         tick = tick_of(lab, changes)
@@ -61,7 +67,8 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
             changes = np.where(deaf, RATIO * changes, changes)
             pulse = pulses(lab, changes)
         feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
-        _doubt(feedthrough, pulse, found)
+        _doubt(lab, feedthrough, pulse, found)
+        _compare_later(lab, feedthrough, changes, found)
         given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
         valid = _valid_at_start(lab, tick)
         rates = rates_of(lab, variables, changes, feedthrough)
@@ -85,6 +92,7 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
         rates=rates,
         valid_at_start=valid,
         tick=tick,
+        varies=found.varies,
         given=given,
         rate_inputs=rate,
     )
@@ -116,22 +124,41 @@ def _rules(
     lab: Laboratory, changes: np.ndarray, feedthrough: np.ndarray, together: tuple[int, ...]
 ) -> tuple[tuple[Given, ...], tuple[int, ...]]:
     """Which value of each input the part is given for a step, and the number of its rate or -1."""
-    given, rate = [Given.MEAN] * len(lab.inputs), list(together)
-    for number, other in enumerate(together):
-        if other >= 0:
-            given[number] = Given.START
+    given, rate = [Given.MEAN] * len(lab.inputs), [-1] * len(lab.inputs)
     known = np.nan_to_num(feedthrough)
-    for number, other in pairs(lab.inputs):
+    for number, other in pairs(lab.inputs, together):
         if known[:, number].any():
             rate[number] = other
             given[number] = rule_of(lab, (number, other), float(changes[other]), known)
     return tuple(given), tuple(rate)
 
 
-def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
-    """Where an output is not linear, what it did not answer may pass to it elsewhere: unknown."""
+def _doubt(lab: Laboratory, feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
+    """What is unknown after all: small answers of large outputs, and other inputs of bent ones."""
     for row in found.bent:
         feedthrough[row, pulse.delay[row] < 0] = np.nan
+    if pulse.memory is Answer.NO and feedthrough.size and not np.nan_to_num(feedthrough).any():
+        found.note("its outputs change, but too little against their size, or with time alone")
+
+
+def _compare_later(
+    lab: Laboratory, feedthrough: np.ndarray, changes: np.ndarray, found: Findings
+) -> None:
+    """Feedthrough that is there later only is unknown; that which changes is told."""
+    later = later_feedthrough(lab, changes)
+    now = np.nan_to_num(feedthrough)
+    apart = np.abs(later - now) > _SAME * np.maximum(np.abs(later), np.abs(now))
+    for row, column in np.argwhere(apart & (later != 0.0) & ~np.isnan(feedthrough)):
+        name = f"d({lab.outputs[row]})/d({lab.inputs[column]})"
+        if feedthrough[row, column] == 0.0:
+            feedthrough[row, column] = np.nan
+            found.note(f"{name} is 0 at the start and {later[row, column]:.3g} later: unknown")
+        else:
+            found.varies = True
+            found.note(
+                f"{name} is {now[row, column]:.4g} at the start and {later[row, column]:.4g} "
+                "later; the first is used"
+            )
 
 
 def _note_answers(lab: Laboratory, pulse: Pulses, found: Findings) -> None:
@@ -139,7 +166,7 @@ def _note_answers(lab: Laboratory, pulse: Pulses, found: Findings) -> None:
     for number, name in enumerate(lab.inputs):
         late = pulse.delay[:, number]
         if (late < 0).all():
-            found.note(f"no output answers {name}, however far it is changed")
+            found.note(f"no output answers {name} at the start values of the others")
         elif late.max() > 0:
             found.note(f"{lab.outputs[int(late.argmax())]} answers {name} {late.max()} steps late")
 
@@ -151,7 +178,7 @@ def _kind(feedthrough: np.ndarray, pulse: Pulses) -> Kind:
     if not reached.any() or np.isnan(feedthrough).any() or pulse.memory is Answer.UNKNOWN:
         return Kind.UNKNOWN
     if not (feedthrough != 0.0).any():
-        return Kind.BODY
+        return Kind.BODY if pulse.memory is Answer.YES else Kind.UNKNOWN
     return Kind.ELEMENT if pulse.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH
 
 

@@ -31,13 +31,19 @@ class Given(IntEnum):
     END = 2
 
 
-def pairs(inputs: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Numbers of inputs and their rates, by names."""
+def pairs(inputs: tuple[str, ...], together: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Numbers of inputs and of what may be their rates: by names, or by what acts alike.
+
+    Args:
+        inputs: names.
+        together: for each input the number of one whose integral acts like it, or -1.
+    """
     found = []
     for number, name in enumerate(inputs):
         rate = named_rate(name, inputs)
-        if rate:
-            found.append((number, inputs.index(rate)))
+        other = inputs.index(rate) if rate else together[number]
+        if other >= 0:
+            found.append((number, other))
     return found
 
 

@@ -70,6 +70,7 @@ class Signature:
         repeats: see `Laboratory`.
         valid_at_start: False if outputs jump in the first, tiny step.
         tick: time between changes of a sampled part [s]; 0: not sampled.
+        varies: True if a feedthrough changes with the operating point.
         given: for each input which value the part is given for a step, see `rotation`.
         rate_inputs: for each input the number of its rate; -1 if it has none.
         notes: lines on what is unknown, and why.
@@ -88,6 +89,7 @@ class Signature:
     repeats: bool = True
     valid_at_start: bool = True
     tick: float = 0.0
+    varies: bool = False
     given: tuple[Given, ...] = ()
     rate_inputs: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
@@ -109,10 +111,12 @@ class Findings:
     Attributes:
         notes: lines.
         bent: outputs, by number, that are not linear in an input.
+        varies: a feedthrough changes with the operating point.
     """
 
     notes: list[str] = field(default_factory=list)
     bent: set[int] = field(default_factory=set)
+    varies: bool = False
 
     def note(self, line: str) -> None:
         """Add a line once."""

@@ -1,0 +1,36 @@
+"""Direct feedthrough a few steps after the start, where all inputs have moved: is it the same?
+
+At the start products of inputs or states may vanish, and laws that are not linear have one slope of
+many. After some steps on moved inputs each input is changed for a last step of two lengths; what
+does not fall with the length passes directly.
+"""
+
+import numpy as np
+
+from herringbone.cosim.signature.amplitudes import unlike
+from herringbone.cosim.signature.laboratory import Laboratory
+
+_LEAD = 8
+_MOVED = 64.0
+_SHORTER = 4.0
+_DIRECT = 0.6
+"""Response to the shorter step over that to the longer one; 1/4 and less for states."""
+_ROUNDING = 1e4 * float(np.finfo(float).eps)
+
+
+def later_feedthrough(lab: Laboratory, changes: np.ndarray) -> np.ndarray:
+    """(m, n) what passes directly there, 0 where nothing does; raises Refused."""
+    moved = lab.start + _MOVED * unlike(changes)
+    found = np.zeros((len(lab.outputs), len(lab.inputs)))
+    rests = [lab.after([moved] * _LEAD, moved, h) for h in (lab.step, lab.step / _SHORTER)]
+    for number, change in enumerate(changes):
+        changed = moved.copy()
+        changed[number] += change
+        long, short = (
+            lab.after([moved] * _LEAD, changed, h) - rest
+            for h, rest in zip((lab.step, lab.step / _SHORTER), rests, strict=True)
+        )
+        floor = _ROUNDING * np.maximum(np.abs(rests[0]), np.abs(long))
+        direct = (np.abs(short) > floor) & (np.abs(short) > _DIRECT * np.abs(long))
+        found[:, number] = np.where(direct, short / change, 0.0)
+    return found
