@@ -158,7 +158,7 @@ def check_needs(algorithm: Algorithm) -> None:
 
     Without accelerations a run falls back, with a note.
     """
-    why = refusal(algorithm, state=False)
+    why = refusal(algorithm, states=False)
     assert ("cannot save and restore its state" in why) == ("rollback" in algorithm.needs)
     assert bool(why) == ("rollback" in algorithm.needs)
     notes = [run(algorithm, 0.1, acceleration=known).notes for known in (True, False)]

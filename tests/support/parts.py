@@ -398,19 +398,22 @@ class TwoMass:
         """Of the damper [N s/m]."""
         return 2.0 * self.zeta * self.reduced * self.w
 
-    def parts(self, *, nodes=True, acceleration=False, kind=Mass, stiffness=None, **more):
+    def parts(
+        self, *, nodes=True, acceleration=False, states=True, kind=Mass, stiffness=None, **more
+    ):
         """New participants.
 
         Args:
             nodes, acceleration: of both masses.
+            states: all parts can be restored.
             kind: class of the left mass; `more` are options of it.
             stiffness: of the spring, instead of the problem's.
         """
-        both = {"nodes": nodes, "acceleration": acceleration}
+        both = {"nodes": nodes, "acceleration": acceleration, "state": states}
         return [
             kind("left", self.mass[0], self.start[0], **(both | more)),
             Mass("right", self.mass[1], self.start[1], **both),
-            SpringDamper("spring", stiffness or self.stiffness, self.damping),
+            SpringDamper("spring", stiffness or self.stiffness, self.damping, state=states),
         ]
 
     def exact(self, times):

@@ -108,6 +108,11 @@ def test_a_part_that_cannot_repeat_steps_steps_once(algorithm):
     assert any(note.startswith("left cannot repeat a step") for note in recording.notes)
 
 
+def test_an_adaptive_step_needs_all_states():
+    with pytest.raises(ParameterError, match="but left cannot save and restore its state"):
+        TwoMass().run(LI(tolerance=1e-3), 0.1, 1.0, state=False)
+
+
 def test_li_is_chosen_for_steps_that_are_long_for_jacobi():
     parts = TwoMass().parts(state=False)
     assert choose_algorithm(parts, step=Jacobi.default_step)[0] == Jacobi()

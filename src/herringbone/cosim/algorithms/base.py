@@ -43,7 +43,8 @@ class Algorithm(ABC):
 
     Attributes:
         name: on the command line.
-        needs: capabilities that parts must have: "nodes", "rollback", "accelerations".
+        needs: capabilities that parts must have, "rollback" at least one: "nodes", "rollback",
+            "accelerations".
         default_step: communication step size [s] if none is given.
     """
 

@@ -41,15 +41,15 @@ def explicit_parts(network: Network) -> tuple[int, ...]:
     )
 
 
-def check_rollback(name: str, network: Network) -> None:
-    """Check that there is a part with inputs that can restore its state.
+def check_rollback(name: str, network: Network, *, of_all: bool = False) -> None:
+    """Check that parts with inputs can restore their state: one of them, or all.
 
     Raises:
-        ParameterError: there is none.
+        ParameterError: they cannot.
     """
     unable = explicit_parts(network)
     able = any(network.inputs(p) and p not in unable for p in range(len(network.parts)))
-    if unable and not able:
+    if unable and (of_all or not able):
         names = ", ".join(network.parts[p].name for p in unable)
         raise ParameterError(
             f"{name} repeats steps, but {names} cannot save and restore its state; "

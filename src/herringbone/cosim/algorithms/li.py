@@ -108,7 +108,7 @@ class LI(Algorithm):
 
     def prepare(self, network: Network) -> PreparedNodes:
         """Lay out a network for this algorithm."""
-        check_rollback(self.name, network)
+        check_rollback(self.name, network, of_all=self.adaptive)
         if self.adaptive:
             check_sources(str(self), network)
             return PreparedAdaptive(
