@@ -125,8 +125,8 @@ def _coupled_as(signature: Signature) -> str:
     if signature.kind is Kind.ELEMENT:
         return "an element by trial steps; its outputs follow its inputs at every signal node"
     order = "second order in the step"
-    if signature.varies:
-        order += " at the start, and first order where its feedthrough is another one"
+    if signature.kind is Kind.STATES_AND_FEEDTHROUGH:
+        order += ", while its feedthrough is that of the start"
     return (
         f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which makes "
         f"the coupling {order}"

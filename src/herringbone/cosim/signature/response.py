@@ -27,6 +27,8 @@ over the largest, below which there is none."""
 NONE = 0.01
 """Share of the largest response below which what is left is no feedthrough."""
 _LEAST = 1e-300
+_JITTER = 1e-3
+"""Responses over what rounding may hide, below which they are rounding; above, they are lost."""
 
 
 class Response(NamedTuple):
@@ -57,7 +59,9 @@ def extrapolated(responses: np.ndarray, floor: np.ndarray, step: float) -> Respo
     none = np.abs(last) <= np.maximum(NONE * largest, floor)
     gone = np.abs(responses[-1]) <= np.maximum(SURE * largest, floor)
     found = np.where(none | gone, 0.0, last)
-    known = (apart <= SURE) | gone
+    seen = np.abs(responses).max(axis=0)
+    lost = (seen > _JITTER * floor) & (seen <= floor)
+    known = ((apart <= SURE) | gone) & ~lost
     lengths = step / 2.0 ** np.arange(1, len(responses))
     slopes = (responses[:-1] - responses[1:]) / lengths[:, None]
     return Response(np.where(known, found, np.nan), 2.0 * slopes[1] - slopes[0])

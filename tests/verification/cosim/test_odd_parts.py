@@ -1,0 +1,115 @@
+"""Parts that trials once took for something else: right, or unknown with a line on why.
+
+Found by a critic who had the claim and not the code.
+"""
+
+import math
+
+import pytest
+from support.parts import OK, CallbackPart
+
+from herringbone.cosim.signature import Kind
+from herringbone.cosim.signature.rotation import Given
+from herringbone.running.foreign_parts import signature_of
+
+
+class Odd(CallbackPart):
+    """Inputs u, w; output y; state x, without roll-back."""
+
+    def __init__(self, inputs=("odd.u", "odd.w"), outputs=("odd.y",)):
+        super().__init__("odd", inputs, outputs, nodes=False, state=False)
+        self.x, self.time = 0.0, 0.0
+
+    def step(self, t, h):
+        self.time = t + h
+        self.x += h * self["odd.w"]
+        self.out()
+        return OK
+
+    def out(self):
+        self["odd.y"] = self.value(self["odd.u"], self["odd.w"])
+
+
+class Encoder(Odd):
+    """The integral of a speed, wrapped at 2 pi: a negative change is a turn away."""
+
+    def value(self, u, w):
+        return self.x % (2.0 * math.pi)
+
+
+class Gap(Odd):
+    """A spring behind 1 mm of clearance, and a state that passes on."""
+
+    def value(self, u, w):
+        return 1e5 * math.copysign(max(0.0, abs(u) - 1e-5), u) + self.x
+
+
+class Arm(Odd):
+    """The base is held; the slide on it is the part's own integral."""
+
+    def value(self, u, w):
+        return u + self.x
+
+
+class SoftStart(Odd):
+    """A gain that rises with time alone."""
+
+    def value(self, u, w):
+        return 5.0 * u * min(1.0, self.time / 0.01)
+
+
+class Product(Odd):
+    """Nothing passes at the start, where both inputs vanish."""
+
+    def value(self, u, w):
+        return self.x + 1e3 * u * w
+
+
+class Meter(Odd):
+    """What passes is lost in the digits of a large reading."""
+
+    def value(self, u, w):
+        return 3.6e12 + u + self.x
+
+
+def signature(kind, step=1e-4):
+    return signature_of(kind(), kind, step)
+
+
+@pytest.mark.parametrize(
+    ("kind", "why"),
+    [
+        (Encoder, "not linear"),
+        (Gap, "not linear"),
+        (SoftStart, "later: unknown"),
+        (Product, "later: unknown"),
+    ],
+)
+def test_unknown_with_a_reason(kind, why):
+    found = signature(kind)
+    assert found.kind is Kind.UNKNOWN
+    assert any(why in note for note in found.notes)
+
+
+def test_what_digits_hide_is_no_body():
+    assert signature(Meter).kind is Kind.UNKNOWN
+
+
+def test_an_integral_of_the_part_s_own_is_no_running_on():
+    found = signature(Arm)
+    assert found.kind is Kind.STATES_AND_FEEDTHROUGH
+    assert found.feedthrough.tolist() == [[pytest.approx(1.0, rel=1e-9), 0.0]]
+    assert set(found.given) == {Given.MEAN}
+
+
+def test_names_with_node_in_them_are_inputs():
+    class Node(Odd):
+        def __init__(self):
+            super().__init__(("odd.u", "odd.w", "shell.node1.force"))
+
+        def value(self, u, w):
+            return self.x + 2.0 * self["shell.node1.force"]
+
+    found = signature(Node)
+    assert "shell.node1.force" in found.inputs
+    assert found.dependencies()["odd.y"] == {"shell.node1.force"}
