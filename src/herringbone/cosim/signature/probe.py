@@ -67,7 +67,7 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
             changes = np.where(deaf, RATIO * changes, changes)
             pulse = pulses(lab, changes)
         feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
-        _doubt(lab, feedthrough, pulse, found)
+        _doubt(feedthrough, pulse, found)
         _compare_later(lab, feedthrough, changes, found)
         given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
         valid = _valid_at_start(lab, tick)
@@ -133,7 +133,7 @@ def _rules(
     return tuple(given), tuple(rate)
 
 
-def _doubt(lab: Laboratory, feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
+def _doubt(feedthrough: np.ndarray, pulse: Pulses, found: Findings) -> None:
     """What is unknown after all: small answers of large outputs, and other inputs of bent ones."""
     for row in found.bent:
         feedthrough[row, pulse.delay[row] < 0] = np.nan
