@@ -1,6 +1,5 @@
 """Running a system: from names and options to a result."""
 
-import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -9,12 +8,7 @@ from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
-from herringbone.cosim.algorithms import (
-    AUTO,
-    Algorithm,
-    parse_algorithm,
-    with_tolerance,
-)
+from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm, with_tolerance
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
@@ -26,11 +20,8 @@ from herringbone.running.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress
 from herringbone.running.run_result import compared
-from herringbone.running.verification import verified
+from herringbone.running.verification import check_fixed_step, verified
 from herringbone.scenes import Scene
-
-_log = logging.getLogger(__name__)
-_SAME = 1.0 - 1e-6
 
 
 def run(
@@ -97,6 +88,8 @@ def run(
         HerringboneError: something about the input is wrong.
     """
     coupling = _asked_for(algorithm, tolerance)
+    if verify:
+        check_fixed_step(coupling, tolerance)
     wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
     structure, chosen, notes = prepared(
         system, scene, wishes, check=lambda scene: check_grid(scene.t_end, step, scene.record_step)

@@ -23,8 +23,10 @@ Gear = str | Path | GearJob
 """A gear file (TOML or REXS), or what it would give."""
 
 
-def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple[str, ...]]:
-    """The system with gear pairs in it, and lines that the user should read.
+def with_gears(
+    system: System, gears: Mapping[str, Gear]
+) -> tuple[System, dict[str, GearJob], tuple[str, ...]]:
+    """The system with gear pairs in it, their jobs by part, and lines that the user should read.
 
     Args:
         system: with what is set by name, which holds.
@@ -35,12 +37,14 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         ResourceError: a file cannot be read.
     """
     notes: list[str] = []
+    jobs: dict[str, GearJob] = {}
     for name, gear in gears.items():
         option = f"--gear {gear}" if isinstance(gear, str | Path) else "gear"
         part = system.part(name).name
         if system.part(part).foreign:
             raise ParameterError(f"{option}: {part} is a foreign FMU; nothing of a pair can be set")
-        job = job_of(gear)
+        job = gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
+        jobs[part] = job
         if not isinstance(gear, GearJob) and is_rexs(Path(gear)):
             notes.append(
                 f"{gear}: a REXS stage has one face width, {1e3 * job.pair.face_width:.4g} mm; it "
@@ -49,12 +53,7 @@ def with_gears(system: System, gears: Mapping[str, Gear]) -> tuple[System, tuple
         values, said = _values(system, part, job, option)
         system, kept = _fitted(system, values)
         notes += (*said, *kept)
-    return system, tuple(notes)
-
-
-def job_of(gear: Gear) -> GearJob:
-    """The job of a pair that is mounted in a gearbox; raises as `read_mounted_job` does."""
-    return gear if isinstance(gear, GearJob) else read_mounted_job(Path(gear))
+    return system, jobs, tuple(notes)
 
 
 def _fitted(system: System, values: Mapping[str, float | str]) -> tuple[System, list[str]]:

@@ -10,7 +10,7 @@ from herringbone.core.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
-from herringbone.running.gears import Gear, job_of, with_gears
+from herringbone.running.gears import Gear, with_gears
 from herringbone.running.housings import split_housings, with_housing_data
 from herringbone.running.impacts import with_impacts
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
@@ -91,14 +91,13 @@ def prepared(
     data, fmus = split_housings(housings)
     structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
     structure = with_housing_data(structure, data).with_values(chosen.values)
-    structure, said = with_gears(structure, gears)
+    structure, jobs, said = with_gears(structure, gears)
     structure = balanced(structure)
     lines = unbalanced(structure)
     try:
         structure, notes = started(structure, chosen)
     except EquilibriumError as error:
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
-    jobs = {part: job_of(gear) for part, gear in gears.items()}
     structure, impacts = with_impacts(structure, jobs)
     return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
 

@@ -104,9 +104,11 @@ def compared(result: Result, every: Result, system: System) -> Result:
         system: of the run.
     """
     error = twin_error(every, system)
-    result = replace(result, error=error)
-    if not result.budget:
-        return result
+    return with_coupling_row(replace(result, error=error))
+
+
+def with_coupling_row(result: Result) -> Result:
+    """The result whose budget, if it has one, tells the coupling's error that was found since."""
     coupling = coupling_row(result, 0.0)
     rows = [coupling if row.source == coupling.source else row for row in result.budget]
     return replace(result, budget=by_size(rows))

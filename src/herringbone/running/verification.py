@@ -13,21 +13,38 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.accuracy.error import relative_error
-from herringbone.analysis.accuracy.error_budget import by_size, coupling_row
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.core import ParameterError
 from herringbone.core.roles import Quantity
+from herringbone.cosim.algorithms import AUTO, Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import TIME, Result
 from herringbone.result.verification import Verification
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.progress import Progress
+from herringbone.running.run_result import with_coupling_row
 from herringbone.scenes import Scene
 
 _WHOLE = 4.0 / 3.0
 _CONSTANT = 1e-9
 """Alternating part over the size of a channel below which it is rounding."""
 _ALL = "outputs"
+
+
+def check_fixed_step(algorithm: Algorithm | None, tolerance: float | None) -> None:
+    """Check, before anything runs, that a step can be halved.
+
+    Args:
+        algorithm: that was asked for; None: chosen by what the parts are.
+        tolerance: that was asked for.
+
+    Raises:
+        ParameterError: the step adapts itself.
+    """
+    if tolerance is not None or (algorithm is not None and algorithm.adaptive):
+        raise ParameterError(
+            f"verify: {algorithm or AUTO} adapts its step to the tolerance; give a fixed --step"
+        )
 
 
 def verified(
@@ -48,13 +65,8 @@ def verified(
         progress: see `api.run`.
 
     Raises:
-        ParameterError: the step adapts itself.
         HerringboneError: see `coupled`.
     """
-    if found.algorithm.adaptive:
-        raise ParameterError(
-            f"verify: {found.algorithm} adapts its step to the tolerance; give a fixed --step"
-        )
     step = 0.5 * found.recording.step
     finer = coupled(
         with_half_inner_steps(system),
@@ -62,12 +74,7 @@ def verified(
         replace(asked, algorithm=found.algorithm, step=step, all_points=False, notes=()),
         progress,
     ).result
-    checked = replace(result, verification=compared_with(result, finer.data, step))
-    row = coupling_row(checked, 0.0)
-    if not checked.budget:
-        return checked
-    rows = [row if old.source == row.source else old for old in checked.budget]
-    return replace(checked, budget=by_size(rows))
+    return with_coupling_row(replace(result, verification=compared_with(result, finer.data, step)))
 
 
 def with_half_inner_steps(system: System) -> System:
