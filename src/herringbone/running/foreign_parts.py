@@ -99,7 +99,6 @@ def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Si
         step,
         Kind.UNKNOWN,
         nothing,
-        nothing,
         Answer.UNKNOWN,
         np.zeros(nothing.shape, dtype=int),
         notes=(why,),

@@ -27,6 +27,7 @@ from numba import carray, from_dtype, types
 
 from herringbone.cosim.loops.calls import at_address, exchange_reals, state_call
 from herringbone.cosim.loops.calls import do_step as step_part
+from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.cosim.signature.rotation import Given
 from herringbone.kernels.jit import allocating, c_function
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
@@ -79,7 +80,6 @@ _EXCHANGE = types.int32(
 _STEP = types.int32(_MEMORY, types.float64, types.float64, types.int32)
 _STATE = types.int32(_MEMORY, types.int64)
 _UNKNOWN_SIZE = 1  # bounds are not checked
-_LAST_GOOD = 1
 _START, _END = int(Given.START), int(Given.END)
 
 
@@ -215,15 +215,15 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
             begin = (node - 1 + piece / part.pieces) / nodes
             end = (node - 1 + (piece + 1) / part.pieces) / nodes
             status = _hold(whole, begin, end)
-            if status > _LAST_GOOD:
+            if status > LAST_GOOD:
                 return types.int32(status)
             status = step_part(
                 part.do_step, part.component, time + begin * step, (end - begin) * step
             )
-            if status > _LAST_GOOD:
+            if status > LAST_GOOD:
                 return types.int32(status)
         status = _read(whole)
-        if status > _LAST_GOOD:
+        if status > LAST_GOOD:
             return types.int32(status)
         _keep(whole, node, node / nodes, step / (nodes * part.pieces))
     part.stepped = 1

@@ -8,10 +8,10 @@ from herringbone.cosim.signature.response import HALVINGS, Response, extrapolate
 from herringbone.cosim.signature.signature import Findings
 from herringbone.cosim.signature.trial import Refused
 
-_ROUNDING = 1e4 * float(np.finfo(float).eps)
+ROUNDING = 1e4 * float(np.finfo(float).eps)
 _SHORTER = 32.0
 _ROUNDS = 3
-_SAME = 0.1
+SAME = 0.1
 """Feedthrough at two amplitudes, over the larger one, that is one number."""
 _ALIKE = 0.2
 """Difference of two responses, over them, that are taken for one."""
@@ -65,7 +65,7 @@ def _responses(
         after = lab.run([changed], h)[-1]
         found.append((after - base) / change)
         size = np.maximum(size, np.maximum(np.abs(base), np.abs(after)))
-    return np.array(found), _ROUNDING * size / abs(change)
+    return np.array(found), ROUNDING * size / abs(change)
 
 
 def _one_number(
@@ -83,7 +83,7 @@ def _one_number(
     small = by_change[2:].mean(axis=0)
     scale = np.abs(by_change).max(axis=0)
     spread = np.ptp(by_change, axis=0)
-    for row in np.flatnonzero(spread > _SAME * scale):
+    for row in np.flatnonzero(spread > SAME * scale):
         low, high = by_change[:, row].min(), by_change[:, row].max()
         found.bent.add(int(row))
         found.note(

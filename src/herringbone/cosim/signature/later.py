@@ -8,6 +8,7 @@ what does not fall with the length passes directly.
 import numpy as np
 
 from herringbone.cosim.signature.amplitudes import unlike
+from herringbone.cosim.signature.feedthrough import ROUNDING
 from herringbone.cosim.signature.laboratory import Laboratory
 
 _LEAD = 8
@@ -15,7 +16,6 @@ _MOVED = 64.0
 _SHORTER = (4.0, 16.0)
 _DIRECT = 0.4
 """Difference of the responses to both short steps over the last; 3 and more for states."""
-_ROUNDING = 1e4 * float(np.finfo(float).eps)
 
 
 def later_feedthrough(lab: Laboratory, changes: np.ndarray) -> np.ndarray:
@@ -31,7 +31,7 @@ def later_feedthrough(lab: Laboratory, changes: np.ndarray) -> np.ndarray:
             lab.after([moved] * _LEAD, changed, h) - rest
             for h, rest in zip(lengths, rests, strict=True)
         )
-        floor = _ROUNDING * np.maximum(np.abs(rests[0]), np.abs(long))
+        floor = ROUNDING * np.maximum(np.abs(rests[0]), np.abs(long))
         direct = (np.abs(short) > floor) & (np.abs(short - long) < _DIRECT * np.abs(short))
         found[:, number] = np.where(direct, short / change, 0.0)
     return found

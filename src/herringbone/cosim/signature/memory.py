@@ -27,12 +27,10 @@ class Pulses(NamedTuple):
     """Answers to pulses.
 
     Attributes:
-        first: (m, n) change of the output over that of the input, at the end of the pulse's step.
         memory: of the part.
         delay: (m, n) see `Signature`.
     """
 
-    first: np.ndarray
     memory: Answer
     delay: np.ndarray
 
@@ -40,14 +38,13 @@ class Pulses(NamedTuple):
 def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
     """Answers to a pulse at every input; raises Refused."""
     m, n = len(lab.outputs), len(lab.inputs)
-    first, delay = np.zeros((m, n)), np.full((m, n), -1)
+    delay = np.full((m, n), -1)
     remembers = False
     for number in range(n):
         apart = _differences(lab, number, float(changes[number]), lab.step, _STEPS)
         if not apart.any() and lab.seconds * _LONG < _PATIENCE:
             apart = _differences(lab, number, float(changes[number]), lab.step, _LONG)
         seen = apart != 0.0
-        first[:, number] = apart[0] / changes[number]
         reached = seen.any(axis=0)
         begins = np.argmax(seen, axis=0)
         delay[:, number] = np.where(reached, begins, -1)
@@ -58,7 +55,7 @@ def pulses(lab: Laboratory, changes: np.ndarray) -> Pulses:
             half = _differences(lab, number, float(changes[number]), 0.5 * lab.step, steps) != 0.0
             of_steps = np.argmax(half, axis=0) == begins
             delay[late & ~of_steps, number] = 0
-    return Pulses(first, Answer.YES if remembers else Answer.NO, delay)
+    return Pulses(Answer.YES if remembers else Answer.NO, delay)
 
 
 def _differences(lab: Laboratory, number: int, change: float, h: float, steps: int) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import RATIO, amplitude
-from herringbone.cosim.signature.feedthrough import feedthrough_of, runs_on
+from herringbone.cosim.signature.feedthrough import SAME, feedthrough_of, runs_on
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
@@ -23,8 +23,6 @@ _MOVES = {
 _SHORT = 1.001
 _LOUDER = 5
 """How often a change that nothing answers is made 16 times larger."""
-_SAME = 0.1
-"""Feedthrough at two places, over the larger one, that is one number."""
 _TINY = 1e-3
 """The first step that shows whether outputs are valid before it, over the step."""
 
@@ -59,22 +57,27 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
                 f"{lab.step:g} s; its inputs are held"
             )
             return _signature(lab, found, Kind.SAMPLED, unknown, tick=tick)
-        pulse = pulses(lab, changes)
-        for _ in range(_LOUDER):
-            deaf = (pulse.delay < 0).all(axis=0)
-            if not deaf.any():
-                break
-            changes = np.where(deaf, RATIO * changes, changes)
-            pulse = pulses(lab, changes)
-        feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
-        _doubt(feedthrough, pulse, found)
-        _compare_later(lab, feedthrough, changes, found)
-        given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
-        valid = _valid_at_start(lab, tick)
-        rates = rates_of(lab, variables, changes, feedthrough)
+        return _by_trials(lab, variables, changes, tick, found)
     except Refused as error:
         found.note(f"trials are not possible: {error}")
         return _signature(lab, found, Kind.UNKNOWN, unknown)
+
+
+def _by_trials(
+    lab: Laboratory,
+    variables: Mapping[str, PartVariable],
+    changes: np.ndarray,
+    tick: float,
+    found: Findings,
+) -> Signature:
+    """Signature of a part that repeats and changes in every step; raises Refused."""
+    pulse, changes = _heard(lab, changes)
+    feedthrough, slopes = feedthrough_of(lab, changes, tick, found)
+    _doubt(feedthrough, pulse, found)
+    _compare_later(lab, feedthrough, changes, found)
+    given, rate = _rules(lab, changes, feedthrough, runs_on(feedthrough, slopes))
+    valid = _valid_at_start(lab, tick)
+    rates = rates_of(lab, variables, changes, feedthrough)
     _note_answers(lab, pulse, found)
     for number, rule in enumerate(given):
         if rule is not Given.MEAN:
@@ -86,23 +89,31 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
         found,
         _kind(feedthrough, pulse),
         feedthrough,
-        answers=pulse.first,
         memory=pulse.memory,
         delay=pulse.delay,
         rates=rates,
-        valid_at_start=valid,
         tick=tick,
-        varies=found.varies,
         given=given,
         rate_inputs=rate,
     )
+
+
+def _heard(lab: Laboratory, changes: np.ndarray) -> tuple[Pulses, np.ndarray]:
+    """Answers to pulses, and the changes that made them: larger where nothing answered."""
+    pulse = pulses(lab, changes)
+    for _ in range(_LOUDER):
+        deaf = (pulse.delay < 0).all(axis=0)
+        if not deaf.any():
+            break
+        changes = np.where(deaf, RATIO * changes, changes)
+        pulse = pulses(lab, changes)
+    return pulse, changes
 
 
 def _signature(
     lab: Laboratory, found: Findings, kind: Kind, feedthrough: np.ndarray, **more: object
 ) -> Signature:
     empty = {
-        "answers": np.full_like(feedthrough, np.nan),
         "memory": Answer.UNKNOWN,
         "delay": np.zeros(feedthrough.shape, dtype=int),
     }
@@ -147,14 +158,13 @@ def _compare_later(
     """Feedthrough that is there later only is unknown; that which changes is told."""
     later = later_feedthrough(lab, changes)
     now = np.nan_to_num(feedthrough)
-    apart = np.abs(later - now) > _SAME * np.maximum(np.abs(later), np.abs(now))
+    apart = np.abs(later - now) > SAME * np.maximum(np.abs(later), np.abs(now))
     for row, column in np.argwhere(apart & (later != 0.0) & ~np.isnan(feedthrough)):
         name = f"d({lab.outputs[row]})/d({lab.inputs[column]})"
         if feedthrough[row, column] == 0.0:
             feedthrough[row, column] = np.nan
             found.note(f"{name} is 0 at the start and {later[row, column]:.3g} later: unknown")
         else:
-            found.varies = True
             found.note(
                 f"{name} is {now[row, column]:.4g} at the start and {later[row, column]:.4g} "
                 "later; the first is used"

@@ -61,16 +61,13 @@ class Signature:
         step: of the trials [s]; feedthrough is what answers within a step of this length at once.
         kind: see `Kind`.
         feedthrough: (m, n) D, d(output)/d(input) as the step goes to zero; nan where it is unknown.
-        answers: (m, n) change of the output over that of the input after one step.
         memory: if outputs depend on what inputs were before.
         delay: (m, n) steps after which a pulse comes out first, beyond the usual one; 0: none, -1:
             it never came.
         rates: pairs of outputs that names or declarations call rates of each other.
         restores: see `Laboratory`.
         repeats: see `Laboratory`.
-        valid_at_start: False if outputs jump in the first, tiny step.
         tick: time between changes of a sampled part [s]; 0: not sampled.
-        varies: True if a feedthrough changes with the operating point.
         given: for each input which value the part is given for a step, see `rotation`.
         rate_inputs: for each input the number of its rate; -1 if it has none.
         notes: lines on what is unknown, and why.
@@ -81,15 +78,12 @@ class Signature:
     step: float
     kind: Kind
     feedthrough: np.ndarray
-    answers: np.ndarray
     memory: Answer
     delay: np.ndarray
     rates: tuple[Rate, ...] = ()
     restores: bool | None = None
     repeats: bool = True
-    valid_at_start: bool = True
     tick: float = 0.0
-    varies: bool = False
     given: tuple[Given, ...] = ()
     rate_inputs: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
@@ -111,12 +105,10 @@ class Findings:
     Attributes:
         notes: lines.
         bent: outputs, by number, that are not linear in an input.
-        varies: a feedthrough changes with the operating point.
     """
 
     notes: list[str] = field(default_factory=list)
     bent: set[int] = field(default_factory=set)
-    varies: bool = False
 
     def note(self, line: str) -> None:
         """Add a line once."""

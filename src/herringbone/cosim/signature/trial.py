@@ -7,12 +7,9 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.part import Part
-
-_WARNING, _DISCARD = 1, 2
-_Pointer, _Count, _Real, _Flag = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
-_exchange_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Pointer, _Count, _Pointer)
-_step_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Real, _Real, _Flag)
-_state_type = ctypes.CFUNCTYPE(ctypes.c_int, _Pointer, _Pointer)
+from herringbone.cosim.loops.calls import do_step, exchange_reals, state_call
+from herringbone.cosim.loops.common import LAST_GOOD
+from herringbone.kernels.fmi_calls import DISCARD
 
 
 class Refused(FmuError):
@@ -68,8 +65,8 @@ class Trial:
 
     def step(self, h: float) -> None:
         """Step by h [s]; raises Refused."""
-        status = _step_type(self._at.do_step)(self._at.component, self.time, h, 1)
-        if status > _WARNING:
+        status = do_step(self._at.do_step, self._at.component, self.time, h)
+        if status > LAST_GOOD:
             raise Refused(self._refusal(f"a step of {h:g} s", status))
         self.time += h
 
@@ -81,8 +78,8 @@ class Trial:
     def save(self) -> int:
         """Handle of the present state; raises Refused."""
         handle = ctypes.c_void_p(self.part.new_state())
-        status = _state_type(self._at.get_state)(self._at.component, ctypes.addressof(handle))
-        if status > _WARNING:
+        status = state_call(self._at.get_state, self._at.component, ctypes.addressof(handle))
+        if status > LAST_GOOD:
             raise Refused(self._refusal("to save its state", status))
         found = int(handle.value or 0)
         self._saved[found] = self.time
@@ -90,8 +87,8 @@ class Trial:
 
     def restore(self, handle: int) -> None:
         """Go back to a saved state; raises Refused."""
-        status = _state_type(self._at.set_state)(self._at.component, handle)
-        if status > _WARNING:
+        status = state_call(self._at.set_state, self._at.component, handle)
+        if status > LAST_GOOD:
             raise Refused(self._refusal("to restore its state", status))
         self.time = self._saved[handle]
 
@@ -99,21 +96,25 @@ class Trial:
         """Free states and part."""
         for handle in self._saved:
             kept = ctypes.c_void_p(handle)
-            _state_type(self._at.free_state)(self._at.component, ctypes.addressof(kept))
+            state_call(self._at.free_state, self._at.component, ctypes.addressof(kept))
         self.part.close()
 
     def _exchange(
         self, address: int, references: np.ndarray, values: np.ndarray, what: str
     ) -> None:
-        status = _exchange_type(address)(
-            self._at.component, references.ctypes.data, references.size, values.ctypes.data
+        status = exchange_reals(
+            address,
+            self._at.component,
+            references.ctypes.data,
+            references.size,
+            values.ctypes.data,
         )
-        if status > _WARNING:
+        if status > LAST_GOOD:
             raise Refused(self._refusal(what, status))
 
     def _refusal(self, what: str, status: int) -> str:
         """The message; after an error FMI allows nothing but to free the part."""
-        if status > _DISCARD:
+        if status > DISCARD:
             self.part.failed()
             self._saved.clear()
         said = "; ".join(self.part.messages())
