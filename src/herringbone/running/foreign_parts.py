@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
 from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.known_signatures import known_signature
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
 _NODE = re.compile(r"\.node\d+$")
@@ -43,12 +45,16 @@ def understood(
         if not spec.foreign or INTERFACE_DEGREE in part.variables:
             found.append(part)
             continue
-        with activity(f"finding out what {part.name} is"), instances(spec) as make:
-            signature = signature_of(part, make, step)
+        signature = known_signature(spec, step, partial(_tried, spec, part, instances, step))
         changed, lines = _with_signature(part, signature)
         found.append(changed)
         notes += [f"{part.name}: {line}" for line in lines]
     return found, notes
+
+
+def _tried(spec: PartSpec, part: Part, instances: Instances, step: float) -> Signature:
+    with activity(f"finding out what {part.name} is"), instances(spec) as make:
+        return signature_of(part, make, step)
 
 
 def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
