@@ -16,6 +16,7 @@ from herringbone.cosim.layouts.adaptive import (
     BEFORE_THAT,
     CULPRIT,
     MISSED,
+    MISSED_NOW,
     NEEDED,
     NONE,
     OWN,
@@ -91,6 +92,7 @@ class PreparedAdaptive(PreparedNodes):
         self._adaptive: Adaptive | None = None
         self._record = GrowingRecord(0)
         self._tick = 0.0
+        self._kept, self._missing = tolerance, ""
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
@@ -130,6 +132,9 @@ class PreparedAdaptive(PreparedNodes):
         missed = int(self._adaptive.state[MISSED]) if self._adaptive else 0
         if not missed:
             return self._downgrades
+        if self._missing:
+            rest = f"{self._kept:.2g} was aimed at from there on; {missed} steps in all missed it"
+            return (*self._downgrades, f"{self._missing}; {rest}")
         return (
             *self._downgrades,
             f"{missed} of the smallest steps ({self._tick * RUNGS[0]:.3g} s) missed the tolerance: "
@@ -187,7 +192,7 @@ class PreparedAdaptive(PreparedNodes):
                 self.layout,
                 self.nodes,
                 self._buffers,
-                Control(self.corrections, self.most, RESIDUAL_SHARE * self.tolerance, np.inf,
+                Control(self.corrections, self.most, RESIDUAL_SHARE * self._kept, np.inf,
                         PREDICTION),
                 self._adaptive,
                 chunk._replace(start=done, count=max(0, end - done), records=self._record.values),
@@ -196,7 +201,7 @@ class PreparedAdaptive(PreparedNodes):
             if status == REFRESH:
                 status = self._correct(self._buffers, self._adaptive, done, chunk.h)
             if status == STEP_LIMIT:
-                self._explain_limit(int(self._adaptive.state[CULPRIT]), done * chunk.h)
+                status = self._loosened(done * chunk.h)
             if status != DONE or done >= end:
                 return status, done, culprit
 
@@ -242,12 +247,22 @@ class PreparedAdaptive(PreparedNodes):
         first, second = (self._sensitivities[k] / RUNGS[k] for k in near)
         return h * (first + (h - one) / (two - one) * (second - first))
 
-    def _explain_limit(self, unknown: int, t: float) -> None:
-        p, name = self.jacobian.owners[self.nodes.unknown[unknown]]
+    def _loosened(self, t: float) -> int:
+        """Go on with twice the tolerance, as with a fixed step; a status of the loop."""
+        if self._adaptive is None:
+            return STEP_LIMIT
+        adaptive = self._adaptive
+        p, name = self.jacobian.owners[self.nodes.unknown[int(adaptive.state[CULPRIT])]]
         self.culprit = f"{self.network.parts[p].name}.{name}"
-        smallest = RUNGS[0] * self._tick
-        self.problem = (
+        self._missing = self._missing or (
             f"{self.culprit} misses the tolerance of {self.tolerance:g} at {t:g} s even with the "
-            f"smallest step of {smallest:.3g} s; use a larger tolerance, or a smaller --step: the "
-            f"ladder reaches down to 1/{TICKS // RUNGS[0]} of it"
+            f"smallest step of {RUNGS[0] * self._tick:.3g} s; use a larger tolerance, or a smaller "
+            f"--step: the ladder reaches down to 1/{TICKS // RUNGS[0]} of it"
         )
+        if self._kept >= 1.0:
+            self.problem = self._missing
+            return STEP_LIMIT
+        self._kept *= 2.0
+        adaptive.state[MISSED_NOW] = 0
+        self._adaptive = adaptive._replace(tolerance=self._kept)
+        return DONE
