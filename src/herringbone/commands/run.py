@@ -138,7 +138,7 @@ class _Report:
         from herringbone.running.report import write_summary  # noqa: PLC0415 (pandas)
 
         result = replace(result, files=self._files)
-        if result.error or result.info.why:
+        if result.error or result.verification or result.info.why:
             write_summary(result, self._start / self._shown)
         return result
 

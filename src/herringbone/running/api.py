@@ -12,6 +12,7 @@ from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm, with_
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
@@ -20,7 +21,13 @@ from herringbone.running.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress
 from herringbone.running.run_result import compared
-from herringbone.running.verification import check_fixed_step, verified
+from herringbone.running.step_search import searched, searched_tolerance
+from herringbone.running.verification import (
+    can_be_verified,
+    check_fixed_step,
+    verified,
+    verified_by_longer_steps,
+)
 from herringbone.scenes import Scene
 
 
@@ -53,10 +60,12 @@ def run(
         scene: name or file of a scene; the system's "loaded" if not given.
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
             default, takes li if all parts can repeat a step, and jacobi otherwise.
-        step: communication step size [s]; the algorithm's default if not given. With a tolerance
-            the largest one, and the others go down to 1/200 of it.
+        step: communication step size [s]; the algorithm's default if not given, or, if all parts
+            are foreign, what a tolerance of 1e-3 needs. With a tolerance the largest one; an
+            adaptive step goes down to 1/200 of it.
         tolerance: relative error (see `analysis.accuracy.error`) for which `li` adapts its step, as
-            in "li:tolerance=1e-3".
+            in "li:tolerance=1e-3"; with foreign parts the step is fixed, and found by several runs
+            with any algorithm, see `running.step_search`.
         slow: heavy bodies that step once in several macro steps, and in how many, such as
             {"motor": 5}; the others see their predicted motion.
         t_end: duration [s]; the scene's if not given.
@@ -87,7 +96,9 @@ def run(
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    coupling = _asked_for(algorithm, tolerance)
+    coupling = _asked_for(algorithm)
+    if tolerance is not None:
+        check_tolerance(tolerance)
     if verify:
         check_fixed_step(coupling, tolerance)
     wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
@@ -98,14 +109,22 @@ def run(
         refuse_foreign_parts(structure)
     fmu, slower = choose_kind(fmu)
     asked = Asked(
-        fmu, coupling, step, tolerance, slow, probe, record_step, reference, (*notes, *slower)
+        fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=(*notes, *slower)
     )
-    found = coupled(structure, chosen, asked, progress, recorded)
+    aim = searched_tolerance(structure, asked)
+    if aim is not None:
+        found = searched(structure, chosen, asked, aim, progress, recorded)
+    else:
+        if coupling is not None and tolerance is not None:
+            asked = replace(asked, algorithm=with_tolerance(coupling, tolerance))
+        found = coupled(structure, chosen, asked, progress, recorded)
     result = found.result
     if reference:
         result = compared(result, found.every, structure)
     if verify and not found.recording.outcome.unstable:
         result = verified(result, structure, chosen, found, asked, progress)
+    elif can_be_verified(structure, result, found, asked):
+        result = verified_by_longer_steps(result, structure, chosen, found, asked)
     if _unstable(found.recording):
         with activity(f"looking for what grows in {structure.name}, and for remedies"):
             why_unstable = diagnose(structure, found.algorithm, found.recording.step)
@@ -113,12 +132,11 @@ def run(
     return result
 
 
-def _asked_for(algorithm: str | Algorithm | None, tolerance: float | None) -> Algorithm | None:
+def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
     """The algorithm that was asked for; None for the automatic choice."""
     if algorithm is None or algorithm == AUTO:
         return None
-    found = parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
-    return found if tolerance is None else with_tolerance(found, tolerance)
+    return parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
 
 
 def _unstable(recording: Recording) -> bool:

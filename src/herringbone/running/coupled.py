@@ -20,12 +20,14 @@ from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.foreign_parts import understood
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
 from herringbone.running.run_result import decimated, judged, make_result
+from herringbone.running.suited_step import suited_step
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
@@ -45,6 +47,7 @@ class Asked:
         probe: find out what foreign FMUs are.
         record_step: that the caller gave [s].
         all_points: keep all communication points beside the result.
+        warn: say whether the step is stable.
     """
 
     fmu: str
@@ -55,6 +58,7 @@ class Asked:
     probe: bool = True
     record_step: float | None = None
     all_points: bool = False
+    warn: bool = True
     notes: Sequence[str] = field(default=())
 
 
@@ -66,12 +70,16 @@ class Coupled(NamedTuple):
         every: with all communication points, if these were asked for.
         recording: of the run.
         algorithm: that was chosen.
+        once: a part can be instantiated once only.
+        exchanged: outputs of foreign parts that other parts take.
     """
 
     result: Result
     every: Result
     recording: Recording
     algorithm: Algorithm
+    once: bool
+    exchanged: tuple[str, ...]
 
 
 def coupled(
@@ -106,12 +114,17 @@ def coupled(
         if algorithm is None:
             algorithm, why = _chosen_for(parts, asked)
             lines.append(why)
-        step = algorithm.start_step if asked.step is None else asked.step
-        lines += _stability_notes(system, algorithm, step, asked.slow)
+        bond = fastest_bond(system)
+        step = asked.step or suited_step(system, scene, algorithm, bond, asked.record_step)
+        if asked.step is None and step > algorithm.start_step:
+            lines.append(
+                f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
+            )
+        if asked.warn:
+            lines += _stability_notes(system, algorithm, step, asked.slow)
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
-        bond = fastest_bond(system)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
                 system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow
@@ -122,7 +135,16 @@ def coupled(
         result = decimated(every, scene.record_step) if asked.all_points else every
         if recorded:
             recorded(result)
-    return Coupled(result, every, recording, algorithm)
+        once, exchanged = any(part.once for part in opened), _exchanged(system, parts)
+    return Coupled(result, every, recording, algorithm, once, exchanged)
+
+
+def _exchanged(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
+    """Outputs of foreign parts that other parts take."""
+    if not system.foreign_parts:
+        return ()
+    taken = {(parts[c.source].name, c.output) for c in build_network(system, parts).connections}
+    return tuple(f"{part}.{name}" for part, name in sorted(taken) if part in system.foreign_parts)
 
 
 def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:

@@ -10,6 +10,7 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, error_budget
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
+from herringbone.analysis.figures.settling import unsettled
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ResourceError
@@ -91,7 +92,7 @@ def judged(result: Result, bond_frequency: float | None) -> Result:
         found, budget = misfits(even), error_budget(even, bond_frequency or 0.0)
     except ResourceError as error:  # no reason to lose a run that has ended
         found, budget = (f"no error budget: {error}",), ()
-    notes = (*result.info.notes, *found)
+    notes = (*result.info.notes, *found, *unsettled(even))
     return replace(result, info=replace(result.info, notes=notes), budget=budget)
 
 

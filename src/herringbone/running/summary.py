@@ -276,7 +276,7 @@ def _errors(result: Result) -> Iterator[str]:
         )
         if found.worst:
             errors += f"; worst {found.worst} {100.0 * found.worst_error:.3g} %"
-        yield _line("Error by half step", errors)
+        yield _line("Error by steps", f"{errors} ({found.how})")
 
 
 def _budget(result: Result) -> Iterator[str]:

@@ -30,7 +30,7 @@ def test_it_is_said_and_takes_the_rule_s_place(tmp_path, capsys):
     command = ["run", "test_rig", "--t-end", "0.01", "--fmu", "in-process", "--verify"]
     assert main([*command, "--step", "2e-5", "-o", str(tmp_path)]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "Error by half step bearing force" in said
+    assert "Error by steps bearing force" in said
     assert "coupling (estimated; " in said
 
 

@@ -120,8 +120,7 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
     if result.verification is not None and result.verification.groups:
         name, value = max(result.verification.groups.items(), key=lambda item: item[1])
         quantity = f"{name.replace('_', ' ')}, alternating part"
-        how = "against a run with half the macro step and half the inner steps"
-        return BudgetRow("coupling", quantity, value, Known.ESTIMATED, how)
+        return BudgetRow("coupling", quantity, value, Known.ESTIMATED, result.verification.how)
     algorithm = parse_algorithm(result.info.algorithm)
     if algorithm.adaptive:
         how = "the tolerance of its steps; --reference measures"

@@ -1,0 +1,249 @@
+"""A fixed step with which a run meets a tolerance, found by runs with ever shorter steps.
+
+Inside a run only the error of a single step is known. What it makes of the whole run depends on the
+system: the phase of an oscillation without damping drifts away with time. Where parts are foreign,
+no rule knows that, and some cannot take a step back. Whole runs tell, see `accuracy.step_power`.
+
+The first steps are long and cost little; from the second run on the step is chosen to err half the
+tolerance. The power of the step counts between 1/2 and 2, as steps that are still too long pretend
+more; of two runs alone, or of some that are far apart, as 1 at most. The first step is a 47th of
+the run, or five times li's own where parts of this project take part: 47 is prime, so that signals
+with a whole number of periods in the run do not look constant.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from herringbone.analysis.accuracy.apart import Apart, apart
+from herringbone.analysis.accuracy.step_power import left_of, step_power
+from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.cosim.algorithms import LI
+from herringbone.cosim.structure.system import System
+from herringbone.result.result import Result
+from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.progress import Progress
+from herringbone.running.run_result import with_coupling_row
+from herringbone.running.verification import scaled
+from herringbone.scenes import Scene
+
+_DEFAULT = 1e-3
+_PIECES = 47
+_COARSE = 5.0
+_RUNS, _FAILURES = 20, 2
+"""Runs in all; runs in which a part or the coupling fails, for whatever reason."""
+_AT_ONCE = 8
+"""A step is divided by this whole number at the most, so that the next run has all its points."""
+_AIM = 0.5
+"""Share of the tolerance that the next step is to err."""
+_LEAST, _MOST, _ROUGH = 0.5, 2.0, 1.0
+"""Powers that count: least, most, and most where two runs are far apart."""
+_FAR = 0.3
+"""Difference of two runs above which the longer step follows no power."""
+_FALLS = 0.3
+"""Power below which the difference of two runs does not fall with their steps."""
+_PATIENCE, _TIMES = 60.0, 30.0
+"""A run is not begun if it takes longer [s], and so many times as long as all before."""
+
+
+def searched_tolerance(system: System, asked: Asked) -> float | None:
+    """The tolerance for which the step is to be searched; None if it is not.
+
+    Without a step, an algorithm or a tolerance it is 1e-3 where all parts are foreign: nothing else
+    tells which step suits them.
+    """
+    if not system.foreign_parts or not system.connections:
+        return None
+    if asked.tolerance is not None:
+        return asked.tolerance if asked.algorithm is None or not asked.algorithm.adaptive else None
+    unknown = asked.step is None and asked.algorithm is None and asked.probe
+    return _DEFAULT if unknown and len(system.foreign_parts) == len(system.parts) else None
+
+
+def searched(
+    system: System,
+    scene: Scene,
+    asked: Asked,
+    tolerance: float,
+    progress: bool | Progress = False,
+    recorded: Callable[[Result], None] | None = None,
+) -> Coupled:
+    """Run a prepared system with the longest step that meets a tolerance.
+
+    Args:
+        system, scene: see `coupled`.
+        asked: of the coupling; its step is the first one.
+        tolerance: relative error of the group of channels that errs most [1].
+        progress, recorded: see `coupled`; the records of each better run replace those before.
+
+    Returns:
+        The last run that ended well, with its verification; a note says which step was found, or
+        what was reached and why not more. The last of all, if none ended well.
+
+    Raises:
+        HerringboneError: see `coupled`, for the first run.
+    """
+    search = _Search(tolerance)
+    step = asked.step or first_step(system, scene)
+    wanted = replace(asked, tolerance=None, warn=False, all_points=True)
+    while not search.why:
+        try:
+            found = coupled(system, scene, replace(wanted, step=step), progress, recorded)
+        except HerringboneError as error:
+            if not search.tried:
+                raise
+            search.why = f"with steps of {step:.3g} s: {error}"
+            break
+        wanted = replace(wanted, algorithm=found.algorithm)  # one for all runs, to be compared
+        search.take(found)
+        step = found.recording.step / search.pieces()
+    return search.told() if search.tried else found
+
+
+def first_step(system: System, scene: Scene) -> float:
+    """The longest step that is tried [s]."""
+    own = len(system.foreign_parts) < len(system.parts)
+    longest = scene.t_end / _PIECES
+    return min(longest, _COARSE * LI().default_step) if own else longest
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A run that ended well, and what is known of its error.
+
+    Attributes:
+        found: the run.
+        differences: from the run before; None for the first.
+        power: with which the differences fall.
+        share: the run's error over these differences.
+    """
+
+    found: Coupled
+    differences: Apart | None = None
+    power: float = 1.0
+    share: float = 0.0
+
+    @property
+    def step(self) -> float:
+        """Macro step [s]."""
+        return self.found.recording.step
+
+    @property
+    def apart(self) -> float:
+        """Difference from the run before, of the group that differs most."""
+        return max(self.differences.groups.values(), default=0.0) if self.differences else math.inf
+
+    @property
+    def error(self) -> float:
+        """Of the group that errs most."""
+        return self.share * self.apart if self.differences else math.inf
+
+
+class _Search:
+    """Runs that were tried, and why the search ends.
+
+    Args:
+        tolerance: relative error.
+
+    Attributes:
+        tried: runs that ended well.
+        failed: steps of others [s].
+        why: the search is over; "" while it is not.
+    """
+
+    def __init__(self, tolerance: float) -> None:
+        self._tolerance = tolerance
+        self.tried: list[_Tried] = []
+        self.failed: list[float] = []
+        self.why = ""
+        self._seconds = 0.0
+
+    def take(self, found: Coupled) -> None:
+        """Add a run."""
+        outcome = found.result.outcome
+        self._seconds += found.recording.wall_seconds
+        if outcome.completed:
+            self.tried.append(self._judged(found))
+        else:
+            self.failed.append(found.recording.step)
+        self.why = self._over(outcome, found)
+
+    def pieces(self) -> int:
+        """In how many the last step is to be divided to err half the tolerance."""
+        return int(min(max(math.ceil(self._shorter()), 2), _AT_ONCE))
+
+    def _shorter(self) -> float:
+        if not self.tried or self.tried[-1].differences is None:
+            return 2.0
+        last = self.tried[-1]
+        power = last.power if len(self.tried) > 2 else _MOST
+        return (last.error / (_AIM * self._tolerance)) ** (1.0 / min(max(power, _LEAST), _MOST))
+
+    def _judged(self, found: Coupled) -> _Tried:
+        """A run beside those before."""
+        if not self.tried:
+            return _Tried(found)
+        before, step = self.tried[-1], found.recording.step
+        new = _Tried(found, apart(before.found.every, found.every, found.exchanged))
+        power = 1.0
+        if before.differences is not None:
+            steps = (self.tried[-2].step, before.step, step)
+            power = step_power(before.apart, new.apart, steps)
+        counted = min(max(power, _LEAST), _ROUGH if new.apart > _FAR else _MOST)
+        return replace(new, power=power, share=left_of(before.step, step, counted))
+
+    def _over(self, outcome: Outcome, found: Coupled) -> str:
+        """Why no other step is tried; "" if one is."""
+        flat = len(self.tried) > 3 and all(t.power < _FALLS for t in self.tried[-2:])
+        lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
+        reasons = {
+            "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
+            "an FMU can be instantiated once only": found.once,
+            outcome.message: lost,
+            "met": outcome.completed and self.tried[-1].error <= self._tolerance,
+            "the differences do not fall with the step, as with noise or jumps": flat,
+            f"{_RUNS} runs were made": len(self.tried) + len(self.failed) >= _RUNS,
+        }
+        why = next((reason for reason, holds in reasons.items() if holds), "")
+        return why or self._too_dear(found)
+
+    def _too_dear(self, found: Coupled) -> str:
+        """Why the step that is needed is not begun; "" if it is."""
+        if len(self.tried) < 3:
+            return ""
+        times = self._shorter()
+        seconds = times * found.recording.wall_seconds
+        if seconds < max(_PATIENCE, _TIMES * self._seconds):
+            return ""
+        return (
+            f"the error falls with the power {self.tried[-1].power:.2g} of the step, as where an "
+            f"FMU's own integration changes with it; steps of {found.recording.step / times:.2g} s "
+            f"would take {seconds:.2g} s; --step begins there"
+        )
+
+    def told(self) -> Coupled:
+        """The last run that ended well, with its verification and a note."""
+        last, runs = self.tried[-1], len(self.tried) + len(self.failed)
+        result, found = last.found.result, last.differences
+        size = f"error {last.error:.2g}, " if found else ""
+        note = f"tolerance = {self._tolerance:g}: steps of {last.step:g} s, {size}runs: {runs}"
+        notes = (*result.info.notes, note + self._limit())
+        result = replace(result, info=replace(result.info, notes=notes))
+        if found:
+            verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
+            result = with_coupling_row(replace(result, verification=verification))
+        return last.found._replace(result=result)
+
+    def _limit(self) -> str:
+        """What kept the search from the tolerance, if anything did."""
+        last = self.tried[-1]
+        if last.differences is None:
+            return f"; its error is not known: {self.why}"
+        if last.error > self._tolerance:
+            return f"; not met: {self.why}"
+        if len(self.tried) > 2:
+            return ""
+        longer = (
+            f"{max(self.failed):g} s is not stable" if self.failed else "no longer one is tried"
+        )
+        return f"; a step longer than {self.tried[0].step:g} s is of no use here: {longer}"
