@@ -40,8 +40,11 @@ _LEAST, _MOST, _ROUGH = 0.5, 2.0, 1.0
 """Powers that count: least, most, and most where two runs are far apart."""
 _FAR = 0.3
 """Difference of two runs above which the longer step follows no power."""
+_BLIND = 4.0
+"""What the step is divided by as long as nothing is known."""
 _FALLS = 0.3
-"""Power below which the difference of two runs does not fall with their steps."""
+"""Power below which the difference of two runs does not fall with their steps. Two such runs near
+each other tell, or three that are far apart, as those are where long steps are nearly unstable."""
 _PATIENCE, _TIMES = 60.0, 30.0
 """A run is not begun if it takes longer [s], and so many times as long as all before."""
 
@@ -176,6 +179,8 @@ class _Search:
         if not self.tried or self.tried[-1].differences is None:
             return 2.0
         last = self.tried[-1]
+        if last.apart > _FAR:
+            return _BLIND
         power = last.power if len(self.tried) > 2 else _MOST
         return (last.error / (_AIM * self._tolerance)) ** (1.0 / min(max(power, _LEAST), _MOST))
 
@@ -194,7 +199,10 @@ class _Search:
 
     def _over(self, outcome: Outcome, found: Coupled) -> str:
         """Why no other step is tried; "" if one is."""
-        flat = len(self.tried) > 3 and all(t.power < _FALLS for t in self.tried[-2:])
+        patience = 2 if self.tried and self.tried[-1].apart < _FAR else 3
+        flat = len(self.tried) > 1 + patience and all(
+            t.power < _FALLS for t in self.tried[-patience:]
+        )
         lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
         reasons = {
             "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
@@ -209,7 +217,7 @@ class _Search:
 
     def _too_dear(self, found: Coupled) -> str:
         """Why the step that is needed is not begun; "" if it is."""
-        if len(self.tried) < 3:
+        if len(self.tried) < 3 or self.tried[-1].apart > _FAR:
             return ""
         times = self._shorter()
         seconds = times * found.recording.wall_seconds
