@@ -9,6 +9,7 @@ from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
+from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
@@ -95,8 +96,10 @@ def simulate(
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
-    loop = initialise(network, prepared.degree, grid.step * grid.count, watch)
-    run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
+    others = OtherSignals(network)
+    loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others)
+    notes = [*settle_derivatives(network, prepared), *others.notes]
+    run = Run(network, prepared, grid, watch, notes, others)
     if loop is None:
         run.loop_notes = tuple(
             f"the motion of {parts[p].name} depends directly on forces, which does not show in "

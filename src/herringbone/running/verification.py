@@ -94,8 +94,7 @@ def compared_with(result: Result, finer: pd.DataFrame, step: float) -> Verificat
         step: of that run [s].
     """
     groups: Mapping[str, list[str]] = {n: result.channel(n) for n in result.channels}
-    columns = [c for c in result.data.columns if c != TIME]
-    groups = groups or {_ALL: columns}
+    groups = groups or {_ALL: result.signals}
     ours, theirs = _common(result.data, finer)
     pooled = {
         name: _WHOLE * relative_error(ours[names].to_numpy(), theirs[names].to_numpy())
