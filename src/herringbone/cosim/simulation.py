@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from herringbone.core import ParameterError
+from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
@@ -13,7 +13,7 @@ from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
-from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
 
@@ -88,6 +88,7 @@ def simulate(
         HerringboneError: a part refuses to initialise.
     """
     network = build_network(system, parts).with_slow(slow or {})
+    _check_units(network)
     if network.slow:
         check_multirate(algorithm)
         grid = _common(grid, math.lcm(*network.slow.values()))
@@ -107,6 +108,18 @@ def simulate(
             for p in sorted(network.feedthrough)
         )
     return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
+
+
+def _check_units(network: Network) -> None:
+    """Check that parts exchange doubles in the same units; raises StructureError."""
+    for c in network.connections:
+        if (c.factor, c.offset) != (1.0, 0.0):
+            source, target = network.parts[c.source], network.parts[c.target]
+            raise StructureError(
+                f"connection '{source.name}.{c.output}' -> '{target.name}.{c.input}': units "
+                f"differ, '{source.variables[c.output].unit}' and "
+                f"'{target.variables[c.input].unit}'; give the parts in SI units (in_si_units)"
+            )
 
 
 def _common(grid: Grid, multiple: int) -> Grid:

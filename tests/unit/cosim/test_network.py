@@ -123,13 +123,14 @@ def test_units_of_one_dimension_are_converted_by_their_definitions():
     assert factor * 100.0 + offset == pytest.approx(212.0, rel=1e-14)
 
 
-def test_parts_that_are_not_in_si_units_are_refused():
+def test_parts_that_are_not_in_si_units_keep_their_conversion():
     si, milli = (1.0, 0.0, (("m", 1),)), (1e-3, 0.0, (("m", 1),))
     parts = [
         FakePart("p").real("y", "output", "m", dimension=si),
         FakePart("q").real("u", "input", "mm", dimension=milli),
     ]
-    refused("units differ, 'm' and 'mm'; open the parts with", parts, ("p.y", "q.u"))
+    (found,) = network(parts, ("p.y", "q.u")).connections
+    assert (found.factor, found.offset) == (1e3, 0.0)
 
 
 def test_unit_without_definition_is_refused():

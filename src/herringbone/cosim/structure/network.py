@@ -57,8 +57,13 @@ class Network:
         names = [self.parts[p].name for p in self.bodies if p not in self.feedthrough]
         return f"{', '.join(names)} can be slow" if names else "no part here can be slow"
 
+    @property
+    def every_connection(self) -> tuple[Connection, ...]:
+        """Connections of all types."""
+        return (*self.connections, *self.others)
+
     def inputs(self, part: int) -> list[Connection]:
-        """Connections that feed a part."""
+        """Connections of doubles that feed a part."""
         return [c for c in self.connections if c.target == part]
 
     def with_slow(self, multiples: Mapping[str, int]) -> "Network":
@@ -267,11 +272,6 @@ def _connection(
     factor, offset = 1.0, 0.0
     if source.unit is not None and target.unit is not None:
         factor, offset = unit_conversion(source, target, where)
-        if source.is_real and target.is_real and (factor, offset) != (1.0, 0.0):
-            raise StructureError(
-                f"connection {where}: units differ, '{source.unit}' and '{target.unit}'; "
-                "open the parts with in_si_units"
-            )
     elif source.is_real or target.is_real:
         between = tuple(sorted((output[0].name, input_[0].name)))
         unchecked.setdefault(between, []).append(where)
