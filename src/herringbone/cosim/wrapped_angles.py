@@ -27,8 +27,13 @@ def wrapped_angles(
         names: `instance.variable` (m).
         variables: of them (m).
         times: of the records (n,) [s].
-        values: recorded, in SI units (n, m).
+        values: recorded, in the units of the variables (n, m).
     """
+
+    def in_si(k: int) -> np.ndarray:
+        factor, offset, _ = variables[k].dimension or (1.0, 0.0, ())
+        return factor * values[:, k] + offset
+
     place = {name: k for k, name in enumerate(names)}
     found = []
     for k, (name, v) in enumerate(zip(names, variables, strict=True)):
@@ -36,8 +41,8 @@ def wrapped_angles(
         if v.rate is not None or not (angle or v.unit == "rad") or times.size < _FEWEST:
             continue
         rate = named_rate(name, place)
-        speed = None if rate is None else values[:, place[rate]]
-        if jumps := _jumps(times, values[:, k], speed):
+        speed = None if rate is None else in_si(place[rate])
+        if jumps := _jumps(times, in_si(k), speed):
             more = f" and at {len(jumps) - 1} more times" if len(jumps) > 1 else ""
             found.append(
                 f"{name} jumps by a turn at {times[jumps[0]]:.6g} s{more}: the part wraps its "

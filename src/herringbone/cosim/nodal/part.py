@@ -43,7 +43,9 @@ class NodalPart:
                 v = replace(v, dependencies=passed[name])
             for node in range(NODES + 1):
                 own = name if node == 0 else node_name(name, node)
-                found[own] = replace(v, name=own, reference=number * STRIDE + node)
+                array = "" if node else v.array
+                reference = number * STRIDE + node
+                found[own] = replace(v, name=own, reference=reference, array=array)
         return found
 
     def _make_memory(self, pieces: int) -> np.ndarray:
