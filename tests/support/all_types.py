@@ -43,6 +43,7 @@ def description(abilities: str = "") -> str:
 <TypeDefinitions><EnumerationType name="Gear"><Item name="first" value="1"/>
 <Item name="second" value="2"/></EnumerationType></TypeDefinitions>
 <ModelVariables>
+<Float64 name="time" valueReference="999" causality="independent"/>
 {pairs}
 <UInt64 name="n" valueReference="200" causality="structuralParameter" variability="fixed"
  start="2"/>

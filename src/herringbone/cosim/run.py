@@ -141,12 +141,11 @@ class Run:
                 return self._outcome_at_end(reached)
             message = f"stopped at {reached:g} s; results so far are kept"
             return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
+        if (end := self._ended(status, culprit)) is not None:
+            return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
         if status in _PROBLEMS:
             return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
-        if status == PART_FAILED and (end := part.ended()) is not None:
-            message = f"{part.name} ended the simulation at {end:g} s"
-            return Outcome(OutcomeKind.ENDED, max(end, reached), part.name, message)
         part.failed()
         said = "; ".join(part.messages())
         where, value = self._diverged(culprit)
@@ -160,6 +159,16 @@ class Run:
             return Outcome(OutcomeKind.DIVERGED, reached, where, message)
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    def _ended(self, status: int, culprit: int) -> Outcome | None:
+        """The end that a part asked for; None if none did."""
+        every = self.network.parts
+        asked = {PART_FAILED: every[culprit : culprit + 1], COUPLING_FAILED: every}
+        for part in asked.get(status, ()):
+            if (end := part.ended()) is not None:
+                message = f"{part.name} ended the simulation at {end:g} s"
+                return Outcome(OutcomeKind.ENDED, end, part.name, message)
+        return None
 
     def _outcome_at_end(self, reached: float) -> Outcome:
         """Completed, unless the coupling was seen to add energy without end."""

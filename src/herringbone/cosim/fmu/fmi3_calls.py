@@ -39,6 +39,7 @@ MEMORY = np.dtype(
         ("array_count", np.int64),
         ("calls", np.int64),
         ("ended", np.int64),
+        ("saved", np.int64),
         ("reached", np.int64),
         ("events", np.int64),
         ("enter_events", np.int64),
@@ -52,10 +53,10 @@ MEMORY = np.dtype(
 instance, and the addresses of its functions; count of elements; addresses of the elements, of their
 last values (float64), and of the value references (uint32) and values (float64) of the current
 call, and of the first elements of the inputs that are arrays (uint32), with their number; number of
-calls; ended: why no step follows, see `ENDED`; address of the time reached by the last step
-(float64); events: 1 in step mode if event mode is used; addresses of fmi3EnterEventMode,
-fmi3UpdateDiscreteStates and fmi3EnterStepMode; address of the flags that they return (uint8 and,
-from the eighth on, float64).
+calls; ended: why no step follows, see `ENDED`; saved: the same, of the state saved last; address of
+the time reached by the last step (float64); events: 1 in step mode if event mode is used; addresses
+of fmi3EnterEventMode, fmi3UpdateDiscreteStates and fmi3EnterStepMode; address of the flags that
+they return (uint8 and, from the eighth on, float64).
 """
 ELEMENT = np.dtype(
     [
@@ -309,6 +310,7 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
 def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2GetFMUstate."""
     part = carray(memory, 1)[0]
+    part.saved = part.ended
     return state_call(part.get_state, part.instance, handle)
 
 
@@ -318,7 +320,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     whole = carray(memory, 1)
     part = whole[0]
     status = state_call(part.set_state, part.instance, state)
-    part.ended = RUNS
+    part.ended = part.saved
     if status == OK and part.array_count > 0:
         arrays = carray(at_address(part.arrays), part.array_count, np.uint32)
         return _update(whole, arrays, part.array_count)

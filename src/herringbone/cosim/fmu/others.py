@@ -28,7 +28,7 @@ class OtherValues:
         self._fmi3 = is_fmi3(model)
         self._elements: dict[str, Element] = {e.name: e for e in read_others(model)}
         self._kept: dict[int, list[Value]] = {}
-        self._plans: dict[tuple[str, ...], list[tuple[str, list[int], int, list[int]]]] = {}
+        self._plans: dict[tuple[str, ...], list[tuple[str, list[int], list[str]]]] = {}
 
     def write(self, slave: Any, values: Mapping[str, Value]) -> None:  # noqa: ANN401 (fmpy)
         """Set variables, one call for each; raises FMICallException."""
@@ -61,24 +61,20 @@ class OtherValues:
         wanted = tuple(names)
         if wanted not in self._plans:
             self._plans[wanted] = self._plan(wanted)
-        found: dict[int, Value] = {}
-        for function, references, count, places in self._plans[wanted]:
+        found: dict[str, Value] = {}
+        for function, references, elements in self._plans[wanted]:
             getter = getattr(slave, f"get{function}")
-            values = getter(references, count) if self._fmi3 else getter(references)
+            values = getter(references, len(elements)) if self._fmi3 else getter(references)
             if function == "Boolean":
                 values = [bool(value) for value in values]
             elif function == "String":  # fmpy decodes those of FMI 3.0 only
                 values = [v.decode("utf-8") if isinstance(v, bytes) else v for v in values]
-            found.update((place, values[k]) for k, place in enumerate(places) if place >= 0)
-        return [found[place] for place in range(len(wanted))]
+            found.update(zip(elements, values, strict=True))
+        return [found[name] for name in wanted]
 
-    def _plan(self, names: tuple[str, ...]) -> list[tuple[str, list[int], int, list[int]]]:
-        """By type: function, value references, number of values, and the place of each in `names`.
-
-        -1 is the place of an element that is not wanted.
-        """
+    def _plan(self, names: tuple[str, ...]) -> list[tuple[str, list[int], list[str]]]:
+        """By type: function, value references of the variables, and names of their elements."""
         by_type: dict[str, dict[int, Element]] = {}
-        place = {name: k for k, name in enumerate(names)}
         for name in names:
             element = self._elements[name]
             function = self._function(element.variable)
@@ -86,9 +82,8 @@ class OtherValues:
         every = list(self._elements.values())
         found = []
         for function, variables in by_type.items():
-            own = [e for v in variables.values() for e in every[v.first : v.first + v.size]]
-            places = [place.get(e.name, -1) for e in own]
-            found.append((function, list(variables), len(own), places))
+            own = [e.name for v in variables.values() for e in every[v.first : v.first + v.size]]
+            found.append((function, list(variables), own))
         return found
 
     def _function(self, variable: ModelVariable) -> str:
