@@ -21,18 +21,19 @@ def compiler() -> list[str]:
 
 
 def compiled_fmu(source: Path, description: str, folder: Path) -> Path:
-    """An FMU 2.0 of this platform, named as its source.
+    """An FMU of this platform, named as its source.
 
     Args:
         source: the C file.
-        description: its modelDescription.xml.
+        description: its modelDescription.xml, of FMI 2.0 or 3.0.
         folder: where it is made.
     """
     library = folder / f"{source.stem}{fmpy.sharedLibraryExtension}"
     command = [*compiler(), "-O2", "-shared", "-fPIC", "-o", str(library), str(source)]
     subprocess.run(command, check=True, capture_output=True)
     file = folder / f"{source.stem}.fmu"
+    platform = fmpy.platform_tuple if 'fmiVersion="3' in description else fmpy.platform
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("modelDescription.xml", description)
-        archive.write(library, f"binaries/{fmpy.platform}/{library.name}")
+        archive.write(library, f"binaries/{platform}/{library.name}")
     return file

@@ -210,6 +210,10 @@ class CallbackPart:
         """Compute the outputs of the start."""
         self.out()
 
+    def ended(self):
+        """It never asks to end the simulation."""
+        return None
+
     def failed(self):
         """Nothing follows from it."""
 

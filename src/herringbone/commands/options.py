@@ -1,6 +1,7 @@
 """What several commands share: how they are declared, their options, and what these stand for."""
 
 import argparse
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -8,6 +9,8 @@ from typing import Any, NamedTuple
 from herringbone.core import ParameterError
 
 _SET = "INSTANCE.VARIABLE=VALUE"
+_WHOLE = 2.0**53
+"""Up to here doubles hold all whole numbers."""
 
 
 def add_command(
@@ -53,12 +56,15 @@ def add_start_values(sub: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar=_SET,
-        help="start value in SI units, instead of the scene's; may be repeated",
+        help="start value in SI units, of an FMU in its own, instead of the scene's; may be "
+        "repeated",
     )
 
 
 def start_values(items: Sequence[str]) -> dict[str, float | str]:
     """Numbers where they read as numbers, text otherwise, by `instance.variable`.
+
+    Whole numbers that no double holds stay as they are; quotes make a number a text.
 
     Raises:
         ParameterError: an item is no assignment.
@@ -66,10 +72,22 @@ def start_values(items: Sequence[str]) -> dict[str, float | str]:
     found: dict[str, float | str] = {}
     for name, text in assignments(items, "--set", _SET).items():
         try:
-            found[name] = float(text)
+            found[name] = _number(text)
         except ValueError:
-            found[name] = text
+            quoted = len(text) > 1 and text[0] == text[-1] == '"'
+            found[name] = text[1:-1] if quoted else text
     return found
+
+
+def _number(text: str) -> float:
+    """A number of a text, without loss; raises ValueError."""
+    value = float(text)
+    if abs(value) < _WHOLE or math.isinf(value):
+        return value
+    try:
+        return int(text)
+    except ValueError:
+        return value
 
 
 class PartFiles(NamedTuple):

@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import Instance
+from herringbone.core import Instance, ParameterError
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaration import Declaration, node_name
-from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.part import Addresses, Given, PartVariable, Value
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality
 from herringbone.kernels import fmi_calls
@@ -122,8 +122,10 @@ class InProcessPart:
         self._states[-1][0] = count
         return self._states[-1].ctypes.data
 
-    def set(self, name: str, value: float | str) -> None:
+    def set(self, name: str, value: Given) -> None:
         """Set a variable; raises ParameterError."""
+        if not isinstance(value, float | int | str):
+            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a number or a text")
         self.instance.set(name, value)
         self._stale = self._start_time is not None
 
@@ -131,6 +133,15 @@ class InProcessPart:
         """Values of real variables; in initialisation mode they belong to the inputs just set."""
         self._refresh()
         return [self.instance[name] for name in names]
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """Set variables; raises ParameterError."""
+        for name, value in values.items():
+            self.set(name, float(value))
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """Texts, which are all that is not real."""
+        return [self.instance.texts[name] for name in names]
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Compute initial outputs; raises ParameterError, ResourceError."""
@@ -150,6 +161,9 @@ class InProcessPart:
 
     def failed(self) -> None:
         """Nothing to be told: it has nothing to free."""
+
+    def ended(self) -> None:
+        """It never asks to end the simulation."""
 
     def messages(self) -> list[str]:
         """What went wrong, if something did; else what it takes."""

@@ -8,6 +8,7 @@ class OutcomeKind(StrEnum):
     """The ways in which a run ends."""
 
     COMPLETED = "completed"
+    ENDED = "ended_by_part"
     INTERRUPTED = "interrupted"
     UNSTABLE = "unstable"
     DIVERGED = "diverged"
@@ -18,6 +19,7 @@ class OutcomeKind(StrEnum):
 
 EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
+    OutcomeKind.ENDED: 0,
     OutcomeKind.UNSTABLE: 1,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,

@@ -7,6 +7,13 @@ from typing import NamedTuple, Protocol
 
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 
+Value = float | str | bytes
+"""Value of a variable of any FMI type; also an int or a bool."""
+Given = Value | Sequence[Value]
+"""What a variable may be set to: an array takes all its values."""
+STRUCTURE = "structuralParameter"
+"""Causality of what decides how large arrays are."""
+
 
 @dataclass(frozen=True, slots=True)
 class PartVariable:
@@ -20,9 +27,13 @@ class PartVariable:
         unit: unit name, None if none is declared.
         dimension: factor, offset and base-unit exponents, for comparing units; None if unknown.
         dependencies: inputs on which an output depends directly; None if not declared.
-        type: FMI type; arrays with their shape, such as "Float64[3]".
+        type: FMI type; of an array's element that of the array.
         rate: output that is the time derivative of this output, "" if there is none; None if the
             part does not declare it, see `cosim.structure.rates`.
+        array: name of the array of which it is an element, "" for a scalar.
+        items: numbers of an enumeration by their names.
+        own_unit: of a signal that is converted to SI units: its own unit, the factor and the
+            offset; it is recorded in that.
     """
 
     name: str
@@ -33,10 +44,13 @@ class PartVariable:
     dependencies: frozenset[str] | None = None
     type: str = "Real"
     rate: str | None = None
+    array: str = ""
+    items: tuple[tuple[str, int], ...] = ()
+    own_unit: tuple[str, float, float] | None = None
 
     @property
     def is_real(self) -> bool:
-        """True for scalars of double precision, the only variables that can be connected."""
+        """True for numbers of double precision, which the compiled loops exchange."""
         return self.type in {"Real", "Float64"}
 
 
@@ -88,11 +102,17 @@ class Part(Protocol):
     def new_state(self) -> int:
         """Handle that fmi2GetFMUstate is given first: 0, or memory that the part provides."""
 
-    def set(self, name: str, value: float | str) -> None:
-        """Set a variable; raises ParameterError."""
+    def set(self, name: str, value: Given) -> None:
+        """Set a variable before or during initialisation; raises ParameterError."""
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables."""
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """Set variables that are not of the loops at a communication point; raises FmuError."""
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """Values of variables of other types than real; raises FmuError."""
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Go to initialisation mode; start values have been set."""
@@ -102,6 +122,9 @@ class Part(Protocol):
 
     def failed(self) -> None:
         """A step of the part failed, so that FMI allows nothing but to free it."""
+
+    def ended(self) -> float | None:
+        """Time at which the part asked to end the simulation [s]; None if it did not."""
 
     def messages(self) -> list[str]:
         """Messages that the part logged since the last call."""

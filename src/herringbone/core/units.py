@@ -1,5 +1,6 @@
 """The units that variables may carry, as exponents of kg, m, s and rad."""
 
+from collections.abc import Iterable
 from typing import Final
 
 from herringbone.core.errors import StructureError
@@ -45,6 +46,12 @@ RATES: Final = {
 def quantity(value: float, unit: str) -> str:
     """A value with its unit, for messages; the unit 1 is left out."""
     return f"{value:g}" if unit == "1" else f"{value:g} {unit}"
+
+
+def si_name(powers: Iterable[tuple[str, float]]) -> str:
+    """The first of `UNITS` with these exponents, "" if there is none."""
+    wanted = dict(powers)
+    return next((name for name, found in UNITS.items() if found == wanted), "")
 
 
 def base_exponents(unit: str) -> dict[str, float]:

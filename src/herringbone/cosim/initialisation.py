@@ -5,11 +5,16 @@ from collections.abc import Sequence
 from herringbone.core.declaration import node_name
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, measure_loop, solve_loop
 from herringbone.cosim.energy.watch import EnergyWatch
+from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.structure.network import Network
 
 
 def initialise(
-    network: Network, degrees: Sequence[int], t_end: float, watch: EnergyWatch
+    network: Network,
+    degrees: Sequence[int],
+    t_end: float,
+    watch: EnergyWatch,
+    others: OtherSignals,
 ) -> AlgebraicLoop | None:
     """Enter and leave initialisation; outputs are propagated bodies -> elements -> bodies.
 
@@ -18,6 +23,7 @@ def initialise(
         degrees: nodes of each part's inputs.
         t_end: end of the run [s].
         watch: of the energy; it begins with the first outputs.
+        others: signals of other types than real.
 
     Returns:
         The algebraic loop, solved, if there is one.
@@ -29,10 +35,11 @@ def initialise(
     for part in parts:
         part.enter_initialization(0.0, t_end)
     _hold_unconnected_inputs(network, degrees)
-    for target in (*network.elements, *network.bodies, *network.slow):
-        for c in network.inputs(target):
-            value = parts[c.source].get([c.output])[0]
-            parts[target].set(c.input, value)
+    _propagate(network)
+    for _ in network.others:  # a chain of them is as long at the most
+        if not others.exchange():
+            break
+        _propagate(network)
     loop = measure_loop(network)
     if loop is not None:
         solve_loop(network, loop)
@@ -40,6 +47,13 @@ def initialise(
     for part in parts:
         part.exit_initialization()
     return loop
+
+
+def _propagate(network: Network) -> None:
+    for target in (*network.elements, *network.bodies, *network.slow):
+        for c in network.inputs(target):
+            value = network.parts[c.source].get([c.output])[0]
+            network.parts[target].set(c.input, value)
 
 
 def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:

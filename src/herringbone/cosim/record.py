@@ -35,6 +35,12 @@ class Record(Protocol):
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows that are complete after `done` units of the grid."""
 
+    def complete(self, done: int) -> int:
+        """Number of these rows."""
+
+    def until_row(self, done: int) -> int:
+        """Units of the grid in which no row but at their end is completed."""
+
     def step(self, times: np.ndarray) -> float:
         """Time between rows, or its mean [s]."""
 
@@ -70,7 +76,15 @@ class UniformRecord:
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows after `done` macro steps."""
-        return np.arange(done // self._grid.every + 1) * self.step(np.empty(0))
+        return np.arange(self.complete(done)) * self.step(np.empty(0))
+
+    def complete(self, done: int) -> int:
+        """Number of rows after `done` macro steps."""
+        return done // self._grid.every + 1
+
+    def until_row(self, done: int) -> int:
+        """Macro steps up to the next row."""
+        return self._grid.every - done % self._grid.every
 
     def step(self, times: np.ndarray) -> float:
         """Time between rows [s]."""
@@ -94,6 +108,16 @@ class GrowingRecord:
         """Times [s] of the rows written."""
         del done
         return self.row_times[: self.rows]
+
+    def complete(self, done: int) -> int:
+        """Number of rows written."""
+        del done
+        return self.rows
+
+    def until_row(self, done: int) -> int:
+        """One: any step may complete a row."""
+        del done
+        return 1
 
     def step(self, times: np.ndarray) -> float:
         """Mean time between rows [s]; 0 with one row."""

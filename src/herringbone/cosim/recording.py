@@ -45,6 +45,7 @@ class Recording:
         steps: of an adaptive run, the lengths of its macro steps.
         energy: what the coupling added; None where no element has dampers.
         slow: bodies that step once in several macro steps, and in how many.
+        others: recorded outputs of other types than real, (n,) of their own types by name.
     """
 
     time: np.ndarray
@@ -62,3 +63,4 @@ class Recording:
     steps: StepStatistics | None = None
     energy: EnergyReport | None = None
     slow: Mapping[str, int] = field(default_factory=dict)
+    others: Mapping[str, np.ndarray] = field(default_factory=dict)

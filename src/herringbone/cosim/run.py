@@ -14,10 +14,20 @@ from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
 from herringbone.cosim.loops.adaptive import STEP_LIMIT
-from herringbone.cosim.loops.common import BOUND, COUPLING_FAILED, DONE, NOT_FINITE, get_all
+from herringbone.cosim.loops.common import (
+    BOUND,
+    COUPLING_FAILED,
+    DONE,
+    NOT_FINITE,
+    PART_FAILED,
+    get_all,
+)
+from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.units import in_own_units, own_unit
+from herringbone.cosim.wrapped_angles import wrapped_angles
 
 CHUNK_SECONDS = 0.05
 """Wall time between looks at the interrupt flag, as long as the cost of a step stays the same."""
@@ -39,6 +49,7 @@ class Run:
         grid: communication and record points.
         watch: of the energy.
         notes: on how signals travel.
+        others: signals of other types than real.
     """
 
     def __init__(
@@ -48,18 +59,18 @@ class Run:
         grid: Grid,
         watch: EnergyWatch,
         notes: Sequence[str],
+        others: OtherSignals,
     ) -> None:
         self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
+        self.others = others
         self.grid = grid = prepared.grid(grid)
         names = record_names(network)
         self.names = tuple(
             f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
         )
-        self.units = tuple(
-            part.variables[n].unit or ""
-            for part, ns in zip(network.parts, names, strict=True)
-            for n in ns
-        )
+        self._recorded = [
+            part.variables[n] for part, ns in zip(network.parts, names, strict=True) for n in ns
+        ]
         self.record = prepared.record(grid, len(self.names))
         self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
@@ -85,14 +96,17 @@ class Run:
         """Run chunk after chunk."""
         get_all(self.prepared.layout, self.history, self.record.values, 0)
         self.history[1:] = self.history[0]
+        self.others.sample(1)
         done, status, culprit, chunk = 0, DONE, -1, 1
         self._advance(0, 0)  # compiles the loop, or loads it from the cache
         begin = time.perf_counter()
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
                 before, started = done, time.perf_counter()
-                count = min(chunk, self.grid.count - done)
+                count = self._until_others(done, min(chunk, self.grid.count - done))
                 status, done, culprit = self._advance(done, count)
+                if status == DONE and done > before:
+                    self._exchange_others(done)
                 rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
@@ -100,6 +114,18 @@ class Run:
         wall = time.perf_counter() - begin
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
+
+    def _until_others(self, done: int, count: int) -> int:
+        """Steps of the loop until signals of other types are wanted."""
+        if self.others.connected:
+            return 1
+        return min(count, self.record.until_row(done)) if self.others.recorded else count
+
+    def _exchange_others(self, done: int) -> None:
+        """Record signals of other types, and bring them to their inputs."""
+        self.others.sample(self.record.complete(done))
+        if self.others.connected and done < self.grid.count:
+            self.others.exchange()
 
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
         grid = self.grid
@@ -115,6 +141,8 @@ class Run:
                 return self._outcome_at_end(reached)
             message = f"stopped at {reached:g} s; results so far are kept"
             return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
+        if (end := self._ended(status, culprit)) is not None:
+            return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
         if status in _PROBLEMS:
             return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
@@ -131,6 +159,16 @@ class Run:
             return Outcome(OutcomeKind.DIVERGED, reached, where, message)
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    def _ended(self, status: int, culprit: int) -> Outcome | None:
+        """The end that a part asked for; None if none did."""
+        every = self.network.parts
+        asked = {PART_FAILED: every[culprit : culprit + 1], COUPLING_FAILED: every}
+        for part in asked.get(status, ()):
+            if (end := part.ended()) is not None:
+                message = f"{part.name} ended the simulation at {end:g} s"
+                return Outcome(OutcomeKind.ENDED, end, part.name, message)
+        return None
 
     def _outcome_at_end(self, reached: float) -> Outcome:
         """Completed, unless the coupling was seen to add energy without end."""
@@ -165,14 +203,17 @@ class Run:
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         times = self.record.times(done)
         values = self.record.values[: times.size]
-        if not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
+        if outcome.kind is OutcomeKind.ENDED and len(self.network.parts) == 1:
+            times, values = self._with_end(times, values, outcome.time)
+        elif not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
             rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
             times, values = times[:rows], values[:rows]
+        notes = wrapped_angles(self.names, self._recorded, times, values)
         return Recording(
             times,
-            values,
+            in_own_units(self._recorded, values),
             self.names,
-            self.units,
+            tuple(own_unit(v) for v in self._recorded),
             outcome,
             self._step(done),
             self.record.step(times),
@@ -182,11 +223,23 @@ class Run:
             ),
             self.prepared.rollbacks,
             wall,
-            (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes),
+            (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes, *notes),
             self.prepared.steps,
             self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
+            self.others.columns(times.size),
         )
+
+    def _with_end(
+        self, times: np.ndarray, values: np.ndarray, end: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The rows, and the state in which the only part ended between communication points."""
+        part = self.network.parts[0]
+        if end <= times[-1]:
+            return times, values
+        self.others.sample(times.size + 1)
+        last = np.array(part.get([v.name for v in self._recorded]), dtype=float)
+        return np.append(times, end), np.vstack([values, last])
 
     def _step(self, done: int) -> float:
         """Macro step, or its mean [s]."""

@@ -3,16 +3,17 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from herringbone.core import ParameterError
+from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
+from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
-from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
 
@@ -87,6 +88,7 @@ def simulate(
         HerringboneError: a part refuses to initialise.
     """
     network = build_network(system, parts).with_slow(slow or {})
+    _check_units(network)
     if network.slow:
         check_multirate(algorithm)
         grid = _common(grid, math.lcm(*network.slow.values()))
@@ -95,8 +97,10 @@ def simulate(
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
-    loop = initialise(network, prepared.degree, grid.step * grid.count, watch)
-    run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
+    others = OtherSignals(network)
+    loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others)
+    notes = [*settle_derivatives(network, prepared), *others.notes]
+    run = Run(network, prepared, grid, watch, notes, others)
     if loop is None:
         run.loop_notes = tuple(
             f"the motion of {parts[p].name} depends directly on forces, which does not show in "
@@ -104,6 +108,18 @@ def simulate(
             for p in sorted(network.feedthrough)
         )
     return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
+
+
+def _check_units(network: Network) -> None:
+    """Check that parts exchange doubles in the same units; raises StructureError."""
+    for c in network.connections:
+        if (c.factor, c.offset) != (1.0, 0.0):
+            source, target = network.parts[c.source], network.parts[c.target]
+            raise StructureError(
+                f"connection '{source.name}.{c.output}' -> '{target.name}.{c.input}': units "
+                f"differ, '{source.variables[c.output].unit}' and "
+                f"'{target.variables[c.input].unit}'; give the parts in SI units (in_si_units)"
+            )
 
 
 def _common(grid: Grid, multiple: int) -> Grid:

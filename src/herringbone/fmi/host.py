@@ -98,7 +98,9 @@ class Host(_SteppedPart, Fmu2Part):
 
 
 class Host3(_SteppedPart, Fmu3Part):
-    """One instance of an FMU 3.0 that is stepped by calls from Python."""
+    """One instance of an FMU 3.0 that is stepped by calls from Python, without event mode."""
+
+    with_events = False
 
     def step(self, time: float, step_size: float) -> None:
         """Advance from `time` by `step_size` [s].

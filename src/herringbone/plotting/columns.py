@@ -4,7 +4,7 @@ from matplotlib.figure import Figure
 
 from herringbone.plotting.panels import headline, time_panel
 from herringbone.plotting.style import legend_beside, new_figure, scaled_unit, styled
-from herringbone.result.result import TIME, Result
+from herringbone.result.result import Result
 
 _CHARACTER = 0.068
 """Width of a character in a legend [inch]."""
@@ -39,7 +39,7 @@ def plot_columns(result: Result, *patterns: str) -> Figure:
 @styled
 def generic_overview(result: Result) -> Figure:
     """The first columns of each unit, for systems of which nothing else is known."""
-    columns = _by_unit(result, [c for c in result.data.columns if c != TIME])
+    columns = _by_unit(result, result.signals)
     shown = {unit: names[:MOST_LINES] for unit, names in list(columns.items())[:_MOST_UNITS]}
     count, total = sum(map(len, shown.values())), result.data.shape[1] - 1
     what = "Results" if count == total else f"Results, {count} of {total} columns"

@@ -81,7 +81,9 @@ class Result(Facts):
     """Recorded outputs of a run.
 
     Attributes:
-        data: column `time` [s], then one column per output, `instance.variable`, SI units.
+        data: column `time` [s], then one column per output, `instance.variable`, in its unit;
+            those of other types than real come last: integers, truth values and texts as such,
+            bytes as hexadecimal digits.
         units: unit by column.
         outcome: how the run ended.
         info: how it was computed.
@@ -155,7 +157,14 @@ class Result(Facts):
         if group not in self.channels:
             known = ", ".join(self.channels) or "none"
             raise ParameterError(f"there is no channel group '{group}'; there are: {known}")
-        return self.columns(*self.channels[group])
+        signals = set(self.signals)
+        return [name for name in self.columns(*self.channels[group]) if name in signals]
+
+    @property
+    def signals(self) -> list[str]:
+        """Columns of real outputs."""
+        real = self.data.dtypes == np.float64
+        return [name for name in self.data.columns[real] if name != TIME]
 
     def parts_with(self, role: Role) -> tuple[str, ...]:
         """Names of the parts that have a role, such as `Role.BEARING`."""
@@ -169,10 +178,11 @@ class Result(Facts):
         """
         if self.info.steps is None or len(self.data) < _SPLINE_ROWS:
             return self
-        values = self.data.to_numpy()
+        columns = [TIME, *self.signals]
+        values = self.data[columns].to_numpy()
         time = np.linspace(values[0, 0], values[-1, 0], len(values))
         splines = CubicSpline(values[:, 0], values[:, 1:])
-        data = pd.DataFrame(np.column_stack([time, splines(time)]), columns=self.data.columns)
+        data = pd.DataFrame(np.column_stack([time, splines(time)]), columns=columns)
         return replace(self, data=data)
 
     def plot(self, *patterns: str) -> "Figure":
@@ -186,10 +196,17 @@ class Result(Facts):
         with Path(file).open("w", encoding="utf-8", newline="") as stream:
             units = ", ".join(f"{name} {self.units[name] or '1'}" for name in self.data.columns)
             stream.write(f"# units: {units}\n")
-            csv.writer(stream, lineterminator="\n").writerow(self.data.columns)
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(self.data.columns)
+            plain = len(self.signals) + 1 == self.data.shape[1]
             for first in range(0, len(self.data), _CSV_ROWS):
-                rows = self.data.iloc[first : first + _CSV_ROWS].to_numpy(dtype=float).tolist()
-                stream.write("".join([",".join(map(repr, row)) + "\n" for row in rows]))
+                part = self.data.iloc[first : first + _CSV_ROWS]
+                if plain:
+                    rows = part.to_numpy(dtype=float).tolist()
+                    stream.write("".join([",".join(map(repr, row)) + "\n" for row in rows]))
+                else:
+                    columns = [part[name].tolist() for name in part.columns]
+                    writer.writerows(zip(*columns, strict=True))
 
     def to_parquet(self, file: str | Path) -> None:
         """Write the table as Parquet; needs the extra `tables`.

@@ -10,13 +10,14 @@ from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
 from herringbone.core.files import as_texts, beside, is_file, same_folder
-from herringbone.core.part import Part
+from herringbone.core.part import STRUCTURE, Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
+from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
@@ -120,6 +121,8 @@ def open_parts(system: System, fmu: str) -> list[Part]:
         for spec in system.parts:
             parts.append(_open_part(spec, files))
             _set_values(parts[-1], spec)
+            if spec.foreign and system.connections:
+                parts[-1] = in_si_units(parts[-1])
     except HerringboneError:
         for part in parts:
             part.close()
@@ -129,7 +132,7 @@ def open_parts(system: System, fmu: str) -> list[Part]:
 
 @contextmanager
 def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
-    """A function that makes instances of a foreign part, with its start values.
+    """A function that makes instances of a foreign part, with its start values, in SI units.
 
     It raises HerringboneError if the part cannot be instantiated, or a value is wrong.
     """
@@ -142,14 +145,19 @@ def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
             except HerringboneError:
                 part.close()
                 raise
-            return part
+            return in_si_units(part)
 
         yield with_values
 
 
 def _set_values(part: Part, spec: PartSpec) -> None:
-    for name, value in spec.values.items():
-        part.set(name, value)
+    """Set start values; those first that decide how large arrays are."""
+
+    def later(name: str) -> bool:
+        return name not in part.variables or part.variables[name].causality != STRUCTURE
+
+    for name in sorted(spec.values, key=later):
+        part.set(name, spec.values[name])
 
 
 @contextmanager

@@ -47,6 +47,8 @@ def make_result(
     data = pd.DataFrame(
         np.column_stack([recording.time, recording.values]), columns=[TIME, *recording.names]
     )
+    if recording.others:
+        data = pd.concat([data, pd.DataFrame(dict(recording.others))], axis=1)
     parameters, known = _parameters(system), anatomy(system)
     info = RunInfo(
         system=system.name,
@@ -75,6 +77,7 @@ def make_result(
         anatomy=known,
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
+    units |= dict.fromkeys(recording.others, "")
     return Result(data, units, recording.outcome, info, system.channels)
 
 

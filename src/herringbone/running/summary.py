@@ -22,7 +22,7 @@ from herringbone.analysis.unanswered import unanswered
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import EnergyReport
 from herringbone.core.roles import Quantity, Role
-from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.result.result import Result, RunInfo
 
 _R_MIN = 30.0 / math.pi
 _MM = 1e3
@@ -251,7 +251,9 @@ def _unknown(result: Result) -> Iterator[str]:
 
 def _signals(result: Result) -> Iterator[str]:
     """Moments of the first columns, for systems without channel groups."""
-    columns = [column for column in result.data.columns if column != TIME]
+    columns = result.signals
+    if others := result.data.shape[1] - 1 - len(columns):
+        yield _line("Other types", f"{others} columns of integers, truth values, texts or bytes")
     if result.channels or not columns or not len(result.data):
         return
     width = max(map(len, columns[:_SIGNALS])) + 2

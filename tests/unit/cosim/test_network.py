@@ -1,14 +1,17 @@
 """Every check of a system's connections, with its message."""
 
+import math
 import re
 
 import pytest
 from support.parts import FakePart, Mass, SpringDamper
 
 from herringbone.core import ParameterError, StructureError
+from herringbone.core.part import PartVariable
 from herringbone.cosim.algorithms import GaussSeidel, Predict
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.cosim.structure.units import unit_conversion
 
 
 def network(parts, *connections):
@@ -110,13 +113,32 @@ def test_same_unit_under_two_names():
     assert not network(parts, ("p.y", "q.u")).notes
 
 
-def test_same_dimension_with_another_factor_is_refused():
+def test_units_of_one_dimension_are_converted_by_their_definitions():
+    rpm = PartVariable("y", 0, "output", "r/min", (math.pi / 30.0, 0.0, (("rad", 1), ("s", -1))))
+    speed = PartVariable("u", 0, "input", "rad/s", (1.0, 0.0, (("rad", 1), ("s", -1))))
+    celsius = PartVariable("y", 0, "output", "degC", (1.0, 273.15, (("K", 1),)))
+    fahrenheit = PartVariable("u", 0, "input", "degF", (5 / 9, 459.67 * 5 / 9, (("K", 1),)))
+    assert unit_conversion(rpm, speed, "") == (math.pi / 30.0, 0.0)
+    factor, offset = unit_conversion(celsius, fahrenheit, "")
+    assert factor * 100.0 + offset == pytest.approx(212.0, rel=1e-14)
+
+
+def test_parts_that_are_not_in_si_units_keep_their_conversion():
     si, milli = (1.0, 0.0, (("m", 1),)), (1e-3, 0.0, (("m", 1),))
     parts = [
         FakePart("p").real("y", "output", "m", dimension=si),
         FakePart("q").real("u", "input", "mm", dimension=milli),
     ]
-    refused("units differ, 'm' and 'mm'", parts, ("p.y", "q.u"))
+    (found,) = network(parts, ("p.y", "q.u")).connections
+    assert (found.factor, found.offset) == (1e3, 0.0)
+
+
+def test_unit_without_definition_is_refused():
+    parts = [
+        FakePart("p").real("y", "output", "rpm"),
+        FakePart("q").real("u", "input", "rad/s", dimension=(1.0, 0.0, (("rad", 1), ("s", -1)))),
+    ]
+    refused("'rpm' and 'rad/s', and 'rpm' has no definition by base", parts, ("p.y", "q.u"))
 
 
 def test_undeclared_unit_is_noted():
@@ -125,11 +147,59 @@ def test_undeclared_unit_is_noted():
     assert note == "connection 'p.y' -> 'q.u': a unit is not declared, so it was not checked"
 
 
-def test_only_reals():
+@pytest.mark.parametrize(
+    ("output", "input_", "fit"),
+    [
+        ("Int32", "Int64", True), ("Int64", "Int32", False), ("UInt8", "Int16", True),
+        ("UInt16", "Int16", False), ("Int8", "UInt64", False), ("Integer", "Real", True),
+        ("Int64", "Float64", False), ("UInt32", "Float64", True), ("Int16", "Float32", True),
+        ("Int32", "Float32", False), ("Float32", "Real", True), ("Float64", "Float32", False),
+        ("Boolean", "Integer", False), ("Boolean", "Boolean", True), ("String", "String", True),
+        ("String", "Binary", False), ("Float64", "Int64", False), ("Enumeration", "Int64", True),
+        ("Enumeration", "Int32", False), ("Int32", "Enumeration", False),
+    ],
+)  # fmt: skip
+def test_types_that_lose_nothing_can_be_connected(output, input_, fit):
     parts = [
-        FakePart("p").real("y", "output", type="Integer"), FakePart("q").real("u", "input")
-    ]  # fmt: skip
-    refused("'p.y' -> 'q.u': 'p.y' is of type Integer; only scalars", parts, ("p.y", "q.u"))
+        FakePart("p").real("y", "output", type=output),
+        FakePart("q").real("u", "input", type=input_),
+    ]
+    if fit:
+        found = network(parts, ("p.y", "q.u"))
+        assert len(found.others) == 1
+        assert not found.connections
+    else:
+        said = f"'p.y' -> 'q.u': a {output} does not fit into a {input_} without loss"
+        refused(said, parts, ("p.y", "q.u"))
+
+
+def test_enumerations_of_other_items_are_refused():
+    gears, modes = (("first", 1), ("second", 2)), (("off", 1), ("on", 2))
+    parts = [
+        FakePart("p").real("y", "output", type="Enumeration", items=gears),
+        FakePart("q").real("u", "input", type="Enumeration", items=modes),
+    ]
+    refused("without loss, because their items differ", parts, ("p.y", "q.u"))
+
+
+def vector(name, variable, causality, size):
+    part = FakePart(name)
+    for k in range(1, size + 1):
+        part.real(f"{variable}[{k}]", causality, type="Float64", array=variable)
+    return part
+
+
+def test_arrays_of_one_shape_are_connected_element_by_element():
+    parts = [vector("p", "y", "output", 3), vector("q", "u", "input", 3)]
+    found = network(parts, ("p.y", "q.u")).connections
+    assert [(c.output, c.input) for c in found] == [(f"y[{k}]", f"u[{k}]") for k in (1, 2, 3)]
+    found = network(parts, ("p.y[2]", "q.u[1]")).connections
+    assert [(c.output, c.input) for c in found] == [("y[2]", "u[1]")]
+
+
+def test_arrays_of_other_shapes_are_refused():
+    parts = [vector("p", "y", "output", 3), vector("q", "u", "input", 2)]
+    refused("'p.y' has 3 elements and 'q.u' has 2 elements; arrays of one", parts, ("p.y", "q.u"))
 
 
 def test_two_sources_on_one_input():

@@ -293,7 +293,7 @@ def test_unknown_structures_are_refused_by_name(edited, case):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("<ssv:Integer", "<ssv:Enumeration", "parameter 'count': a value of type Enumeration"),
+        ("<ssv:Integer", "<ssv:Complex", "parameter 'count': a value of type Complex"),
         ('<ssv:Integer value="3"', '<ssv:Integer value="3.5"', "'3.5' is no Integer"),
         ("<ssv:Real value", '<ssv:Real unit="g" value', "unit 'g' is not 'kg' of the variable"),
         ("<ssv:ParameterSet", '<!DOCTYPE x SYSTEM "y"><ssv:ParameterSet', "DOCTYPE"),

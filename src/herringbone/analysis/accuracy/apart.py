@@ -41,7 +41,7 @@ def apart(first: Result, second: Result, exchanged: Collection[str] = ()) -> Apa
         if len(ours) > 1 and any(_varies(theirs[n]) for n in names)
     }
     worst, value = "", 0.0
-    for column in _reals(second):
+    for column in second.signals:
         if len(ours) > 1 and _varies(theirs[column]):
             found = relative_error(ours[[column]].to_numpy(float), theirs[[column]].to_numpy(float))
             if found > value:
@@ -59,17 +59,12 @@ def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list
     groups = {name: result.channel(name) for name in result.channels}
     taken = {column for columns in groups.values() for column in columns}
     every = not groups and not exchanged
-    for column in _reals(result):
+    for column in result.signals:
         wanted = column in exchanged or every
         if wanted and column not in taken:
             unit = result.units[column] or "1"
             groups.setdefault(f"outputs in {unit}", []).append(column)
     return {name: columns for name, columns in groups.items() if columns}
-
-
-def _reals(result: Result) -> list[str]:
-    kinds = result.data.dtypes
-    return [c for c in result.data.columns if c != TIME and pd.api.types.is_float_dtype(kinds[c])]
 
 
 def _varies(column: pd.Series) -> bool:

@@ -53,7 +53,12 @@ def read_fmu(file: str | Path) -> ModelDescription:
     except Exception as error:  # fmpy raises bare Exception for every defect of the XML
         raise FmuError(f"{file}: {_DESCRIPTION} cannot be read: {error}") from error
     if model.coSimulation is None:
-        raise FmuError(f"{file} is for model exchange only; co-simulation is needed")
+        kinds = {"model exchange": model.modelExchange,
+                 "scheduled execution": model.scheduledExecution}  # fmt: skip
+        offered = " and ".join(kind for kind, found in kinds.items() if found) or "nothing"
+        raise FmuError(f"{file} is for {offered} only; co-simulation is needed")
+    if clocks := [v.name for v in model.modelVariables if v.type == "Clock"]:
+        raise FmuError(f"{file} has Clock variables, which are not supported: {', '.join(clocks)}")
     library = f"{model.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
     platform = fmpy.platform_tuple if is_fmi3(model) else fmpy.platform
     binary = f"binaries/{platform}/{library}"

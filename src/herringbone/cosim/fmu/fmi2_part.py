@@ -4,6 +4,7 @@ import atexit
 import ctypes
 import itertools
 
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
     FMU2Slave,
     calloc,
@@ -11,6 +12,8 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2LastSuccessfulTime,
+    fmi2Terminated,
     free,
 )
 from fmpy.logging import addLoggerProxy
@@ -70,15 +73,8 @@ class Fmu2Part(FmuPart):
             found = found._replace(get_derivatives=self._address("fmi2GetRealOutputDerivatives"))
         return found
 
-    def _write(self, kind: str, reference: int, value: float | str) -> None:
-        setter = {
-            "Real": self.slave.setReal,
-            "Integer": self.slave.setInteger,
-            "Enumeration": self.slave.setInteger,
-            "Boolean": self.slave.setBoolean,
-            "String": self.slave.setString,
-        }[kind]
-        setter([reference], [value])
+    def _write(self, references: list[int], values: list[float]) -> None:
+        self.slave.setReal(references, values)
 
     def _read(self, references: list[int]) -> list[float]:
         return self.slave.getReal(references)
@@ -86,6 +82,20 @@ class Fmu2Part(FmuPart):
     def _enter(self, start_time: float, stop_time: float) -> None:
         self.slave.setupExperiment(startTime=start_time, stopTime=stop_time)
         self.slave.enterInitializationMode()
+
+    def ended(self) -> float | None:
+        """Time at which the FMU asked to end the simulation [s]; None if it did not.
+
+        It tells only after a step that it discarded, and not after fmi2Fatal.
+        """
+        if self._log.fatal:
+            return None
+        try:
+            if not self.slave.getBooleanStatus(fmi2Terminated):
+                return None
+            return float(self.slave.getRealStatus(fmi2LastSuccessfulTime))
+        except FMICallException:
+            return None
 
     def close(self) -> None:
         """Terminate and free the instance; see `FmuPart.close`."""

@@ -1,18 +1,24 @@
 """An FMU 3.0 as participant."""
 
+from collections.abc import Mapping
 from ctypes import CFUNCTYPE, POINTER, Array, c_double, c_int, c_size_t, c_uint32, c_void_p
+from typing import ClassVar
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 
-from herringbone.core.part import Addresses
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.part import STRUCTURE, Addresses, Given, Value
 from herringbone.cosim.fmu import fmi3_calls
+from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
-from herringbone.cosim.fmu.variables import Element, read_elements
+from herringbone.cosim.fmu.variables import Element, read_elements, read_variables
 from herringbone.kernels.linking import CFunction
 
 _WARNING = 1
+_MOST_EVENTS = 1000
+"""Iterations of one event."""
 _FUNCTIONS = {
     "set_float64": "fmi3SetFloat64",
     "get_float64": "fmi3GetFloat64",
@@ -21,20 +27,37 @@ _FUNCTIONS = {
     "set_state": "fmi3SetFMUState",
     "free_state": "fmi3FreeFMUState",
     "get_derivatives": "fmi3GetOutputDerivatives",
+    "enter_events": "fmi3EnterEventMode",
+    "update": "fmi3UpdateDiscreteStates",
+    "enter_steps": "fmi3EnterStepMode",
 }
+_ENDS = {
+    fmi3_calls.ENDED: "it asks to end the simulation",
+    fmi3_calls.EARLY: "it ended its step early, which it may not without event mode, or again and "
+    "again",
+    fmi3_calls.STUCK: "its discrete states do not settle: fmi3UpdateDiscreteStates wants one more "
+    "call again and again",
+}
+"""Why no step follows."""
 _EXCHANGE = CFUNCTYPE(c_int, c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double))
 
 
 class Fmu3Part(FmuPart):
     """An instantiated FMU 3.0 for co-simulation.
 
-    It is instantiated without event mode, early return and intermediate updates. Values are
-    exchanged through the adapters of `fmi3_calls`, by the compiled loop and from Python alike.
+    It is instantiated with event mode and early return if it declares them, without intermediate
+    updates. Values are exchanged through the adapters of `fmi3_calls`, by the compiled loop and
+    from Python alike.
+
+    Attributes:
+        with_events: event mode and early return are used where the FMU declares them.
     """
 
     slave: FMU3Slave
+    with_events: ClassVar[bool] = True
 
     def _load(self, **options: str) -> FMU3Slave:
+        self._initialised = False
         self._make_memory(read_elements(self.model))
         return FMU3Slave(**options)
 
@@ -42,9 +65,19 @@ class Fmu3Part(FmuPart):
         """The memory of the adapters, with the declared start values."""
         count = len(elements)
         self._elements = np.array(
-            [(e.variable.valueReference, e.first, e.size, 0) for e in elements], fmi3_calls.ELEMENT
+            [
+                (
+                    e.variable.valueReference,
+                    e.first,
+                    e.size,
+                    0,
+                    e.variable.variability == "discrete",
+                )
+                for e in elements
+            ],
+            fmi3_calls.ELEMENT,
         )
-        self._values = np.array([_start(e, k) for k, e in enumerate(elements)], np.float64)
+        self._values = np.array([_start(e) for e in elements], np.float64)
         self._references = np.zeros(count, np.uint32)
         self._packed = np.zeros(count)
         arrays = {e.first for e in elements if e.size > 1 and e.variable.causality == "input"}
@@ -57,12 +90,33 @@ class Fmu3Part(FmuPart):
         self._memory["packed"] = self._packed.ctypes.data
         self._memory["arrays"] = self._arrays.ctypes.data
         self._memory["array_count"] = self._arrays.size
+        self._reached, self._flags = np.zeros(1), np.zeros(2)
+        self._memory["reached"] = self._reached.ctypes.data
+        self._memory["flags"] = self._flags.ctypes.data
 
     def _instantiate(self) -> None:
+        self._events = self.with_events and bool(self.model.coSimulation.hasEventMode)
+        try:
+            self._make_instance()
+        except Exception:  # fmpy raises bare Exception
+            if not self._events:
+                raise
+            self._events = False  # some declare event mode and do not know it
+            self._make_instance()
+            self.messages()
+        self._connect_memory()
+
+    def _make_instance(self) -> None:
+        early = self.model.coSimulation.mightReturnEarlyFromDoStep
         self.slave.instantiate(
             loggingOn=True,
+            eventModeUsed=self._events,
+            earlyReturnAllowed=self._events and bool(early),
             logMessage=lambda _environment, status, _category, text: self._log.add(status, text),
         )
+
+    def _connect_memory(self) -> None:
+        """Let the memory of the adapters know the instance and its functions."""
         self._memory["instance"] = self.slave.component
         for place, function in _FUNCTIONS.items():
             self._memory[place] = self._address(function)
@@ -81,13 +135,68 @@ class Fmu3Part(FmuPart):
             found = found._replace(get_derivatives=fmi3_calls.get_derivatives.address)
         return found
 
-    def _write(self, kind: str, reference: int, value: float | str) -> None:
-        if kind == "Float64":
-            number, content = (c_uint32 * 1)(reference), (c_double * 1)(float(value))
-            self._exchange(fmi3_calls.set_real, "fmi3SetFloat64", number, content)
+    def set(self, name: str, value: Given) -> None:
+        """Set a variable; a structural parameter also sets the sizes of arrays.
+
+        Raises:
+            ParameterError: see `FmuPart.set`; or a size is set too late, or of another type.
+        """
+        declared = self.variables.get(name)
+        if declared is None or declared.causality != STRUCTURE:
+            super().set(name, value)
             return
-        setter = "setInt64" if kind == "Enumeration" else f"set{kind}"
-        getattr(self.slave, setter)([reference], [value])
+        what = f"{self.name}.{name} = {value!r}"
+        if self._initialised:
+            raise ParameterError(f"{what}: a structural parameter is set before initialisation")
+        try:
+            self.slave.enterConfigurationMode()
+            super().set(name, value)
+            self.slave.exitConfigurationMode()
+        except FMICallException as error:
+            raise ParameterError(self._refusal(what, error)) from error
+        self._resize(name, int(self._others.last(name)))
+
+    def _resize(self, name: str, size: int) -> None:
+        """Arrays whose size is a structural parameter have another one now."""
+        changed = next(v for v in self.model.modelVariables if v.name == name)
+        changed.start = str(size)
+        for v in self.model.modelVariables:
+            v.shape = tuple(
+                int(d.start if d.variable is None else d.variable.start) for d in v.dimensions
+            )
+        self.variables = read_variables(self.model)
+        self._others = OtherValues(self.model)
+        self._make_memory(read_elements(self.model))
+        self._connect_memory()
+
+    def _put(self, values: Mapping[str, Value]) -> None:
+        if not self._memory["events"][0]:
+            super()._put(values)
+            return
+        others = any(self._others.discrete(name) for name in values)
+        if others:
+            self.slave.enterEventMode()
+            self._memory["events"] = 0
+        super()._put(values)
+        if others:
+            self._settle()
+
+    def _settle(self) -> None:
+        """From event mode to step mode."""
+        for _ in range(_MOST_EVENTS):
+            more, ends, *_ = self.slave.updateDiscreteStates()
+            if ends:
+                self._memory["ended"] = fmi3_calls.ENDED
+            if ends or not more:
+                self.slave.enterStepMode()
+                self._memory["events"] = 1
+                return
+        raise FmuError(f"{self.name}: {_ENDS[fmi3_calls.STUCK]}")
+
+    def _write(self, references: list[int], values: list[float]) -> None:
+        numbers = (c_uint32 * len(references))(*references)
+        content = (c_double * len(values))(*values)
+        self._exchange(fmi3_calls.set_real, "fmi3SetFloat64", numbers, content)
 
     def _read(self, references: list[int]) -> list[float]:
         count = len(references)
@@ -109,17 +218,32 @@ class Fmu3Part(FmuPart):
             raise FMICallException(function=function, status=status)
 
     def _enter(self, start_time: float, stop_time: float) -> None:
+        self._initialised = True
         self.slave.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+        arrays = np.flatnonzero(self._elements["size"] > 1)
+        if arrays.size:  # a size that was set makes other start values
+            self._read(arrays.tolist())
+
+    def exit_initialization(self) -> None:
+        """Go to step mode; raises FmuError."""
+        super().exit_initialization()
+        if self._events:
+            try:
+                self._settle()
+            except FMICallException as error:
+                raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
+
+    def ended(self) -> float | None:
+        """Time at which the FMU asked to end the simulation [s]; None if it did not."""
+        return float(self._reached[0]) if self._memory["ended"][0] == fmi3_calls.ENDED else None
 
     def messages(self) -> list[str]:
-        """Warnings and errors logged since the last call, and whether a step ended early."""
-        ended = ["it ended its step early, or asked to end the simulation"]
-        found = super().messages() + (ended if self._memory["ended"][0] else [])
-        self._memory["ended"] = 0
-        return found
+        """Warnings and errors logged since the last call, and why no step follows."""
+        why = _ENDS.get(int(self._memory["ended"][0]))
+        return super().messages() + ([why] if why else [])
 
 
-def _start(element: Element, number: int) -> float:
+def _start(element: Element) -> float:
     """Declared start value of an element; 0 if there is none. One value stands for all."""
     given = (element.variable.start or "0").split()
-    return float(given[min(number - element.first, len(given) - 1)])
+    return float(given[element.place if len(given) == element.size else 0])

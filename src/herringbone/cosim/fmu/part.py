@@ -2,7 +2,6 @@
 
 import contextlib
 import ctypes
-import math
 import shutil
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -13,9 +12,11 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.part import Addresses, Given, PartVariable, Value
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.log import FmuLog
+from herringbone.cosim.fmu.others import OtherValues
+from herringbone.cosim.fmu.values import as_value, as_values
 from herringbone.cosim.fmu.variables import read_variables
 
 
@@ -44,6 +45,7 @@ class FmuPart(ABC):
         self._running = False
         self.model = model or read_fmu(file)
         self.variables: Mapping[str, PartVariable] = read_variables(self.model)
+        self._others = OtherValues(self.model)
         abilities = self.model.coSimulation
         self.once = bool(abilities.canBeInstantiatedOnlyOncePerProcess)
         self.one_step = not abilities.canHandleVariableCommunicationStepSize
@@ -77,8 +79,8 @@ class FmuPart(ABC):
         """What the compiled loop calls."""
 
     @abstractmethod
-    def _write(self, kind: str, reference: int, value: float | str) -> None:
-        """Set a variable of an FMI type; raises FMICallException."""
+    def _write(self, references: list[int], values: list[float]) -> None:
+        """Set real variables; raises FMICallException."""
 
     @abstractmethod
     def _read(self, references: list[int]) -> list[float]:
@@ -96,30 +98,64 @@ class FmuPart(ABC):
         """0: the FMU allocates its states."""
         return 0
 
-    def set(self, name: str, value: float | str) -> None:
-        """Set a variable before or during initialisation.
+    def set(self, name: str, value: Given) -> None:
+        """Set a variable before or during initialisation; an array takes all its values.
 
         Raises:
-            ParameterError: unknown name, wrong type, not finite, or refused by the FMU.
+            ParameterError: unknown name, wrong type or size, not finite, or refused by the FMU.
         """
-        if name not in self.variables:
+        what = f"{self.name}.{name} = {value!r}"
+        names = [n for n, v in self.variables.items() if v.array == name] or [name]
+        if name not in self.variables and names == [name]:
             raise ParameterError(
                 f"{self.name}: {self.file.name} has no variable '{name}'; "
                 f"'herringbone check {self.file}' lists them"
             )
-        variable = self.variables[name]
-        kind = variable.type
-        if "[" in kind or kind in {"Binary", "Clock"}:
-            raise ParameterError(f"{self.name}.{name} is of type {kind}, which cannot be set here")
-        if (kind == "String") != isinstance(value, str):
-            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a {kind}")
-        if not isinstance(value, str) and not math.isfinite(value):
-            raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
-        whole = not isinstance(value, str) and kind not in {"Real", "Float32", "Float64"}
+        first = self.variables[names[0]]
+        if first.array == name:
+            values = as_values(first.type, value, len(names), what, first.items)
+        elif isinstance(value, float | int | str | bytes):
+            values = [as_value(first.type, value, what, first.items)]
+        else:
+            raise ParameterError(f"{what}: it takes one {first.type}")
         try:
-            self._write(kind, variable.reference, int(value) if whole else value)
+            self._put(dict(zip(names, values, strict=True)))
         except FMICallException as error:
-            raise ParameterError(self._refusal(f"{self.name}.{name} = {value!r}", error)) from error
+            raise ParameterError(self._refusal(what, error)) from error
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """Set variables at a communication point; raises FmuError."""
+        values = self._others.changed(values)
+        try:
+            if values:
+                self._put(values)
+        except FMICallException as error:
+            what = ", ".join(f"{self.name}.{name} = {value!r}" for name, value in values.items())
+            raise FmuError(self._refusal(what, error)) from error
+
+    def _put(self, values: Mapping[str, Value]) -> None:
+        """Set variables of any types, in as few calls as possible; raises FMICallException."""
+        reals = [name for name in values if self.variables[name].is_real]
+        if reals:
+            references = [self.variables[name].reference for name in reals]
+            self._write(references, [float(values[name]) for name in reals])
+        others = {name: value for name, value in values.items() if name not in reals}
+        self._others.write(self.slave, others)
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """Values of variables of other types than real; raises FmuError."""
+        if self._log.fatal:
+            raise FmuError(f"{self.name} has failed for good; nothing can be read from it")
+        try:
+            return self._others.read(self.slave, names)
+        except (FMICallException, AttributeError, ValueError) as error:  # no text, or no UTF-8
+            raise FmuError(
+                self._refusal(f"{self.name}: reading {', '.join(names)}", error)
+            ) from error
+
+    def ended(self) -> float | None:
+        """Time at which the FMU asked to end the simulation [s]; None if it did not."""
+        return None
 
     def _refusal(self, what: str, error: Exception) -> str:
         return f"{what}: {'; '.join(self.messages()) or error}"

@@ -1,6 +1,7 @@
-"""Variables of an FMU as a master sees them."""
+"""Variables of an FMU as a master sees them: scalars, and the elements of arrays."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import NamedTuple
 
 from fmpy.model_description import ModelDescription, ModelVariable
@@ -12,51 +13,73 @@ from herringbone.cosim.fmu.file import is_fmi3
 
 _NODES = ".node"
 """Ending of the array that holds the nodes of a signal inside the step, see `node_name`."""
+_REALS = {"Real", "Float64"}
+_EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 class Element(NamedTuple):
-    """A scalar of double precision of an FMU 3.0: a variable, or one node of a signal.
+    """A scalar of an FMU: a variable, an element of an array, or one node of a signal.
 
     Attributes:
         name: as the master calls it.
         variable: that it belongs to.
-        first: number of the variable's first element.
+        first: number of the variable's first element, among all elements of its kind.
         size: elements of the variable.
+        place: its own place in the variable, from 0.
     """
 
     name: str
     variable: ModelVariable
     first: int
     size: int
+    place: int
 
 
 def read_elements(model: ModelDescription) -> list[Element]:
     """All scalars of double precision of an FMU 3.0; the master's references are their numbers."""
+    return _elements(v for v in model.modelVariables if v.type == "Float64")
+
+
+def read_others(model: ModelDescription) -> list[Element]:
+    """All scalars of other types than double precision, of any FMI version."""
+    return _elements(v for v in model.modelVariables if v.type not in _REALS)
+
+
+def _elements(variables: Iterator[ModelVariable]) -> list[Element]:
     found: list[Element] = []
-    for v in model.modelVariables:
-        if _type(v) == "Float64":
-            names = [v.name]
-        elif _type(v) == f"Float64[{NODES}]" and v.name.endswith(_NODES):
-            signal = v.name.removesuffix(_NODES)
-            names = [node_name(signal, node) for node in range(1, NODES + 1)]
-        else:
-            continue
-        first = len(found)
-        found += [Element(name, v, first, len(names)) for name in names]
+    for v in variables:
+        names, first = _element_names(v), len(found)
+        found += [Element(name, v, first, len(names), k) for k, name in enumerate(names)]
     return found
 
 
-def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
-    """Variables of an FMU by name.
+def _element_names(variable: ModelVariable) -> list[str]:
+    """Names of a variable's elements, row by row: `y[1]`, `A[1,2]`; nodes as in FMI 2.0."""
+    name, shape = variable.name, tuple(variable.shape or ())
+    if not variable.dimensions:
+        return [name]
+    if variable.type == "Float64" and shape == (NODES,) and name.endswith(_NODES):
+        signal = name.removesuffix(_NODES)
+        return [node_name(signal, node) for node in range(1, NODES + 1)]
+    return [element_name(name, place) for place in product(*(range(1, n + 1) for n in shape))]
 
-    An array of FMI 3.0 is shown as one variable, which cannot be connected; but the array of a
-    signal's nodes is shown as its elements, as these are called in FMI 2.0.
+
+def element_name(array: str, place: Sequence[int]) -> str:
+    """Name of an array's element, counted from 1; FMI's structured names have `der(x[1])`."""
+    inside = array.removesuffix(")")
+    return f"{inside}[{','.join(map(str, place))}]" + array[len(inside) :]
+
+
+def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
+    """Variables of an FMU by name; of an array its elements.
+
+    The array of a signal's nodes is shown as these are called in FMI 2.0.
     """
     dimension = _dimension(model)
     dependencies = {
         u.variable.name: None
         if u.dependencies is None
-        else frozenset(d.name for d in u.dependencies)
+        else frozenset(name for d in u.dependencies for name in _as_inputs(d))
         for u in model.outputs
     }
     return {
@@ -67,30 +90,38 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
             unit := v.unit or (v.declaredType.unit if v.declaredType else None),
             dimension.get(unit or ""),
             dependencies.get(v.name),
-            kind,
+            v.type,
+            array=v.name if v.dimensions and name != v.name else "",
+            items=_items(v),
         )
-        for name, reference, kind, v in _named(model)
+        for name, reference, v in _named(model)
     }
 
 
-def _named(model: ModelDescription) -> Iterator[tuple[str, int, str, ModelVariable]]:
-    """Name, reference, type and variable, in the order of the model description."""
-    elements: dict[int, list[tuple[int, str]]] = {}
+def _as_inputs(variable: ModelVariable) -> list[str]:
+    """Names of what an output depends on; the nodes of a signal stay one array."""
+    return [variable.name] if variable.name.endswith(_NODES) else _element_names(variable)
+
+
+def _named(model: ModelDescription) -> Iterator[tuple[str, int, ModelVariable]]:
+    """Name, reference and variable, in the order of the model description."""
+    doubles: dict[int, list[tuple[int, str]]] = {}
     if is_fmi3(model):
         for number, element in enumerate(read_elements(model)):
-            elements.setdefault(id(element.variable), []).append((number, element.name))
+            doubles.setdefault(id(element.variable), []).append((number, element.name))
     for v in model.modelVariables:
-        if id(v) in elements:
-            yield from ((name, number, "Float64", v) for number, name in elements[id(v)])
+        if id(v) in doubles:
+            yield from ((name, number, v) for number, name in doubles[id(v)])
         else:
-            yield v.name, v.valueReference, _type(v), v
+            yield from ((name, v.valueReference, v) for name in _element_names(v))
 
 
-def _type(variable: ModelVariable) -> str:
-    """FMI type, with the shape of an array."""
-    if not variable.dimensions:
-        return variable.type
-    return f"{variable.type}{list(variable.shape)}"
+def _items(variable: ModelVariable) -> tuple[tuple[str, int], ...]:
+    """Items of an enumeration."""
+    declared = variable.declaredType
+    if variable.type != "Enumeration" or declared is None:
+        return ()
+    return tuple((item.name, int(item.value)) for item in declared.items)
 
 
 def _dimension(model: ModelDescription) -> dict[str, tuple]:
@@ -99,9 +130,7 @@ def _dimension(model: ModelDescription) -> dict[str, tuple]:
     for unit in model.unitDefinitions:
         base = unit.baseUnit
         if base is not None:
-            exponents = {
-                n: getattr(base, n) for n in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
-            }
+            exponents = {n: getattr(base, n) for n in _EXPONENTS}
             powers = tuple(sorted((n, int(e)) for n, e in exponents.items() if e))
             found[unit.name] = (float(base.factor), float(base.offset), powers)
     return found

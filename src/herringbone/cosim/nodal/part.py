@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.part import Addresses, Part, PartVariable
+from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.core.variable import NODES
 from herringbone.cosim.nodal import calls
 from herringbone.cosim.signature.signature import Kind, Signature
@@ -43,7 +43,9 @@ class NodalPart:
                 v = replace(v, dependencies=passed[name])
             for node in range(NODES + 1):
                 own = name if node == 0 else node_name(name, node)
-                found[own] = replace(v, name=own, reference=number * STRIDE + node)
+                array = "" if node else v.array
+                reference = number * STRIDE + node
+                found[own] = replace(v, name=own, reference=reference, array=array)
         return found
 
     def _make_memory(self, pieces: int) -> np.ndarray:
@@ -86,16 +88,24 @@ class NodalPart:
         """See `Part`."""
         return self.part.new_state()
 
-    def set(self, name: str, value: float | str) -> None:
+    def set(self, name: str, value: Given) -> None:
         """Set a variable of the part, or the degree of the signals."""
         if name == INTERFACE_DEGREE:
-            self._memory["degree"] = int(value)
+            self._memory["degree"] = int(float(value))  # type: ignore[arg-type]  # a number
         elif name in self.part.variables:  # nodes of inputs that nothing feeds need no value
             self.part.set(name, value)
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables of the part."""
         return self.part.get(names)
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """See `Part`."""
+        self.part.put_values(values)
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """See `Part`."""
+        return self.part.get_values(names)
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """See `Part`."""
@@ -108,6 +118,10 @@ class NodalPart:
     def failed(self) -> None:
         """See `Part`."""
         self.part.failed()
+
+    def ended(self) -> float | None:
+        """See `Part`."""
+        return self.part.ended()
 
     def messages(self) -> list[str]:
         """See `Part`."""

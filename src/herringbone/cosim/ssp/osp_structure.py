@@ -46,7 +46,7 @@ def osp_structure(
             for name, kind, text in part.typed_values():
                 SubElement(SubElement(values, "InitialValue", variable=name), kind, value=text)
     connections = SubElement(root, "Connections")
-    for c in network.connections:
+    for c in network.every_connection:
         connection = SubElement(connections, "VariableConnection")
         for p, variable in ((c.source, c.output), (c.target, c.input)):
             SubElement(connection, "Variable", simulator=parts[p].label, name=variable)

@@ -32,11 +32,18 @@ from herringbone.cosim.ssp.format import (
 )
 from herringbone.cosim.structure.system import PartSpec, System
 
-_TYPES: Mapping[str, Callable[[str], float]] = {
+_TYPES: Mapping[str, Callable[[str], float | str]] = {
     "Real": float,
     "Integer": int,
     "Boolean": lambda text: int(text in {"true", "1"}),
+    "String": str,
+    "Enumeration": lambda text: int(text) if text.isdecimal() else text,
+    "Binary": str,
+    "Float64": float,
+    "Float32": float,
+    **{f"{kind}{n}": int for kind in ("Int", "UInt") for n in (8, 16, 32, 64)},
 }
+"""Values of SSP 1.0, and those that 2.0 has besides."""
 
 
 def read_ssp(file: str | Path) -> System:
@@ -228,7 +235,7 @@ class _Reader:
     def value(self, parameter: Element, variable: PartVariable | None, where: str) -> float | str:
         typed = next((c for c in parameter if local_name(c) != "Annotations"), None)
         kind = "nothing" if typed is None else local_name(typed)
-        if typed is None or kind not in {*_TYPES, "String"}:
+        if typed is None or kind not in _TYPES:
             raise self.refusal(f"{where}: a value of type {kind} is not supported")
         unit = typed.get("unit")
         if unit and variable and variable.unit and unit != variable.unit:
@@ -237,7 +244,7 @@ class _Reader:
             )
         text = typed.get("value", "")
         try:
-            return text if kind == "String" else _TYPES[kind](text)
+            return _TYPES[kind](text)
         except ValueError:
             raise self.refusal(f"{where}: '{text}' is no {kind}") from None
 

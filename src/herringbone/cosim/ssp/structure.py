@@ -33,6 +33,15 @@ _TO_TEXT: dict[str, Callable[[Any], str]] = {
     "String": str,
 }
 
+_CONNECTORS = {
+    "Real": "Real",
+    "Float64": "Real",
+    "Integer": "Integer",
+    "Boolean": "Boolean",
+    "String": "String",
+}
+"""SSP types of connectors by FMI type."""
+
 
 @dataclass(frozen=True)
 class DescribedPart:
@@ -132,9 +141,10 @@ def _connectors(network: Network) -> list[list[str]]:
     """Names of each part's connectors: connected inputs, recorded and connected outputs."""
     found = []
     for i, recorded in enumerate(record_names(network)):
-        inputs = [c.input for c in network.inputs(i)]
-        outputs = [c.output for c in network.connections if c.source == i]
-        found.append(list(dict.fromkeys([*inputs, *recorded, *outputs])))
+        scalars = [n for n in recorded if not network.parts[i].variables[n].array]
+        inputs = [c.input for c in network.every_connection if c.target == i]
+        outputs = [c.output for c in network.every_connection if c.source == i]
+        found.append(list(dict.fromkeys([*inputs, *scalars, *outputs])))
     return found
 
 
@@ -148,17 +158,29 @@ def _add_component(
             variable = part.variables[name]
             connector = SubElement(connectors, "ssd:Connector", name=name, kind=variable.causality)
             defined = variable.unit if variable.dimension else None
-            SubElement(connector, "ssc:Real", {"unit": defined} if defined else {})
+            kind = _connector_type(part, variable)
+            SubElement(connector, kind, {"unit": defined} if defined else {})
     if part.values:
         bindings = SubElement(component, "ssd:ParameterBindings")
         SubElement(bindings, "ssd:ParameterBinding", type=PARAMETER_TYPE, source=part.values_file)
 
 
+def _connector_type(part: DescribedPart, variable: PartVariable) -> str:
+    """Type of a connector in SSP 1.0; raises StructureError if it has none."""
+    if variable.type not in _CONNECTORS or variable.array:
+        what = "arrays" if variable.array else f"connectors of type {variable.type} here"
+        raise StructureError(
+            f"{part.name}.{variable.name}: SSP 1.0 has no {what}; disconnect it, or run the system "
+            "without exporting it"
+        )
+    return f"ssc:{_CONNECTORS[variable.type]}"
+
+
 def _add_connections(system: Element, parts: Sequence[DescribedPart], network: Network) -> None:
-    if not network.connections:
+    if not network.every_connection:
         return
     connections = SubElement(system, "ssd:Connections")
-    for c in network.connections:
+    for c in network.every_connection:
         SubElement(
             connections,
             "ssd:Connection",

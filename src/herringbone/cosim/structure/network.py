@@ -5,11 +5,13 @@ from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.names import shown
-from herringbone.core.part import Part, PartVariable
+from herringbone.core.part import Part
 from herringbone.core.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.types import fits
+from herringbone.cosim.structure.units import unit_conversion
 
 MOST_MULTIPLE = 100
 """Most macro steps that a slow body may wait."""
@@ -21,7 +23,7 @@ class Network:
 
     Attributes:
         parts: the participants.
-        connections: one per connected input.
+        connections: one per connected input of double precision.
         elements: parts that pass inputs directly to outputs, in the order in which they depend on
             each other; they are stepped after the bodies.
         mixed: elements that also have motion of their own: outputs that no input passes to.
@@ -30,6 +32,7 @@ class Network:
         slow: bodies that step once in several macro steps, and in how many.
         feedthrough: bodies whose motion depends directly on the forces on them.
         undeclared: bodies of which that is not known.
+        others: connections between variables of other types, see `cosim.other_signals`.
     """
 
     parts: tuple[Part, ...]
@@ -41,6 +44,7 @@ class Network:
     slow: Mapping[int, int] = field(default_factory=dict)
     feedthrough: frozenset[int] = frozenset()
     undeclared: frozenset[int] = frozenset()
+    others: tuple[Connection, ...] = ()
 
     @property
     def bodies(self) -> tuple[int, ...]:
@@ -53,8 +57,13 @@ class Network:
         names = [self.parts[p].name for p in self.bodies if p not in self.feedthrough]
         return f"{', '.join(names)} can be slow" if names else "no part here can be slow"
 
+    @property
+    def every_connection(self) -> tuple[Connection, ...]:
+        """Connections of all types."""
+        return (*self.connections, *self.others)
+
     def inputs(self, part: int) -> list[Connection]:
-        """Connections that feed a part."""
+        """Connections of doubles that feed a part."""
         return [c for c in self.connections if c.target == part]
 
     def with_slow(self, multiples: Mapping[str, int]) -> "Network":
@@ -106,6 +115,8 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
         more = f" and {len(wheres) - 1} more between these parts" if len(wheres) > 1 else ""
         notes.append(f"connection {wheres[0]}{more}: a unit is not declared, so it was not checked")
     _check_single_sources(connections, parts)
+    others = tuple(c for c in connections if not _of_doubles(c, parts))
+    connections = [c for c in connections if c not in others]
     roles = find_roles(connections, parts)
     targets = {c.target for c in connections}
     sources = tuple(i for i in range(len(parts)) if i not in targets)
@@ -118,7 +129,13 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
         (*notes, *roles.notes),
         feedthrough=roles.feedthrough,
         undeclared=roles.undeclared,
+        others=others,
     )
+
+
+def _of_doubles(c: Connection, parts: Sequence[Part]) -> bool:
+    source, target = parts[c.source].variables[c.output], parts[c.target].variables[c.input]
+    return source.is_real and target.is_real
 
 
 def _split(
@@ -132,7 +149,7 @@ def _split(
             f"connection {shown(path)}: it must be PART.PORT or PART.VARIABLE"
         ) from error
     part = parts[index[name]]
-    if inner in part.variables:
+    if inner in part.variables or _elements(part, inner):
         return part, inner, []
     suffixes = [
         v[len(inner) + 1 :]
@@ -149,6 +166,29 @@ def _split(
     return part, inner, suffixes
 
 
+def _elements(part: Part, array: str) -> list[str]:
+    """Elements of an array, [] for what is none."""
+    return [name for name, v in part.variables.items() if v.array == array]
+
+
+def _element_pairs(
+    one: tuple[Part, str], two: tuple[Part, str]
+) -> Iterator[tuple[tuple[Part, str], tuple[Part, str]]]:
+    """(output, input) pairs of a connection between two arrays of one shape."""
+    names = [_elements(part, name) for part, name in (one, two)]
+    shapes = [
+        [e.removeprefix(n) for e in found] for found, (_, n) in zip(names, (one, two), strict=True)
+    ]
+    if shapes[0] != shapes[1]:
+        sizes = [f"'{part.name}.{name}' has {len(found) or 'no'} elements"
+                 for found, (part, name) in zip(names, (one, two), strict=True)]  # fmt: skip
+        raise StructureError(
+            f"connection: {' and '.join(sizes)}; arrays of one shape can be connected"
+        )
+    for a, b in zip(*names, strict=True):
+        yield _directed((one[0], a), (two[0], b))
+
+
 def _ports(part: Part) -> list[str]:
     real = {n: v for n, v in part.variables.items() if v.causality in {"input", "output"}}
     return sorted({n.rpartition(".")[0] for n in real if "." in n and ".node" not in n})
@@ -161,7 +201,10 @@ def _pairs(
     one, one_name, one_suffixes = _split(first, system, parts, index)
     two, two_name, two_suffixes = _split(second, system, parts, index)
     if not one_suffixes and not two_suffixes:
-        yield _directed((one, one_name), (two, two_name))
+        if one_name in one.variables and two_name in two.variables:
+            yield _directed((one, one_name), (two, two_name))
+        else:
+            yield from _element_pairs((one, one_name), (two, two_name))
         return
     if not one_suffixes or not two_suffixes:
         raise StructureError(f"connection '{first}' - '{second}': one is a port, the other is not")
@@ -221,27 +264,19 @@ def _connection(
 ) -> Connection:
     source, target = (part.variables[name] for part, name in (output, input_))
     where = f"'{output[0].name}.{source.name}' -> '{input_[0].name}.{target.name}'"
-    for part, variable in ((output[0], source), (input_[0], target)):
-        if not variable.is_real:
-            raise StructureError(
-                f"connection {where}: '{part.name}.{variable.name}' is of type {variable.type}; "
-                "only scalars of type Real (FMI 2) or Float64 (FMI 3) can be connected"
-            )
-    if source.unit is None or target.unit is None:
+    if not fits(source, target):
+        raise StructureError(
+            f"connection {where}: a {source.type} does not fit into a {target.type} without loss"
+            + (", because their items differ" if source.type == target.type else "")
+        )
+    factor, offset = 1.0, 0.0
+    if source.unit is not None and target.unit is not None:
+        factor, offset = unit_conversion(source, target, where)
+    elif source.is_real or target.is_real:
         between = tuple(sorted((output[0].name, input_[0].name)))
         unchecked.setdefault(between, []).append(where)
-    else:
-        _check_units(source, target, where)
-    return Connection(index[output[0].name], source.name, index[input_[0].name], target.name)
-
-
-def _check_units(source: PartVariable, target: PartVariable, where: str) -> None:
-    if source.unit != target.unit and (
-        source.dimension is None or source.dimension != target.dimension
-    ):
-        raise StructureError(
-            f"connection {where}: units differ, '{source.unit}' and '{target.unit}'"
-        )
+    place, other = index[output[0].name], index[input_[0].name]
+    return Connection(place, source.name, other, target.name, factor, offset)
 
 
 def _check_single_sources(connections: Sequence[Connection], parts: Sequence[Part]) -> None:

@@ -36,6 +36,9 @@ class PartSpec(Facts):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", PartPath(self.name))
+        for variable, value in self.values.items():
+            if self.component is not None and isinstance(value, list | tuple):
+                raise StructureError(f"{self.name}.{variable} = {value!r}: it takes one value")
 
     @property
     def foreign(self) -> bool:

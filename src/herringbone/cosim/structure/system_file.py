@@ -44,8 +44,15 @@ _FILES = ("gear", "housing")
 VALUE_HINT = 'it takes a number or a text; quote a name that has dots: "a.b" = 1.0'
 
 
-def is_value(value: object) -> bool:
-    """True if a variable can be set to this value from TOML (Booleans: for foreign FMUs)."""
+def is_value(value: object, *, arrays: bool = False) -> bool:
+    """True if a variable can be set to this value from TOML (Booleans: for foreign FMUs).
+
+    Args:
+        value: from TOML.
+        arrays: lists may be among them, for arrays of foreign FMUs.
+    """
+    if arrays and isinstance(value, list):
+        return all(is_value(item, arrays=True) for item in value)
     return isinstance(value, float | int | str)
 
 
@@ -142,7 +149,7 @@ def _part(name: str, table: Mapping[str, Any], folder: Path, file: Path) -> Part
     values = table.get("set", {})
     _check_type(values, dict, f"part '{name}': set", file)
     for variable, value in values.items():
-        if not is_value(value):
+        if not is_value(value, arrays=kinds[0] == "fmu"):
             raise StructureError(f"{file}: {name}.{variable} = {value!r}: {VALUE_HINT}")
     values = _set(table, folder)
     if kinds[0] == "system":

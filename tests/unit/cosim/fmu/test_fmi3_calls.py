@@ -20,6 +20,8 @@ FLOAT64 = CFUNCTYPE(c_int, c_void_p, _REFERENCES, c_size_t, _REALS, c_size_t)
 STEP = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int, _FLAG, _FLAG, _FLAG, _REALS)
 EXCHANGE_2 = CFUNCTYPE(c_int, c_void_p, _REFERENCES, c_size_t, _REALS)
 RESTORE = CFUNCTYPE(c_int, c_void_p, c_void_p)
+MODE = CFUNCTYPE(c_int, c_void_p)
+UPDATE = CFUNCTYPE(c_int, c_void_p, _FLAG, _FLAG, _FLAG, _FLAG, _FLAG, _REALS)
 STEP_2 = CFUNCTYPE(c_int, c_void_p, c_double, c_double, c_int)
 
 
@@ -29,24 +31,31 @@ class Fmi3:
     def __init__(self):
         self.values = {7: [1.0], 9: [2.0, 3.0, 4.0], 4: [5.0]}
         self.calls, self.steps = [], []
-        self.step_result = (OK, False, False)
+        self.step_results = [(OK, False, False, False)]
+        self.share = 0.5
+        self.modes, self.updates = [], [(False, False)]
         self.functions = (
             FLOAT64(self.set), FLOAT64(self.get), STEP(self.step), RESTORE(self.restore),
+            MODE(lambda _: self.mode("events")), MODE(lambda _: self.mode("steps")),
+            UPDATE(self.update),
         )  # fmt: skip
-        rows = [(7, 0, 1, 0), *[(9, 1, 3, 0)] * 3, (4, 4, 1, 0)]
+        rows = [(7, 0, 1, 0, 0), *[(9, 1, 3, 0, 0)] * 3, (4, 4, 1, 0, 1)]
         self.arrays = (
             np.array(rows, fmi3_calls.ELEMENT), np.array([1.0, 2.0, 3.0, 4.0, 5.0]),
             np.zeros(5, np.uint32), np.zeros(5), np.array([B1], np.uint32),
+            np.zeros(1), np.zeros(2),
         )  # fmt: skip
         self.memory = np.zeros(1, fmi3_calls.MEMORY)
         self.memory["count"], self.memory["instance"], self.memory["array_count"] = 5, 42, 1
         for place, function in zip(
-            ("set_float64", "get_float64", "do_step", "set_state"), self.functions, strict=True
-        ):
+            ("set_float64", "get_float64", "do_step", "set_state", "enter_events", "enter_steps",
+             "update"), self.functions, strict=True
+        ):  # fmt: skip
             self.memory[place] = cast(function, c_void_p).value
         for place, array in zip(
-            ("elements", "values", "references", "packed", "arrays"), self.arrays, strict=True
-        ):
+            ("elements", "values", "references", "packed", "arrays", "reached", "flags"),
+            self.arrays, strict=True,
+        ):  # fmt: skip
             self.memory[place] = array.ctypes.data
 
     def _variables(self, instance, references, count, value_count):
@@ -72,9 +81,19 @@ class Fmi3:
     def step(self, instance, time, step, no_set_before, event, terminate, early, reached):
         self.steps.append((instance, time, step, no_set_before))
         assert (event[0], terminate[0], early[0]) == (False, False, False)
-        status, terminate[0], early[0] = self.step_result
-        reached[0] = time
+        result = self.step_results.pop(0) if len(self.step_results) > 1 else self.step_results[0]
+        status, event[0], terminate[0], early[0] = result
+        reached[0] = time + (self.share if early[0] else 1.0) * step
         return status
+
+    def mode(self, name):
+        self.modes.append(name)
+        return OK
+
+    def update(self, instance, more, ends, _nominals, _states, _timed, _time):
+        self.modes.append("update")
+        more[0], ends[0] = self.updates.pop(0) if len(self.updates) > 1 else self.updates[0]
+        return OK
 
     def restore(self, instance, state):
         assert (instance, state) == (42, 77)
@@ -113,19 +132,82 @@ def test_array_of_a_restored_state_is_kept_but_for_what_is_set():
     assert part.values[9] == [6.0, 7.0, 40.0]
 
 
+def step(part):
+    return STEP_2(fmi3_calls.do_step.address)(part.memory.ctypes.data, 0.5, 0.25, 1)
+
+
+EVENT, TERMINATE, EARLY = (True, False, False), (False, True, False), (False, False, True)
+ONWARDS = (OK, False, False, False)
+
+
 @pytest.mark.parametrize(
     ("result", "status", "ended"),
     [
-        ((OK, False, False), OK, 0),
-        ((OK, True, False), DISCARD, 1),
-        ((OK, False, True), DISCARD, 1),
-        ((ERROR, False, True), ERROR, 1),
-        ((DISCARD, False, False), DISCARD, 0),
+        (ONWARDS, OK, fmi3_calls.RUNS),
+        ((OK, *TERMINATE), OK, fmi3_calls.ENDED),
+        ((OK, *EARLY), DISCARD, fmi3_calls.EARLY),
+        ((OK, False, True, True), DISCARD, fmi3_calls.ENDED),
+        ((ERROR, *EARLY), ERROR, fmi3_calls.RUNS),
+        ((DISCARD, False, False, False), DISCARD, fmi3_calls.RUNS),
     ],
 )
-def test_step_that_ends_early_is_discarded(result, status, ended):
+def test_step_without_event_mode(result, status, ended):
     part = Fmi3()
-    part.step_result = result
-    assert STEP_2(fmi3_calls.do_step.address)(part.memory.ctypes.data, 0.5, 0.25, 1) == status
+    part.step_results = [result]
+    assert step(part) == status
     assert part.steps == [(42, 0.5, 0.25, 1)]
     assert part.memory["ended"][0] == ended
+    assert part.modes == []
+
+
+def test_after_the_wish_to_end_no_step_follows_but_a_restored_state_runs():
+    part = Fmi3()
+    part.step_results = [(OK, *TERMINATE)]
+    assert [step(part), step(part)] == [OK, DISCARD]
+    assert len(part.steps) == 1
+    assert part.arrays[-2][0] == 0.75
+    assert RESTORE(fmi3_calls.set_state.address)(part.memory.ctypes.data, 77) == OK
+    assert step(part) == OK
+
+
+def test_early_return_for_an_event_is_followed_by_the_rest_of_the_step():
+    part = Fmi3()
+    part.memory["events"] = 1
+    part.step_results = [(OK, True, False, True), (OK, True, False, True), ONWARDS]
+    part.updates = [(True, False), (False, False)]
+    assert step(part) == OK
+    assert [(t, h) for _, t, h, _ in part.steps] == [(0.5, 0.25), (0.625, 0.125), (0.6875, 0.0625)]
+    assert part.modes == ["events", "update", "update", "steps", "events", "update", "steps"]
+
+
+def test_event_at_the_end_of_a_step():
+    part = Fmi3()
+    part.memory["events"] = 1
+    part.step_results = [(OK, *EVENT)]
+    part.updates = [(False, True)]
+    assert step(part) == OK
+    assert part.modes == ["events", "update", "steps"]
+    assert part.memory["ended"][0] == fmi3_calls.ENDED
+    assert len(part.steps) == 1
+
+
+@pytest.mark.parametrize("endless", ["update", "step"])
+def test_endless_events_end(endless):
+    part = Fmi3()
+    part.memory["events"] = 1
+    part.step_results = [(OK, True, False, endless == "step")]
+    part.share, part.updates = 0.0, [(endless == "update", False)]
+    assert step(part) == (ERROR if endless == "update" else DISCARD)
+    why = fmi3_calls.STUCK if endless == "update" else fmi3_calls.EARLY
+    assert part.memory["ended"][0] == why
+
+
+@pytest.mark.parametrize(("events", "modes"), [(0, []), (1, ["events", "update", "steps"])])
+def test_discrete_inputs_are_set_at_events(events, modes):
+    part = Fmi3()
+    part.memory["events"] = events
+    part.exchange(fmi3_calls.set_real, [A], [10.0])
+    assert part.modes == []
+    part.exchange(fmi3_calls.set_real, [A, C], [11.0, 50.0])
+    assert part.modes == modes
+    assert (part.values[7], part.values[4]) == ([11.0], [50.0])

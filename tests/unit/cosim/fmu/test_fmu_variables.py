@@ -1,24 +1,20 @@
 """Variables of an FMU 3.0 as the master sees them."""
 
-import re
 import zipfile
 
 import fmpy
 import pytest
-from support.parts import FakePart
 
-from herringbone.core import FmuError, StructureError
+from herringbone.core import FmuError
 from herringbone.cosim.fmu.file import read_fmu
-from herringbone.cosim.fmu.variables import read_elements, read_variables
-from herringbone.cosim.structure.network import build_network
-from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.cosim.fmu.variables import element_name, read_elements, read_variables
 
 KINDS = (
     "Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean",
 )  # fmt: skip
 
 
-def write(folder, kind="CoSimulation"):
+def write(folder, kind="CoSimulation", more=""):
     others = "".join(
         f'<{k} name="{k}" valueReference="{20 + i}" causality="output"/>'
         for i, k in enumerate(KINDS)
@@ -34,7 +30,7 @@ def write(folder, kind="CoSimulation"):
 <Float64 name="table" valueReference="8" causality="output"><Dimension start="2"/>
 <Dimension start="3"/></Float64>
 <Float64 name="y" valueReference="9" causality="output"/>
-{others}
+{others}{more}
 <String name="file" valueReference="40" causality="parameter" variability="fixed">
 <Start value="x"/></String>
 </ModelVariables>
@@ -51,9 +47,12 @@ def test_references_are_numbers_of_elements(tmp_path):
     model = read_fmu(write(tmp_path))
     variables = read_variables(model)
     numbers = {name: v.reference for name, v in variables.items() if v.is_real}
-    assert numbers == {"u": 0, "u.node1": 1, "u.node2": 2, "u.node3": 3, "u.node4": 4, "y": 5}
-    layout = [(e.variable.valueReference, e.first, e.size) for e in read_elements(model)]
-    assert layout == [(3, 0, 1), *[(4, 1, 4)] * 4, (9, 5, 1)]
+    table = [f"table[{i},{k}]" for i in (1, 2) for k in (1, 2, 3)]
+    names = ["u", "u.node1", "u.node2", "u.node3", "u.node4", *table, "y"]
+    assert numbers == {name: number for number, name in enumerate(names)}
+    layout = [(e.variable.valueReference, e.first, e.size, e.place) for e in read_elements(model)]
+    nodes, elements = [(4, 1, 4, k) for k in range(4)], [(8, 5, 6, k) for k in range(6)]
+    assert layout == [(3, 0, 1, 0), *nodes, *elements, (9, 11, 1, 0)]
 
 
 def test_what_is_declared(tmp_path):
@@ -61,22 +60,22 @@ def test_what_is_declared(tmp_path):
     assert variables["u"].causality == "input"
     assert variables["u.node2"].dimension == (0.001, 0.0, (("m", 1),))
     assert variables["y"].dependencies == {"u", "u.node"}
-    assert variables["table"].type == "Float64[2, 3]"
+    assert (variables["table[2,3]"].type, variables["table[2,3]"].array) == ("Float64", "table")
+    assert (variables["u.node2"].array, variables["y"].array) == ("u.node", "")
     assert variables["file"].type == "String"
     assert [variables[kind].type for kind in KINDS] == list(KINDS)
 
 
-@pytest.mark.parametrize(
-    ("output", "kind"), [("table", "Float64[2, 3]"), ("Int32", "Int32"), ("Float32", "Float32")]
-)
-def test_only_scalars_of_double_precision_can_be_connected(output, kind, tmp_path):
-    parts = [
-        FakePart("p", read_variables(read_fmu(write(tmp_path)))), FakePart("q").real("u", "input")
-    ]  # fmt: skip
-    system = System("s", "", (PartSpec("p", "x"), PartSpec("q", "x")), ((f"p.{output}", "q.u"),))
-    said = f"connection 'p.{output}' -> 'q.u': 'p.{output}' is of type {kind}; only scalars"
-    with pytest.raises(StructureError, match=re.escape(said)):
-        build_network(system, parts)
+def test_index_of_a_derivative_stands_inside():
+    assert element_name("der(x)", (2,)) == "der(x[2])"
+
+
+def test_clocks_are_refused(tmp_path):
+    clock = (
+        '<Clock name="tick" valueReference="50" causality="input" intervalVariability="triggered"/>'
+    )
+    with pytest.raises(FmuError, match=r"x.fmu has Clock variables, which are not supported: tick"):
+        read_fmu(write(tmp_path, more=clock))
 
 
 def test_model_exchange_only(tmp_path):
