@@ -3,9 +3,8 @@
 from itertools import product
 from pathlib import Path
 
-from support.c_fmu import compiled_fmu
-
 from herringbone.core.roles import HALVES
+from support.c_fmu import compiled_fmu
 
 SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
 DOFS = list(product(HALVES, "xyz"))

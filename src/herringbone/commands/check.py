@@ -23,6 +23,13 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="flange of a motor, load or coupling: its port, or tau=NAME,phi=NAME,w=NAME; guessed",
     )
     sub.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="VARIABLE=VALUE",
+        help="start value for the test of a role, as its speed; may be repeated",
+    )
+    sub.add_argument(
         "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
     )
     sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
@@ -60,6 +67,8 @@ def _refuse_wrong(options: argparse.Namespace) -> None:
         raise ParameterError("--flange belongs to the test of a motor, load or coupling; add --as")
     if options.json and not options.role:
         raise ParameterError("--json belongs to the test of a role; add --as")
+    if options.set and not options.role:
+        raise ParameterError("--set belongs to the test of a role; add --as")
     if options.step is not None and not options.step > 0.0:
         raise ParameterError(f"--step {options.step:g}: it must be positive, in s")
 

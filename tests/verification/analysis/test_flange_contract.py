@@ -101,7 +101,7 @@ def test_own_parts_hold(request, kind, name, role):
     ],
 )
 def test_strangers_motors_and_vehicle_hold(kinds, file, step, raw):
-    """By someone who has not seen the trials; the rotation test says what each makes of an angle."""
+    """By someone who has not seen the trials; the rotation test says what becomes of an angle."""
     found = findings(kinds / f"{file}.fmu", Role.DRIVE, step=step)
     assert failing(found) == []
     rotation = named(found, "rotation, H-term")

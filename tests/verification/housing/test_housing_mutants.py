@@ -36,7 +36,7 @@ def failing(found):
 
 @pytest.mark.parametrize("fault", MUTANTS)
 def test_the_fault_is_named_first(capsys, tmp_path, fault):
-    """Other tests may fail with it, as the passivity of a delay; the one that names it stands first."""
+    """Others may fail with it, as the passivity of a delay; the one that names it is first."""
     defines, described, test, words = MUTANTS[fault]
     found = lines(capsys, c_housing_fmu(tmp_path, defines, **described), 1)
     named = [line for line in failing(found) if line.startswith(f"  {test} ")]

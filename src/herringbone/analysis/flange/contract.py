@@ -114,7 +114,8 @@ def _impossible(signature: Signature, step: float) -> str:
     if signature.kind is Kind.SAMPLED:
         return f"its outputs change every {signature.tick:g} s only: add --step {signature.tick:g}"
     if not signature.outputs or not np.isfinite(signature.feedthrough).any():
-        return next(iter(signature.notes), "trial steps tell nothing of it")
+        note = next(iter(signature.notes), "trial steps tell nothing of it")
+        return f"{note}; give other start values by --set"
     return ""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from herringbone.analysis.finding import Finding, judged, not_tested
 from herringbone.analysis.flange.answers import TORQUE
 from herringbone.analysis.flange.bench import Bench
-from herringbone.analysis.flange.motions import burst, constant
+from herringbone.analysis.flange.motions import burst, constant, turn
 from herringbone.analysis.flange.variables import Flange
 from herringbone.analysis.flange.work import CYCLES, periods
 from herringbone.cosim.signature.rotation import Given
@@ -24,12 +24,18 @@ ADDED = 0.05
 LAG = 0.6
 """Steps; a part that takes one step of Euler's rule in each is off by half of one."""
 RESIDUAL = 0.02
+HINT = 0.05
+_EVERY = 3
+"""Of the periods of the test of passivity one in so many is taken."""
 _TURNS = 1.5
 _SPIN = 1000
 """Steps in which a body is turned by that many turns."""
 _MOST = 1e6
 """Torque [N m] beyond which it is not tried."""
 _FULL = 2.0 * np.pi
+_JUMP = 0.5
+_ALONE = 8.0
+"""Change of a torque in a step over those beside it that is a jump."""
 
 
 def rate(bench: Bench, flange: Flange) -> Finding:
@@ -44,7 +50,7 @@ def rate(bench: Bench, flange: Flange) -> Finding:
 def _of_body(bench: Bench, flange: Flange) -> Finding:
     limit = f"r = 1 +- {RATIO:g}, lag {LAG:g} step"
     phi, integral, speed = [], [], []
-    for period in periods(bench):
+    for period in periods(bench)[::_EVERY]:
         size = TORQUE if period < 100 else 0.1 * TORQUE
         signal = burst(size, period * bench.step, CYCLES)
         apart = bench.change({flange.name: signal}, CYCLES * period)
@@ -84,9 +90,15 @@ def _shown(r: float, lag: float, rest: float) -> str:
     if r == 0.0:
         return "phi does not move with w"
     shown = f"w is {1.0 / r:.5g} of it"
-    if abs(r - 1.0) > RATIO and abs(abs(r) - np.pi / 30.0) < RATIO * np.pi / 30.0:
-        shown += " (r/min?)"
+    shown += hint(1.0 / r)
     return f"{shown}, {1e6 * abs(lag):.3g} us {'late' if lag >= 0.0 else 'early'}"
+
+
+def hint(factor: float) -> str:
+    """Which units a factor of a speed tells of."""
+    known = {30.0 / np.pi: "r/min?", 0.5 / np.pi: "turns?", np.pi / 180.0: "degrees?"}
+    close = (unit for size, unit in known.items() if abs(abs(factor) / size - 1.0) < HINT)
+    return next((f" ({unit})" for unit in close), "")
 
 
 def _of_element(bench: Bench, flange: Flange) -> Finding:
@@ -118,7 +130,7 @@ def turns(bench: Bench, flange: Flange) -> Finding:
     """The angle counts turns: it is not wrapped, and does not drift from the integral of w."""
     test, limit = "angle over turns", "follows w within 1 %"
     if not flange.takes_torque:
-        return not_tested(test, "it takes the angle")
+        return _turned(bench, flange, test)
     torque = _torque_for_turns(bench, flange)
     if not 0.0 < torque < _MOST:
         return not_tested(test, f"{TORQUE:g} N m does not turn it forward, or by too little")
@@ -135,6 +147,21 @@ def turns(bench: Bench, flange: Flange) -> Finding:
     off = float(np.abs(angle - angle[0] - integral).max()) / reached
     shown = f"off by {100 * off:.2g} % over {reached / _FULL:.2g} turns"
     return judged(test, off <= 0.01, shown, limit)
+
+
+def _turned(bench: Bench, flange: Flange, test: str) -> Finding:
+    """The torque of a part that is turned, both ends alike, by more than a turn does not jump."""
+    stiffness = abs(bench.passes(flange, flange.tau, "phi"))
+    if not stiffness or not np.isfinite(stiffness):
+        return not_tested(test, "its torque does not follow the angle directly")
+    signal = turn(_FULL * _TURNS, _SPIN * bench.step)
+    signals = {f.name: signal for f in bench.flanges if not f.takes_torque}
+    steps = np.abs(np.diff(bench.change(signals, _SPIN).of(flange.tau)))
+    beside = np.maximum(steps[:-2], steps[2:])
+    alone = np.where(steps[1:-1] > _ALONE * beside, steps[1:-1], 0.0)
+    share = float(alone.max()) / (stiffness * _FULL)
+    shown = f"jumps of the torque up to {100 * share:.2g} % of k 2 pi"
+    return judged(test, share <= _JUMP, shown, f"{100 * _JUMP:g} %")
 
 
 def _torque_for_turns(bench: Bench, flange: Flange) -> float:

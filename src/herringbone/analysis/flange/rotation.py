@@ -13,7 +13,9 @@ from herringbone.analysis.finding import Finding, judged, not_tested
 from herringbone.analysis.flange.answers import TORQUE
 from herringbone.analysis.flange.bench import Bench, Signal
 from herringbone.analysis.flange.motions import steady
+from herringbone.analysis.flange.rates import hint
 from herringbone.analysis.flange.variables import Flange
+from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import Given
 
 STEPS = 8
@@ -58,6 +60,8 @@ def rotation(bench: Bench, flange: Flange) -> Finding:
 
 def _raw(bench: Bench, flange: Flange) -> str:
     late = bench.delay(flange, flange.tau, "phi")
+    if bench.signature.kind is Kind.ELEMENT:
+        return "follows the angle at once"
     return f"answers {late} steps late" if late > 0 else _RAW[bench.given(flange)]
 
 
@@ -71,9 +75,7 @@ def _turned(bench: Bench, flange: Flange, more: float, speed: float) -> str:
     term = _h_term(running, {flange.name: steady(more)}, flange.tau, first)
     stiffness = bench.passes(flange, flange.tau, "phi")
     r = 1.0 + term / (stiffness * speed * first)
-    backwards = abs(r - np.pi / 30.0) < 0.1 * np.pi / 30.0
-    hint = " (r/min?)" if backwards or abs(r * np.pi / 30.0 - 1.0) < 0.1 else ""
-    return f"inside a step the angle turns on by {r:.3g} w{hint}"
+    return f"inside a step the angle turns on by {r:.3g} w{hint(r)}"
 
 
 def _of_body(bench: Bench, flange: Flange, test: str) -> Finding:

@@ -18,6 +18,7 @@ _WORDS = {
     "w": {"w", "omega", "speed", "velocity", "n", "rpm"},
 }
 _NAMED_UNITS = {"rad/s": 1.0, "rad": 1.0, "N.m": 1.0, "Nm": 1.0}
+_MOST = 6
 NEEDS = (
     "a flange takes tau [N.m] and gives phi [rad] and w [rad/s], or takes phi and w and gives tau; "
     "name them with --flange PORT or --flange tau=...,phi=...,w=..."
@@ -93,7 +94,7 @@ def find_flanges(
         wanted, how = _by_units(variables), "as the only ones of their units and names"
     if len(wanted) != count:
         ports = ", ".join(_port(names) for names in wanted) or "none"
-        shown = f"{len(wanted)} found ({ports})"
+        shown = f"{len(wanted)} found ({ports}); it has {_offered(variables)}"
         return [], [judged("variables", False, shown, f"{count} flange(s): {NEEDS}")]
     missing = [line for names in wanted for line in _missing(names, variables)]
     if missing:
@@ -117,6 +118,17 @@ def _reals(variables: Mapping[str, PartVariable]) -> dict[str, PartVariable]:
         for name, v in variables.items()
         if v.is_real and v.causality in {"input", "output"} and ".node" not in name
     }
+
+
+def _offered(variables: Mapping[str, PartVariable]) -> str:
+    """Its real inputs and outputs, some of them."""
+    reals = _reals(variables)
+    by_causality = (
+        f"{causality}s {', '.join(names[:_MOST])}{', ...' if len(names) > _MOST else ''}"
+        for causality in ("input", "output")
+        if (names := [name for name, v in reals.items() if v.causality == causality])
+    )
+    return " and ".join(by_causality) or "no real inputs or outputs"
 
 
 def _by_ports(variables: Mapping[str, PartVariable]) -> list[dict[str, str]]:
