@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { OK = 0, ERROR = 3 };
+enum { OK = 0, DISCARD = 2, ERROR = 3 };
 enum { ROTOR, SHAFT, SLIDER, COUPLING, HUB, BAR };
 enum {
     NONE,
@@ -24,7 +24,8 @@ enum {
     ACTIVE,      /* negative damping */
     HELD_WRONG,  /* the angle inside a step is off */
     NO_REACTION, /* the torque at b is not that at a */
-    WRAPPED,     /* the angle within a turn */
+    WRAPPED,     /* the angle within a turn, given or taken */
+    LATE_CONTROL, /* holds its speed, by what it was 4 ms ago */
     DIRECT,      /* a speed that the torque passes to */
     GROUNDED     /* a spring to the ground, too */
 };
@@ -34,25 +35,41 @@ enum {
 #ifndef FAULT
 #define FAULT NONE
 #endif
-enum { REALS = 8, INPUTS = 4 };
+#ifndef START /* speed at the start, rad/s */
+#define START 0.0
+#endif
+#ifndef FIXED /* the only step that is accepted, s; 0: any */
+#define FIXED 0.0
+#endif
+enum { REALS = 8, INPUTS = 4, OLD = 4000 };
 typedef int Status;
 typedef struct {
     double real[REALS];
     double phi, w, seen, filtered;  /* seen: the angle at the end of the step */
     double used[INPUTS], last[INPUTS]; /* inputs of this step and of the one before, if it is late */
+    double old[OLD]; /* speeds in micro steps before */
+    int place;
 } Model;
 
 static const double INERTIA = 0.15, STIFFNESS = 4e4, DAMPING = 12.0, FRICTION = 0.05;
-static const double MICRO = 1e-6, FILTER = 1e-3, PI = 3.14159265358979323846;
+static const double MICRO = 1e-6, FILTER = 1e-3, CONTROL = 12.0, PI = 3.14159265358979323846;
 
-static void reset(Model *m) { *m = (Model){0}; }
+static void reset(Model *m) {
+    *m = (Model){0};
+    m->w = START;
+    if (PART == SHAFT || PART == SLIDER) m->real[1] = START;
+    for (int i = 0; i < OLD; ++i) m->old[i] = START;
+}
 static double shaft(double phi, double w) {
     double viscous = FAULT == ACTIVE ? -DAMPING : FAULT == W_NEGATED ? -DAMPING : DAMPING;
     double torque = STIFFNESS * phi + viscous * w * (FAULT == RPM ? 30.0 / PI : 1.0);
     return FAULT == TORQUE_SIGN ? -torque : torque;
 }
 /* What the part sees of its inputs. */
-static double given(const Model *m, int i) { return FAULT == DELAY ? m->used[i] : m->real[i]; }
+static double given(const Model *m, int i) {
+    double value = FAULT == DELAY ? m->used[i] : m->real[i];
+    return FAULT == WRAPPED && PART == SHAFT && i == 0 ? remainder(value, 2.0 * PI) : value;
+}
 
 static void evaluate(Model *m) {
     double *r = m->real;
@@ -98,11 +115,17 @@ static double torque_on(const Model *m, double phi) { /* on the mass inside */
 static void advance(Model *m, double h, double phi) {
     double torque = torque_on(m, phi);
     if (PART == ROTOR && FAULT == TORQUE_SIGN) torque -= 2.0 * m->real[0];
+    if (PART == ROTOR && FAULT == LATE_CONTROL) {
+        torque += CONTROL * (START - m->old[m->place]);
+        m->old[m->place] = m->w;
+        m->place = (m->place + 1) % OLD;
+    }
     double before = m->w;
     m->w += h * torque / INERTIA;
     m->phi += 0.5 * h * (before + m->w);
 }
 static Status step(Model *m, double t, double h) {
+    if (FIXED > 0.0 && fabs(h - FIXED) > 1e-9) return DISCARD;
     int n = (int)ceil(h / MICRO - 1e-6);
     if (n < 1) n = 1;
     for (int i = 0; i < INPUTS; ++i) m->used[i] = m->last[i], m->last[i] = m->real[i];

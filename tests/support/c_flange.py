@@ -19,15 +19,16 @@ PORTS = {
 """Inputs and outputs by value reference."""
 
 
-def description(part: str, *, units=None, without=(), saves=True) -> str:
-    """The modelDescription.xml; `units` replaces some by name, `without` leaves variables out."""
+def description(part, *, units=None, without=(), starts=None, saves=True) -> str:
+    """The modelDescription.xml; `units`, `starts` by name, `without` leaves variables out."""
     variables, outputs = [], []
     for causality, names in zip(("input", "output"), PORTS[part], strict=True):
         for reference, name in names.items():
             if name in without:
                 continue
             unit = (units or {}).get(name, _UNITS[name.rpartition(".")[2]])
-            start = ' start="0"' if causality == "input" else ""
+            value = (starts or {}).get(name, 0)
+            start = f' start="{value}"' if causality == "input" else ""
             variables.append(
                 f'<ScalarVariable name="{name}" valueReference="{reference}" '
                 f'causality="{causality}"><Real unit="{unit}"{start}/></ScalarVariable>'
@@ -52,9 +53,9 @@ def description(part: str, *, units=None, without=(), saves=True) -> str:
 """
 
 
-def c_flange(folder: Path, part: str, fault: str = "NONE", **described) -> Path:
-    """The FMU of a part with a fault, in a folder of its own."""
+def c_flange(folder: Path, part: str, fault: str = "NONE", *more: str, **described) -> Path:
+    """The FMU of a part with a fault, and more macros, in a folder of its own."""
     place = folder / f"{part}_{fault}".lower()
     place.mkdir()
-    defines = (f"PART={part}", f"FAULT={fault}")
+    defines = (f"PART={part}", f"FAULT={fault}", *more)
     return compiled_fmu(SOURCE, description(part, **described), place, defines)

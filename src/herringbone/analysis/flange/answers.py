@@ -6,6 +6,7 @@ from herringbone.analysis.finding import Finding, judged, not_tested, remark
 from herringbone.analysis.flange.bench import Bench
 from herringbone.analysis.flange.motions import constant
 from herringbone.analysis.flange.variables import Flange
+from herringbone.cosim.signature import Answer, Kind
 
 _STEPS = 4
 TORQUE = 1.0
@@ -22,6 +23,8 @@ def answered(flange: Flange) -> list[tuple[str, str]]:
 def delay(bench: Bench, flange: Flange) -> Finding:
     """Every output answers within the step of the change; of a body at least its speed does."""
     test = "no delay"
+    if bench.signature.kind is Kind.UNKNOWN and bench.signature.memory is Answer.UNKNOWN:
+        return not_tested(test, _why(bench))
     late = {q: bench.delay(flange, output, q) for output, q in answered(flange)}
     if flange.takes_torque:
         late = {"tau": bench.delay(flange, flange.w, "tau")}

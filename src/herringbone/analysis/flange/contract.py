@@ -83,7 +83,7 @@ def check_flanges(
             progress("what it is")
             signature = find_signature(lab, part.variables)
             findings.append(_repeats(signature))
-            why = _impossible(signature, step)
+            why = _impossible(signature, found)
             if why:
                 return [*findings, *_nothing(why, role)]
             bench = Bench(lab, signature, found, steps_vary=not part.one_step)
@@ -107,15 +107,16 @@ def _nothing(why: str, role: Role) -> list[Finding]:
     return [not_tested(name, why) for name, _ in tests]
 
 
-def _impossible(signature: Signature, step: float) -> str:
-    """Why no test of behaviour is possible, "" if they are."""
+def _impossible(signature: Signature, flanges: Sequence[Flange]) -> str:
+    """Why no test of behaviour is possible, "" if some are: a body's need no feedthrough."""
     if not signature.repeats:
         return "the same steps give other outputs"
     if signature.kind is Kind.SAMPLED:
         return f"its outputs change every {signature.tick:g} s only: add --step {signature.tick:g}"
-    if not signature.outputs or not np.isfinite(signature.feedthrough).any():
+    known = np.isfinite(signature.feedthrough).any()
+    if not known and not all(flange.takes_torque for flange in flanges):
         note = next(iter(signature.notes), "trial steps tell nothing of it")
-        return f"{note}; give other start values by --set"
+        return f"{note}; give other start values by --set" if "not linear" in note else note
     return ""
 
 
