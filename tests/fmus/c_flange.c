@@ -6,6 +6,7 @@
    SLIDER    as SHAFT, but the angle runs on with w inside a step
    COUPLING  inputs a.phi, a.w, b.phi, b.w (outputs a.tau, b.tau): a massless spring-damper
    HUB       as COUPLING, with a hub of mass in the middle
+   BODIES    inputs a.tau, b.tau (outputs a.phi, a.w, b.phi, b.w): two rotors, a shaft between
    BAR       inputs a.tau, b.phi, b.w (outputs a.phi, a.w, b.tau): a rotor behind a spring
 
    and FAULT what is wrong with it, 0 nothing. */
@@ -13,7 +14,7 @@
 #include <stddef.h>
 
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
-enum { ROTOR, SHAFT, SLIDER, COUPLING, HUB, BAR };
+enum { ROTOR, SHAFT, SLIDER, COUPLING, HUB, BODIES, BAR };
 enum {
     NONE,
     TORQUE_SIGN,
@@ -26,6 +27,7 @@ enum {
     NO_REACTION, /* the torque at b is not that at a */
     WRAPPED,     /* the angle within a turn, given or taken */
     LATE_CONTROL, /* holds its speed, by what it was 4 ms ago */
+    MEAN_TORQUE, /* the mean of the step is shown */
     DIRECT,      /* a speed that the torque passes to */
     GROUNDED     /* a spring to the ground, too */
 };
@@ -45,7 +47,7 @@ enum { REALS = 8, INPUTS = 4, OLD = 4000 };
 typedef int Status;
 typedef struct {
     double real[REALS];
-    double phi, w, seen, filtered;  /* seen: the angle at the end of the step */
+    double phi, w, far_phi, far_w, mean, seen, filtered;  /* seen: the angle at the end of the step */
     double used[INPUTS], last[INPUTS]; /* inputs of this step and of the one before, if it is late */
     double old[OLD]; /* speeds in micro steps before */
     int place;
@@ -81,7 +83,7 @@ static void evaluate(Model *m) {
         r[4] = FAULT == WRAPPED ? fmod(m->phi, 2.0 * PI) : m->phi;
         r[5] = w;
     } else if (PART == SHAFT || PART == SLIDER) {
-        r[4] = shaft(m->phi - m->seen, m->w - given(m, 1));
+        r[4] = FAULT == MEAN_TORQUE ? m->mean : shaft(m->phi - m->seen, m->w - given(m, 1));
     } else if (PART == COUPLING) {
         double torque = shaft(given(m, 0) - given(m, 2), given(m, 1) - given(m, 3));
         r[4] = -torque - (FAULT == GROUNDED ? STIFFNESS * given(m, 0) : 0.0);
@@ -90,6 +92,11 @@ static void evaluate(Model *m) {
         r[4] = shaft(m->phi - given(m, 0), m->w - given(m, 1));
         r[5] = shaft(m->phi - given(m, 2), m->w - given(m, 3));
         if (FAULT == NO_REACTION) r[5] *= 0.9;
+    } else if (PART == BODIES) {
+        r[4] = m->phi;
+        r[5] = m->w;
+        r[6] = m->far_phi;
+        r[7] = m->far_w;
     } else {
         r[4] = m->phi;
         r[5] = m->w;
@@ -108,6 +115,8 @@ static double torque_on(const Model *m, double phi) { /* on the mass inside */
     case HUB:
         return -shaft(m->phi - given(m, 0), m->w - given(m, 1)) -
                shaft(m->phi - given(m, 2), m->w - given(m, 3));
+    case BODIES:
+        return given(m, 0) - shaft(m->phi - m->far_phi, m->w - m->far_w);
     default:
         return given(m, 0) - shaft(m->phi - given(m, 1), m->w - given(m, 2));
     }
@@ -120,7 +129,12 @@ static void advance(Model *m, double h, double phi) {
         m->old[m->place] = m->w;
         m->place = (m->place + 1) % OLD;
     }
-    double before = m->w;
+    double before = m->w, far = m->far_w;
+    if (PART == BODIES) {
+        double handed = shaft(m->phi - m->far_phi, m->w - m->far_w);
+        m->far_w += h * (given(m, 1) + (FAULT == NO_REACTION ? 0.9 : 1.0) * handed) / INERTIA;
+        m->far_phi += 0.5 * h * (far + m->far_w);
+    }
     m->w += h * torque / INERTIA;
     m->phi += 0.5 * h * (before + m->w);
 }
@@ -138,7 +152,9 @@ static Status step(Model *m, double t, double h) {
         if (FAULT == HELD_WRONG && PART == SLIDER) rate *= 0.9;
         if (FAULT == RPM && PART == SLIDER) rate *= 30.0 / PI;
         double phi = given(m, 0);
+        m->mean = 0.0;
         for (int i = 0; i < n && PART != COUPLING; ++i) {
+            m->mean += shaft(m->phi - phi, m->w - m->real[1]) / n;
             advance(m, d, phi);
             phi += d * rate;
             m->filtered += d * (m->w - m->filtered) / FILTER;

@@ -14,6 +14,7 @@ PORTS = {
     "SLIDER": _SHAFT,
     "COUPLING": _COUPLED,
     "HUB": _COUPLED,
+    "BODIES": ({0: "a.tau", 1: "b.tau"}, {4: "a.phi", 5: "a.w", 6: "b.phi", 7: "b.w"}),
     "BAR": ({0: "a.tau", 1: "b.phi", 2: "b.w"}, {4: "a.phi", 5: "a.w", 6: "b.tau"}),
 }
 """Inputs and outputs by value reference."""

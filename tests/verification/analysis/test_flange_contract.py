@@ -12,7 +12,12 @@ from herringbone.core.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 
 STEP = 1e-4
-ROLE = {"COUPLING": Role.COUPLING, "HUB": Role.COUPLING, "BAR": Role.COUPLING}
+ROLE = {
+    "COUPLING": Role.COUPLING,
+    "HUB": Role.COUPLING,
+    "BAR": Role.COUPLING,
+    "BODIES": Role.COUPLING,
+}
 BACKWARDS = "negative damping, or w backwards"
 MUTANTS = {
     ("ROTOR", "TORQUE_SIGN"): ("sign of the torque", "1 N m gives -6.666 rad/s2"),
@@ -31,6 +36,7 @@ MUTANTS = {
     ("SHAFT", "DELAY"): ("no delay", "1 steps from flange.phi"),
     ("SHAFT", "ACTIVE"): ("sign of the torque", BACKWARDS),
     ("SHAFT", "HELD_WRONG"): ("rotation, H-term", "the angle turns on by 0.501 w"),
+    ("SHAFT", "MEAN_TORQUE"): ("rotation, H-term", "not that at the end of the step"),
     ("SLIDER", "RPM"): ("rotation, H-term", "(r/min?)"),
     ("SLIDER", "DELAY"): ("no delay", "1 steps from flange.phi"),
     ("SLIDER", "HELD_WRONG"): ("rotation, H-term", "the angle turns on by 0.9 w"),
@@ -39,6 +45,7 @@ MUTANTS = {
     ("COUPLING", "NO_REACTION"): ("action = reaction", "off by 10 %"),
     ("COUPLING", "GROUNDED"): ("relative motion only", "50 % of the torque"),
     ("HUB", "NO_REACTION"): ("action = reaction", "off by 10 %"),
+    ("BODIES", "NO_REACTION"): ("action = reaction", "opposite torques leave 11 %"),
     ("BAR", "NO_REACTION"): ("action = reaction", "off by 10 %"),
 }
 """Test and words that name the fault of a part."""
@@ -67,7 +74,7 @@ def test_the_fault_is_named(tmp_path, part, fault):
 
 
 @pytest.mark.parametrize("saves", [True, False])
-@pytest.mark.parametrize("part", ["ROTOR", "SHAFT", "SLIDER", "COUPLING", "HUB", "BAR"])
+@pytest.mark.parametrize("part", ["ROTOR", "SHAFT", "SLIDER", "COUPLING", "HUB", "BODIES", "BAR"])
 def test_right_ones_hold(tmp_path, part, saves):
     """With saved states and, slower, on an instance for each trial."""
     found = findings(c_flange(tmp_path, part, saves=saves), ROLE.get(part, Role.LOAD))

@@ -27,6 +27,16 @@ def turn(size: float, length: float) -> Signal:
     return signal
 
 
+def run_up(rate: float, length: float) -> Signal:
+    """From rest to growing evenly by `rate` a second, in `length` [s]."""
+
+    def signal(t: np.ndarray) -> np.ndarray:
+        x = np.clip(t / length, 0.0, 1.0)
+        return rate * (length * x**3 * (1.0 - 0.5 * x) + np.maximum(t - length, 0.0))
+
+    return signal
+
+
 def steady(rate: float) -> Signal:
     """What grows evenly by `rate` a second."""
     return lambda t: rate * t
