@@ -176,6 +176,11 @@ def test_foreign_fmus(tmp_path, monkeypatch, capsys):
     said = capsys.readouterr().out
     assert "a body with direct feedthrough" in said
     assert "d(flange.tau)/d(flange.phi) = -8000" in said
+    contracts = [line.split()[1:] for line in blocks("foreign_fmus", "sh")[-1].splitlines()]
+    assert [command[3] for command in contracts] == ["motor", "load"]
+    for command in contracts:
+        assert main(command) == 0
+        assert "rotation, H-term    holds" in capsys.readouterr().out
     run = hb.run(
         "car", start="rest", t_end=0.02, step=2e-5, values={"motor.torque": 200.0}, verify=True
     )

@@ -1,6 +1,7 @@
 /* A housing by a stranger, in C: twelve oscillators of which the two seats of a gear are coupled.
    FMI 2.0 co-simulation without any header; the test writes the description.
-   Value references: force 0 ... 11, position 12 ... 23, velocity 24 ... 35. */
+   Value references: force 0 ... 11, position 12 ... 23, velocity 24 ... 35.
+   Macros make it wrong, or undamped, in one way each. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,13 +13,44 @@
 #endif
 
 enum { DOFS = 12, OK = 0, ERROR = 3 };
+#ifndef FORCE /* factor of the forces */
+#define FORCE 1.0
+#endif
+#ifndef ASYMMETRY /* share of a seat's coupling that only one of two seats feels */
+#define ASYMMETRY 0.0
+#endif
+#ifndef CIRCULATION /* share of the stiffness that turns x to y, and y back to -x */
+#define CIRCULATION 0.0
+#endif
+#ifndef DAMPED /* factor of the damping */
+#define DAMPED 1.0
+#endif
+#ifndef DIRECT /* m/N that a force passes to its position at once */
+#define DIRECT 0.0
+#endif
+#ifndef PRELOAD /* N, always there */
+#define PRELOAD 0.0
+#endif
+#ifndef HARDENING /* N/m3 */
+#define HARDENING 0.0
+#endif
+#ifndef SPRING /* factor of the stiffness to the ground */
+#define SPRING 1.0
+#endif
+#ifndef LATE /* steps by which forces act late */
+#define LATE 0
+#endif
+#ifndef SPEED /* factor of the velocities shown */
+#define SPEED 1.0
+#endif
 
 static const double MASS = 40.0, DAMPING_TIME = 5e-6, LONGEST = 1e-6;
 /* Toward the wheel, up, along the shafts. */
 static const double STIFFNESS[3] = {7e8, 7e8, 1.5e8}, COUPLING[3] = {1e8, 1e8, 8e7};
 
 typedef struct {
-    double real[3 * DOFS];
+    double real[3 * DOFS]; /* as shown */
+    double f[LATE + 1][DOFS], s[DOFS], v[DOFS];
 } Housing;
 
 typedef int Status;
@@ -29,17 +61,27 @@ static int partner(int i) { /* the same direction at the other seat of the gear 
 }
 
 static void advance(Housing *housing, double h) {
-    double *f = housing->real, *s = f + DOFS, *v = s + DOFS, a[DOFS];
+    double *f = housing->f[LATE], *s = housing->s, *v = housing->v, a[DOFS];
     for (int i = 0; i < DOFS; ++i) {
         int other = partner(i);
-        double k = STIFFNESS[i % 3], c = COUPLING[i % 3];
-        double elastic = k * s[i] + c * (s[i] - s[other]);
+        double k = SPRING * STIFFNESS[i % 3], c = COUPLING[i % 3];
+        double elastic = k * s[i] + c * (s[i] - s[other]) + HARDENING * s[i] * s[i] * s[i];
         double viscous = k * v[i] + c * (v[i] - v[other]);
-        a[i] = (f[i] - elastic - DAMPING_TIME * viscous) / MASS;
+        if (i % 6 < 3) elastic -= ASYMMETRY * c * s[other];
+        if (i % 3 < 2) elastic += (i % 3 ? -1.0 : 1.0) * CIRCULATION * k * s[i % 3 ? i - 1 : i + 1];
+        a[i] = (FORCE * f[i] + PRELOAD - elastic - DAMPED * DAMPING_TIME * viscous) / MASS;
     }
     for (int i = 0; i < DOFS; ++i) {
         v[i] += h * a[i];
         s[i] += h * v[i];
+    }
+}
+
+static void show(Housing *housing) {
+    double *real = housing->real;
+    for (int i = 0; i < DOFS; ++i) {
+        real[DOFS + i] = housing->s[i] + DIRECT * real[i];
+        real[2 * DOFS + i] = SPEED * housing->v[i];
     }
 }
 
@@ -67,8 +109,13 @@ EXPORT Status fmi2GetReal(Component c, const unsigned *vr, size_t n, double *val
     return OK;
 }
 EXPORT Status fmi2DoStep(Component c, double t, double h, int no_rollback) {
+    Housing *housing = c;
     int steps = (int)(h / LONGEST) + 1;
-    for (int n = 0; n < steps; ++n) advance(c, h / steps);
+    for (int late = LATE; late > 0; --late)
+        memcpy(housing->f[late], housing->f[late - 1], sizeof housing->f[0]);
+    memcpy(housing->f[0], housing->real, sizeof housing->f[0]);
+    for (int n = 0; n < steps; ++n) advance(housing, h / steps);
+    show(housing);
     return OK;
 }
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }

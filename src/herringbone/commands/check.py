@@ -1,4 +1,4 @@
-"""The command `check`: whether an FMU is sound, and what it is in a coupling."""
+"""The command `check`: whether an FMU is sound, what it is in a coupling, and a role's contract."""
 
 import argparse
 from pathlib import Path
@@ -6,34 +6,46 @@ from pathlib import Path
 from herringbone.commands.output import show
 from herringbone.core import FmuError, ParameterError
 
-_STEP = 1e-4
-_ROLES = ["housing"]
+_ROLES = ["housing", "motor", "load", "coupling"]
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     sub.add_argument("fmu", type=Path, metavar="FILE.fmu", help="FMU of FMI 2 or 3")
-    sub.add_argument("--as", dest="role", choices=_ROLES, help="also test what it must do")
+    sub.add_argument(
+        "--as", dest="role", choices=_ROLES, help="test what it must do as one instead"
+    )
     sub.add_argument("--against", type=Path, help="modal data whose static compliance it has")
+    sub.add_argument(
+        "--flange",
+        action="append",
+        metavar="PORT",
+        help="flange of a motor, load or coupling: its port, or tau=NAME,phi=NAME,w=NAME; guessed",
+    )
+    sub.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="VARIABLE=VALUE",
+        help="start value for the test of a role, as its speed; may be repeated",
+    )
     sub.add_argument(
         "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
     )
+    sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Show problems of an FMU and its signature; 1 if there are problems.
+    """Show problems of an FMU and its signature, or a contract; 1 if there are problems.
 
     Raises:
         HerringboneError: the file cannot be used, or an option is wrong.
     """
-    if options.against and not options.role:
-        raise ParameterError("--against belongs to the test of a housing; add --as housing")
-    if options.step is not None and not options.step > 0.0:
-        raise ParameterError(f"--step {options.step:g}: it must be positive, in s")
+    _refuse_wrong(options)
     if options.role:
-        from herringbone.commands.housing.check import check_command  # noqa: PLC0415 (numba)
+        from herringbone.commands.contract import check_command  # noqa: PLC0415 (numba)
 
-        return check_command(options.fmu, options.against)
+        return check_command(options)
     from herringbone.fmi.check import check_fmu  # noqa: PLC0415
 
     problems = check_fmu(options.fmu)
@@ -47,8 +59,23 @@ def run(options: argparse.Namespace) -> int:
     return 1 if problems else 0
 
 
+def _refuse_wrong(options: argparse.Namespace) -> None:
+    """Raises ParameterError for options that have no meaning."""
+    if options.against and options.role != "housing":
+        raise ParameterError("--against belongs to the test of a housing; add --as housing")
+    if options.flange and options.role in {None, "housing"}:
+        raise ParameterError("--flange belongs to the test of a motor, load or coupling; add --as")
+    if options.json and not options.role:
+        raise ParameterError("--json belongs to the test of a role; add --as")
+    if options.set and not options.role:
+        raise ParameterError("--set belongs to the test of a role; add --as")
+    if options.step is not None and not options.step > 0.0:
+        raise ParameterError(f"--step {options.step:g}: it must be positive, in s")
+
+
 def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
+    from herringbone.commands.contract import own_step  # noqa: PLC0415 (numba)
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
     from herringbone.running.foreign_parts import signature_of  # noqa: PLC0415
@@ -58,10 +85,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
             part = make()
             part.enter_initialization(0.0, 1.0)
             part.exit_initialization()  # pythonfmu does not survive freeing what was not
-            experiment = part.model.defaultExperiment
-            own = float(experiment.stepSize) if experiment and experiment.stepSize else _STEP
             try:
-                return described(signature_of(part, make, own if step is None else step))
+                return described(signature_of(part, make, own_step(fmu) if step is None else step))
             finally:
                 part.close()
     except FmuError:

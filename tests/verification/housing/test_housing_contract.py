@@ -170,7 +170,7 @@ class Late(Seats):
         (Millimetres, {"v = ds/dt"}),
         (Backwards, {"v = ds/dt"}),
         (Late, {"no delay"}),
-        (Active, {"passivity"}),
+        (Active, {"damping", "passivity"}),
         (Directed, {"reciprocity"}),
         (Hardening, {"superposition"}),
         (Direct, {"no feedthrough", "v = ds/dt"}),

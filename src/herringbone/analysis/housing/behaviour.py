@@ -6,10 +6,10 @@ Source: J. C. Willems, Arch. Rational Mech. Anal. 45 (1972) 321-351 (passivity).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from herringbone.analysis.finding import Finding, judged, remark
 from herringbone.core.part import Part
 from herringbone.core.roles import HALVES
 from herringbone.cosim.loops.drive import drive
@@ -35,26 +35,10 @@ VELOCITY_ERROR = 0.1
 """Semi-implicit Euler in steps of 20 us has 5 % at 800 Hz."""
 LEAST_PROMPTNESS = 0.1
 """Share of the velocity after two steps that is there after one; 0 if the answer comes late."""
-_UNDAMPED = 0.9
+_UNDAMPED, _GROWN = 0.9, 1.1
+"""Vibration at the end over that at the start: next to no damping above, negative damping above."""
 FEEDTHROUGH_RATIO = 0.75
 """Largest share of a step's deflection that half the step may give; a mass alone gives 1/4."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One test.
-
-    Attributes:
-        test: its name.
-        holds: whether it passed.
-        measured: what was seen.
-        limit: what is allowed.
-    """
-
-    test: str
-    holds: bool
-    measured: str
-    limit: str
 
 
 class Behaviour:
@@ -97,7 +81,7 @@ class Behaviour:
         whole, half = (np.abs(self._run(force, h)[1]) for h in (self._step, self._step / 2.0))
         ratio = float((half / np.where(whole > 0.0, whole, np.inf)).max())
         holds = ratio <= FEEDTHROUGH_RATIO
-        return Finding(
+        return judged(
             "no feedthrough", holds, f"s(h/2) / s(h) = {ratio:.2f}", f"{FEEDTHROUGH_RATIO:g}"
         )
 
@@ -107,7 +91,7 @@ class Behaviour:
         one, two = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
         ratio = float(one.max() / two.max()) if two.any() else 0.0
         holds = ratio >= LEAST_PROMPTNESS
-        return Finding("no delay", holds, f"v(h) / v(2h) = {ratio:.2f}", f"{LEAST_PROMPTNESS:g}")
+        return judged("no delay", holds, f"v(h) / v(2h) = {ratio:.2f}", f"{LEAST_PROMPTNESS:g}")
 
     def velocities(self) -> Finding:
         """The integral of the velocities is the change of the positions: by Simpson's rule."""
@@ -115,24 +99,28 @@ class Behaviour:
         found = self._outputs(random_forces(1, self._step), names, self._step)
         s, v = np.split(found, 2, axis=1)
         pieces = (v[:-2:2] + 4.0 * v[1:-1:2] + v[2::2]) * self._step / 3.0
-        error = float(np.abs(np.cumsum(pieces, axis=0) - (s[2::2] - s[0])).max())
-        error /= float(np.abs(s).max())
+        integral, change = np.cumsum(pieces, axis=0), s[2::2] - s[0]
+        error = float(np.abs(integral - change).max()) / float(np.abs(s).max())
         holds = error <= VELOCITY_ERROR
-        return Finding(
-            "v = ds/dt", holds, f"off by {100 * error:.2g} %", f"{100 * VELOCITY_ERROR:g} %"
-        )
+        shown = f"off by {100 * error:.2g} %"
+        if not holds and change.any():
+            shown += f"; v is {float((integral * change).sum() / (change**2).sum()):.4g} of it"
+        return judged("v = ds/dt", holds, shown, f"{100 * VELOCITY_ERROR:g} %")
 
     def damping(self) -> Finding:
-        """Whether vibration after a push dies out; a remark only, as none is legal."""
+        """Whether vibration after a push dies out; it may stay, but must not grow."""
         forces = np.zeros((2 * _SETTLING, len(FORCES)))
         forces[0] = _FORCE
         speed = np.abs(self._outputs(forces, VELOCITIES, self._step)[1:])
         part = len(speed) // 4
         left = float(np.sqrt((speed[-part:] ** 2).mean() / (speed[:part] ** 2).mean()))
         shown = f"{100 * left:.2g} % left after {1e3 * 2 * _SETTLING * self._step:.3g} ms"
+        limit = f"{100 * _GROWN:g} %; none is legal"
+        if left > _GROWN:
+            return judged("damping", False, f"{shown}: negative damping", limit)
         if left > _UNDAMPED:
-            shown += ": next to no damping"
-        return Finding("damping", True, shown, "a remark")
+            return remark("damping", f"{shown}: next to no damping", limit)
+        return judged("damping", True, shown, limit)
 
     def zero(self) -> Finding:
         """Nothing moves without force."""
@@ -140,7 +128,7 @@ class Behaviour:
             np.zeros((_RECORD, len(FORCES))), (*POSITIONS, *VELOCITIES), self._step
         )
         largest = float(np.abs(found).max())
-        return Finding("zero stays zero", largest == 0.0, f"{largest:g}", "0")
+        return judged("zero stays zero", largest == 0.0, f"{largest:g}", "0")
 
     def statics(self, static: np.ndarray | None) -> Finding:
         """The mean of the step responses, weighted so that vibration drops out."""
@@ -152,10 +140,11 @@ class Behaviour:
         else:
             reference, what = static, "off by"
         error = float(np.abs(found - reference).max() / np.abs(reference).max())
-        lowest = float(np.linalg.eigvalsh((found + found.T) / 2.0)[0])
+        lowest, *_, highest = np.linalg.eigvalsh((found + found.T) / 2.0)
         holds = error <= STATIC_ERROR and lowest > 0.0
-        shown = f"{what} {100 * error:.2g} %" + ("" if lowest > 0.0 else ", not positive")
-        return Finding("static compliance", holds, shown, f"{100 * STATIC_ERROR:g} %, positive")
+        sign = "" if lowest > 0.0 else ", not positive" if highest > 0.0 else ", forces backwards"
+        shown = f"{what} {100 * error:.2g} %{sign}"
+        return judged("static compliance", holds, shown, f"{100 * STATIC_ERROR:g} %, positive")
 
     def reciprocity(self) -> Finding:
         """A force at i moves j as the same force at j moves i."""
@@ -163,7 +152,7 @@ class Behaviour:
         error = float(np.abs(responses - responses.transpose(2, 1, 0)).max())
         error /= float(np.abs(responses).max())
         holds = error <= RECIPROCITY_ERROR
-        return Finding(
+        return judged(
             "reciprocity", holds, f"off by {100 * error:.2g} %", f"{100 * RECIPROCITY_ERROR:g} %"
         )
 
@@ -175,14 +164,14 @@ class Behaviour:
         error = float(np.abs(together - expected).max() / np.abs(expected).max())
         holds = error <= SUPERPOSITION_ERROR
         limit = f"{100 * SUPERPOSITION_ERROR:g} %"
-        return Finding("superposition", holds, f"off by {100 * error:.2g} %", limit)
+        return judged("superposition", holds, f"off by {100 * error:.2g} %", limit)
 
     def passivity(self) -> Finding:
         """Work from rest is never negative."""
         lowest = min(least_work(self._run, seed, self._step) for seed in range(RECORDS))
         holds = lowest >= -NEGATIVE_WORK
         shown = f"{lowest:.1g} of the highest work" if lowest < 0.0 else "no negative work"
-        return Finding("passivity", holds, shown, f"-{NEGATIVE_WORK:g}, {RECORDS} records")
+        return judged("passivity", holds, shown, f"-{NEGATIVE_WORK:g}, {RECORDS} records")
 
     def halving(self) -> Finding:
         """The rms of the positions at half the step, under the same forces."""
@@ -191,7 +180,7 @@ class Behaviour:
         half = self._run(np.repeat(forces, 2, axis=0), self._step / 2.0)[2::2]
         change = float(abs(_rms(half) / _rms(whole) - 1.0))
         holds = change <= HALVING_CHANGE
-        return Finding(
+        return judged(
             "step halving", holds, f"rms changes by {100 * change:.2g} %",
             f"{100 * HALVING_CHANGE:g} %",
         )  # fmt: skip

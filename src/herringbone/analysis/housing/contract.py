@@ -5,7 +5,7 @@ Variables: twelve forces on the housing `<seat>.f_x` ... [N] are inputs; the mot
 Behaviour, from rest: zero stays zero; a constant force leads to a constant deflection; the
 compliance is reciprocal; responses add up; a force record never gets out more work than it put in;
 a halved step changes little; velocities are the rates of the positions; the answer comes in the
-step of the force. Whether it has damping is told, not asked for.
+step of the force. Vibration must not grow; whether it dies out is told, not asked for.
 
 Behaviour is tested in `housing.behaviour`.
 """
@@ -14,12 +14,12 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from herringbone.analysis.finding import Finding, Report, judged
 from herringbone.analysis.housing.behaviour import (
     FORCES,
     POSITIONS,
     VELOCITIES,
     Behaviour,
-    Finding,
 )
 from herringbone.core import ParameterError
 from herringbone.core.part import Part
@@ -37,7 +37,7 @@ def check_housing(
     *,
     static: np.ndarray | None = None,
     step: float = STEP,
-    progress: Callable[[str], None] = lambda what: None,
+    progress: Report = lambda what: None,
 ) -> list[Finding]:
     """Test a housing against the contract.
 
@@ -92,7 +92,7 @@ def _declared(part: Part) -> Iterator[Finding]:
     count = f"{len(wanted) - len(missing)} of {len(wanted)}"
     shown = f"{count}; missing: {', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
     limit = "12 inputs f, 12 outputs s, 12 outputs v"
-    yield Finding("variables", not missing, shown if missing else count, limit)
+    yield judged("variables", not missing, shown if missing else count, limit)
     present = [part.variables[name] for name in wanted if name not in missing]
     wrong = [
         f"{v.name} in {v.unit}"
@@ -101,12 +101,12 @@ def _declared(part: Part) -> Iterator[Finding]:
     ]
     bare = sum(not v.unit for v in present)
     shown = ", ".join(wrong[:3]) or (f"{bare} without unit, taken as SI" if bare else "declared")
-    yield Finding("units", not wrong, shown, "N, m, m/s")
+    yield judged("units", not wrong, shown, "N, m, m/s")
     direct = [v.name for v in present if v.causality == "output" and v.dependencies]
     undeclared = sum(v.causality == "output" and v.dependencies is None for v in present)
     shown = f"{undeclared} outputs say nothing" if undeclared else "none"
     shown = f"{direct[0]} and {len(direct) - 1} more" if direct else shown
-    yield Finding("dependencies", not direct, shown, "none of s, v on f")
+    yield judged("dependencies", not direct, shown, "none of s, v on f")
 
 
 def _si(unit: str) -> tuple:

@@ -1,1 +1,1 @@
-"""The command `housing`, and what `check --as housing` shows."""
+"""The command `housing`."""

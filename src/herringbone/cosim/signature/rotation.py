@@ -91,7 +91,8 @@ def _end(
         values = lab.start.copy()
         values[rate] += speed
         place = {Given.MEAN: n + 0.5, Given.START: n, Given.END: n + 1.0}[rule]
-        values[angle] += speed * place * h
+        values[angle] += values[rate] * place * h
         inputs.append(values)
-    missing = {Given.MEAN: 0.5, Given.START: 0.0, Given.END: 0.0}[rule] * speed * h
+    turned = (lab.start[rate] + speed) * h
+    missing = {Given.MEAN: 0.5, Given.START: 0.0, Given.END: 0.0}[rule] * turned
     return lab.run(inputs, h)[-1] + feedthrough[:, angle] * missing

@@ -1,0 +1,1 @@
+"""What every part with flanges must do: motors, loads and couplings, whoever wrote them."""

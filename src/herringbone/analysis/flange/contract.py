@@ -1,0 +1,154 @@
+"""What motors, loads and couplings must do, whoever wrote them: the contract of flanges.
+
+A flange either takes `tau`, the torque on the part [N m], and gives the motion `phi` [rad], `w`
+[rad/s] of its body; or it takes the motion of the neighbour and gives `tau`, the torque on that
+neighbour. Motors and loads have one, couplings two. Behaviour is tested from the start values, on
+throw-away instances; what is not possible is said.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from herringbone.analysis.finding import Finding, Report, Verdict, judged, not_tested, remark
+from herringbone.analysis.flange.answers import delay, feedthrough, sign
+from herringbone.analysis.flange.bench import Bench
+from herringbone.analysis.flange.rates import rate, turns
+from herringbone.analysis.flange.reaction import reaction, relative
+from herringbone.analysis.flange.rotation import rotation
+from herringbone.analysis.flange.variables import Flange, asked, find_flanges
+from herringbone.analysis.flange.work import passivity
+from herringbone.core import FmuError
+from herringbone.core.part import Part
+from herringbone.core.roles import Role
+from herringbone.cosim.signature import Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.signature.trial import Refused
+
+FLANGES = {Role.DRIVE: 1, Role.LOAD: 1, Role.COUPLING: 2}
+"""How many flanges a role has."""
+
+_OF_FLANGE: tuple[tuple[str, Callable[[Bench, Flange], Finding]], ...] = (
+    ("no delay", delay),
+    ("feedthrough", feedthrough),
+    ("sign of the torque", sign),
+    ("w = dphi/dt", rate),
+    ("angle over turns", turns),
+    ("H-term", rotation),
+)
+_OF_PART: tuple[tuple[str, Callable[[Bench], Finding]], ...] = (("passivity", passivity),)
+_OF_COUPLING: tuple[tuple[str, Callable[[Bench], Finding]], ...] = (
+    ("action = reaction", reaction),
+    ("relative motion only", relative),
+)
+
+
+def check_flanges(
+    make: Callable[[], Part],
+    role: Role,
+    *,
+    step: float,
+    flanges: Sequence[str] = (),
+    progress: Report = lambda what: None,
+) -> list[Finding]:
+    """Test a part against the contract of a role.
+
+    Args:
+        make: makes a new instance, start values set.
+        role: one of FLANGES.
+        step: of the trials [s].
+        flanges: which variables they are: `port`, or `tau=name,phi=name,w=name`; empty: guessed.
+        progress: called with what begins.
+
+    Returns:
+        One finding a test; if variables are wrong, nothing else is tested.
+
+    Raises:
+        HerringboneError: it does not start, or `flanges` cannot be read.
+    """
+    part = make()
+    try:
+        found, findings = find_flanges(part.variables, asked(flanges), FLANGES[role])
+        part.enter_initialization(0.0, 1.0)
+        part.exit_initialization()  # pythonfmu does not survive freeing what was not
+        inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
+        start = np.array(part.get(inputs))
+    finally:
+        part.close()
+    if not all(finding.holds for finding in findings):
+        return findings
+    if part.once:
+        return [*findings, *_nothing("it can be instantiated once only", role)]
+    try:
+        with Laboratory(make, inputs, outputs, start, step) as lab:
+            progress("what it is")
+            signature = find_signature(lab, part.variables)
+            findings.append(_repeats(signature))
+            why = _impossible(signature, found)
+            if why:
+                return [*findings, *_nothing(why, role)]
+            bench = Bench(lab, signature, found, steps_vary=not part.one_step)
+            return [*findings, *_behaviour(bench, progress)]
+    except Refused as error:
+        return [*findings, *_nothing(str(error), role)]
+    except FmuError as error:
+        return [*findings, judged("trial steps", False, str(error), "it starts and steps")]
+
+
+def _reals(part: Part, causality: str) -> list[str]:
+    return [
+        name
+        for name, v in part.variables.items()
+        if v.causality == causality and v.is_real and ".node" not in name
+    ]
+
+
+def _nothing(why: str, role: Role) -> list[Finding]:
+    tests = [*_OF_FLANGE, *_OF_PART, *(_OF_COUPLING if FLANGES[role] > 1 else ())]
+    return [not_tested(name, why) for name, _ in tests]
+
+
+def _impossible(signature: Signature, flanges: Sequence[Flange]) -> str:
+    """Why no test of behaviour is possible, "" if some are: a body's need no feedthrough."""
+    if not signature.repeats:
+        return "the same steps give other outputs"
+    if signature.kind is Kind.SAMPLED:
+        return f"its outputs change every {signature.tick:g} s only: add --step {signature.tick:g}"
+    known = np.isfinite(signature.feedthrough).any()
+    if not known and not all(flange.takes_torque for flange in flanges):
+        note = next(iter(signature.notes), "trial steps tell nothing of it")
+        return f"{note}; give other start values by --set" if "not linear" in note else note
+    return ""
+
+
+def _repeats(signature: Signature) -> Finding:
+    test, limit = "steps repeat", "equal bits"
+    if not signature.repeats:
+        note = next(iter(signature.notes), "")
+        return Finding(test, Verdict.REMARK, note, limit)
+    if signature.restores:
+        return judged(test, True, "it saves and restores its state", limit)
+    what = "it does not save its state" if signature.restores is None else signature.notes[0]
+    return remark(test, f"{what}; the coupling steps it once", limit)
+
+
+def _behaviour(bench: Bench, progress: Report) -> Iterator[Finding]:
+    many = len(bench.flanges) > 1
+    for flange in bench.flanges:
+        for name, test in _OF_FLANGE:
+            progress(name)
+            found = _tried(name, lambda test=test, flange=flange: test(bench, flange))
+            yield _named(found, flange.name) if many else found
+    for name, of_part in (*_OF_PART, *(_OF_COUPLING if many else ())):
+        progress(name)
+        yield _tried(name, lambda of_part=of_part: of_part(bench))
+
+
+def _tried(name: str, test: Callable[[], Finding]) -> Finding:
+    try:
+        return test()
+    except Refused as error:
+        return not_tested(name, str(error))
+
+
+def _named(finding: Finding, flange: str) -> Finding:
+    return Finding(f"{flange}: {finding.test}", finding.verdict, finding.measured, finding.limit)

@@ -1,0 +1,245 @@
+"""Which variables of a part are its flanges: by the names of ports, as told, or by units."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from herringbone.analysis.finding import Finding, Verdict, judged, remark
+from herringbone.core import ParameterError
+from herringbone.core.part import PartVariable
+
+QUANTITIES = ("tau", "phi", "w")
+UNITS = {"tau": "N.m", "phi": "rad", "w": "rad/s"}
+_POWERS = {"tau": {"kg": 1, "m": 2, "s": -2}, "phi": {}, "w": {"s": -1}}
+"""Exponents of base units; rad is left out, as tools differ on it."""
+_WORDS = {
+    "tau": {"tau", "torque", "moment", "trq", "m", "t"},
+    "phi": {"phi", "angle", "theta", "rotation", "position"},
+    "w": {"w", "omega", "speed", "velocity", "n", "rpm"},
+}
+_NAMED_UNITS = {"rad/s": 1.0, "rad": 1.0, "N.m": 1.0, "Nm": 1.0}
+_MOST = 6
+NEEDS = (
+    "a flange takes tau [N.m] and gives phi [rad] and w [rad/s], or takes phi and w and gives tau; "
+    "name them with --flange PORT or --flange tau=...,phi=...,w=..."
+)
+
+
+@dataclass(frozen=True)
+class Flange:
+    """The variables of a flange.
+
+    Attributes:
+        name: of the port.
+        tau, phi, w: names of variables, "" if the part has none.
+        takes_torque: tau is an input; else phi and w are.
+        factors: of the units of tau, phi, w to N m, rad, rad/s.
+    """
+
+    name: str
+    tau: str
+    phi: str
+    w: str
+    takes_torque: bool
+    factors: Mapping[str, float]
+
+    def variable(self, quantity: str) -> str:
+        """Name of the variable of a quantity, "" without."""
+        return {"tau": self.tau, "phi": self.phi, "w": self.w}[quantity]
+
+    def moves(self, quantity: str) -> bool:
+        """True if the quantity is an input of the part."""
+        return (quantity == "tau") == self.takes_torque
+
+
+def asked(texts: Sequence[str]) -> list[dict[str, str]]:
+    """Variables of flanges by quantity, from `port` or `tau=...,phi=...,w=...`.
+
+    Raises:
+        ParameterError: a text is neither.
+    """
+    found = []
+    for text in texts:
+        if "=" not in text:
+            found.append({q: f"{text}.{q}" for q in QUANTITIES})
+            continue
+        pairs = [piece.partition("=")[::2] for piece in text.split(",")]
+        given = {quantity.strip(): name.strip() for quantity, name in pairs}
+        if (
+            not given.keys() <= set(QUANTITIES)
+            or len(given) < len(pairs)
+            or not all(given.values())
+        ):
+            raise ParameterError(
+                f"--flange {text}: write a port's name, or tau=NAME,phi=NAME,w=NAME"
+            )
+        found.append(given)
+    return found
+
+
+def find_flanges(
+    variables: Mapping[str, PartVariable], wanted: Sequence[Mapping[str, str]], count: int
+) -> tuple[list[Flange], list[Finding]]:
+    """The flanges of a part, and what is wrong with their variables.
+
+    Args:
+        variables: of the part.
+        wanted: names by quantity, one mapping a flange; by ports and units if empty.
+        count: flanges that the role has.
+    """
+    how = "as told"
+    if not wanted:
+        wanted, how = _by_ports(variables), "by the names of ports"
+    if not wanted and count == 1:
+        wanted, how = _by_units(variables), "as the only ones of their units and names"
+    if len(wanted) != count:
+        ports = ", ".join(_port(names) for names in wanted) or "none"
+        shown = f"{len(wanted)} found ({ports}); it has {_offered(variables)}"
+        return [], [judged("variables", False, shown, f"{count} flange(s): {NEEDS}")]
+    missing = [line for names in wanted for line in _missing(names, variables)]
+    if missing:
+        shown = "; ".join(missing)
+        return [], [judged("variables", False, shown, f"{count} flange(s): {NEEDS}")]
+    flanges = [_flange(names, variables) for names in wanted]
+    shown = "; ".join(_taken(flange) for flange in flanges)
+    findings = [judged("variables", True, f"{shown}, {how}", f"{count} flange(s)")]
+    findings += [
+        remark(f"{flange.name}: {quantity}", f"there is none: {flange.tau} follows {other} alone")
+        for flange in flanges
+        for quantity, other in (("phi", "w"), ("w", "phi"))
+        if not flange.variable(quantity)
+    ]
+    return flanges, [*findings, _units(flanges, variables)]
+
+
+def _reals(variables: Mapping[str, PartVariable]) -> dict[str, PartVariable]:
+    return {
+        name: v
+        for name, v in variables.items()
+        if v.is_real and v.causality in {"input", "output"} and ".node" not in name
+    }
+
+
+def _offered(variables: Mapping[str, PartVariable]) -> str:
+    """Its real inputs and outputs, some of them."""
+    reals = _reals(variables)
+    by_causality = (
+        f"{causality}s {', '.join(names[:_MOST])}{', ...' if len(names) > _MOST else ''}"
+        for causality in ("input", "output")
+        if (names := [name for name, v in reals.items() if v.causality == causality])
+    )
+    return " and ".join(by_causality) or "no real inputs or outputs"
+
+
+def _by_ports(variables: Mapping[str, PartVariable]) -> list[dict[str, str]]:
+    """Ports that have a torque and a motion, in their order."""
+    names = _reals(variables)
+    ports = dict.fromkeys(name.rpartition(".")[0] for name in names if "." in name)
+    found = []
+    for port in ports:
+        given = {q: f"{port}.{q}" for q in QUANTITIES if f"{port}.{q}" in names}
+        if len(given) > 1:
+            found.append(given)
+    return found
+
+
+def _by_units(variables: Mapping[str, PartVariable]) -> list[dict[str, str]]:
+    """The only torque in and motion out, or motion in and torque out."""
+    reals = _reals(variables)
+    for torque, motion in (("input", "output"), ("output", "input")):
+        given = {}
+        for quantity in QUANTITIES:
+            causality = torque if quantity == "tau" else motion
+            fits = [n for n, v in reals.items() if v.causality == causality and _fits(v, quantity)]
+            if len(fits) == 1:
+                given[quantity] = fits[0]
+        if "tau" in given and len(given) > 1:
+            return [given]
+    return []
+
+
+def _fits(variable: PartVariable, quantity: str) -> bool:
+    """By its unit, or, of those without one and of angles, by the words of its name."""
+    last = variable.name.rpartition(".")[2].lower()
+    named = any(word in _WORDS[quantity] for word in (last, *last.split("_")))
+    if variable.dimension is None or (quantity == "phi" and "rad" not in (variable.unit or "rad")):
+        return named if variable.unit is None else variable.unit == UNITS[quantity]
+    return _powers(variable) == _POWERS[quantity] and (quantity != "w" or variable.unit != "Hz")
+
+
+def _powers(variable: PartVariable) -> dict[str, int]:
+    assert variable.dimension is not None
+    return {name: power for name, power in variable.dimension[2] if name != "rad"}
+
+
+def _port(names: Mapping[str, str]) -> str:
+    first = next(iter(names.values()))
+    port, _, last = first.rpartition(".")
+    return port or last
+
+
+def _missing(names: Mapping[str, str], variables: Mapping[str, PartVariable]) -> Iterable[str]:
+    """What a flange lacks; one that takes motion may do with one of phi and w."""
+    reals = _reals(variables)
+    there = {q: reals[name] for q, name in names.items() if name in reals}
+    torque = there.get("tau")
+    if torque is None:
+        yield f"{_port(names)}: no variable {names.get('tau', 'for tau')}"
+        return
+    motion = "output" if torque.causality == "input" else "input"
+    fit = [q for q in ("phi", "w") if q in there and there[q].causality == motion]
+    lack = [q for q in ("phi", "w") if q not in fit]
+    if lack and (motion == "output" or not fit):
+        listed = " and ".join(names.get(q, q) for q in lack)
+        yield f"{torque.name} is an {torque.causality}, but there is no {motion} {listed}"
+
+
+def _flange(names: Mapping[str, str], variables: Mapping[str, PartVariable]) -> Flange:
+    takes = variables[names["tau"]].causality == "input"
+    motion = "output" if takes else "input"
+    flange = Flange(_port(names), names["tau"], "", "", takes, dict.fromkeys(QUANTITIES, 1.0))
+    for quantity in ("phi", "w"):
+        v = variables.get(names.get(quantity, ""))
+        if v is not None and v.is_real and v.causality == motion:
+            flange = replace(flange, **{quantity: v.name})
+    factors = {
+        q: float(v.dimension[0])
+        if (v := variables.get(flange.variable(q))) and v.dimension
+        else 1.0
+        for q in QUANTITIES
+    }
+    return replace(flange, factors=factors)
+
+
+def _taken(flange: Flange) -> str:
+    motion = " and ".join(name for name in (flange.phi, flange.w) if name)
+    if flange.takes_torque:
+        return f"takes {flange.tau}, gives {motion}"
+    return f"takes {motion}, gives {flange.tau}"
+
+
+def _units(flanges: Sequence[Flange], variables: Mapping[str, PartVariable]) -> Finding:
+    """Units of the right dimension; others than SI units are told."""
+    wrong, other, bare = [], [], []
+    for flange in flanges:
+        for quantity in QUANTITIES:
+            v = variables.get(flange.variable(quantity))
+            if v is None:
+                continue
+            shown = f"{v.name} in {v.unit}"
+            if v.unit is None:
+                bare.append(v.name)
+            elif v.dimension is None:
+                other += [] if v.unit in _NAMED_UNITS else [f"{shown}, which it does not define"]
+            elif _powers(v) != _POWERS[quantity] or v.dimension[1]:
+                wrong.append(shown)
+            elif not math.isclose(v.dimension[0], 1.0, rel_tol=1e-9):
+                other.append(f"{shown}, {v.dimension[0]:.6g} {UNITS[quantity]}")
+    limit = "N.m, rad, rad/s"
+    if wrong:
+        return judged("units", False, ", ".join(wrong), limit)
+    if bare:
+        other.append(f"{', '.join(bare)} without unit, taken as SI")
+    if other:
+        return Finding("units", Verdict.REMARK, ", ".join(other), limit)
+    return judged("units", True, "declared", limit)

@@ -1,0 +1,112 @@
+"""What `herringbone check FMU --as ROLE` shows: the contract of a role, one line a test."""
+
+import argparse
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from herringbone.analysis.finding import Finding, Report, Verdict
+from herringbone.analysis.flange.contract import check_flanges
+from herringbone.analysis.housing.contract import STEP, check_housing
+from herringbone.commands.options import assignments
+from herringbone.commands.output import show
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.part import Part
+from herringbone.core.roles import Role
+from herringbone.cosim.fmu.opening import many_of
+from herringbone.housing import read_housing
+
+ROLES = {
+    "housing": Role.HOUSING,
+    "motor": Role.DRIVE,
+    "load": Role.LOAD,
+    "coupling": Role.COUPLING,
+}
+_HEADER = ("test", "verdict", "measured", "limit")
+
+
+def check_command(options: argparse.Namespace) -> int:
+    """Show what holds, one line a test; 1 if something does not.
+
+    Args:
+        options: of the command `check`, with a role.
+
+    Raises:
+        HerringboneError: the FMU cannot be used, or does not step.
+    """
+    with tqdm(disable=None, bar_format="[{elapsed}] {desc}") as bar:
+        findings, step = _tested(options, bar.set_description_str)
+    failed = sum(not finding.holds for finding in findings)
+    untested = sum(finding.verdict is Verdict.NOT_TESTED for finding in findings)
+    if options.json:
+        rows = [dict(zip(_HEADER, _cells(finding), strict=True)) for finding in findings]
+        found = {"fmu": str(options.fmu), "role": options.role, "step": step, "holds": not failed}
+        show(json.dumps({**found, "tests": rows}, indent=1))
+        return 1 if failed else 0
+    show(f"{options.fmu} as {options.role}, steps of {1e6 * step:g} us:\n{_table(findings)}")
+    said = f"{failed} test(s) fail" if failed else "nothing fails" if untested else "all tests hold"
+    show(f"{said}, {untested} not possible" if untested else said)
+    return 1 if failed else 0
+
+
+def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding], float]:
+    """Findings, and the step of the trials [s]."""
+    role, fmu = ROLES[options.role], options.fmu
+    with many_of(fmu.stem, fmu) as new:
+        make = _started(new, assignments(options.set, "--set", "VARIABLE=VALUE"))
+        if role is Role.HOUSING:
+            step = options.step or STEP
+            static = None if options.against is None else _static(options.against)
+            return check_housing(make, static=static, step=step, progress=progress), step
+        step = options.step or own_step(fmu)
+        flanges = options.flange or ()
+        return check_flanges(make, role, step=step, flanges=flanges, progress=progress), step
+
+
+def _started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], Part]:
+    """Makes instances with start values set."""
+
+    def make() -> Part:
+        part = new()
+        try:
+            for name, text in values.items():
+                number = part.variables[name].is_real if name in part.variables else False
+                part.set(name, float(text) if number else text)
+        except (ValueError, HerringboneError) as error:
+            part.enter_initialization(0.0, 1.0)  # pythonfmu does not survive freeing what was not
+            part.close()
+            if isinstance(error, ValueError):
+                raise ParameterError(f"--set {name}={text}: it must be a number") from error
+            raise
+        return part
+
+    return make
+
+
+def own_step(fmu: Path) -> float:
+    """Step that an FMU proposes for experiments [s], or that of trials."""
+    from herringbone.cosim.fmu.file import read_fmu  # noqa: PLC0415
+
+    experiment = read_fmu(fmu).defaultExperiment
+    return float(experiment.stepSize) if experiment and experiment.stepSize else 1e-4
+
+
+def _static(against: Path) -> np.ndarray:
+    housing = read_housing(against)
+    return housing.static_compliance() if housing.static is None else housing.static
+
+
+def _cells(finding: Finding) -> tuple[str, ...]:
+    return finding.test, str(finding.verdict), finding.measured, finding.limit
+
+
+def _table(findings: Sequence[Finding]) -> str:
+    rows = [_HEADER, *map(_cells, findings)]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(_HEADER))]
+    return "\n".join(
+        "  " + "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
