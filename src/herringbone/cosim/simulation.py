@@ -9,6 +9,7 @@ from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
+from herringbone.cosim.nodal import correct_starts
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
@@ -96,6 +97,7 @@ def simulate(
             part.set(INTERFACE_DEGREE, float(degree))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch)
+    correct_starts(network)
     run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
     if loop is None:
         run.loop_notes = tuple(

@@ -9,7 +9,10 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Addresses, Part, PartVariable
 from herringbone.core.variable import NODES
 from herringbone.cosim.nodal import calls
+from herringbone.cosim.nodal.memory import MEMORY
+from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.signature import Kind, Signature
+from herringbone.cosim.structure.network import Network
 from herringbone.kernels.signals import STRIDE
 
 _ADDRESSES = Addresses._fields[:7]
@@ -21,15 +24,16 @@ class NodalPart:
     Args:
         part: not initialised, without nodes of its own.
         signature: of it, with known feedthrough.
-        pieces: steps of the part per node.
+        pieces: steps of the part from node to node, 1 or 2; see `nodal.held`. Without memory one.
     """
 
-    def __init__(self, part: Part, signature: Signature, pieces: int = 1) -> None:
+    def __init__(self, part: Part, signature: Signature, pieces: int = 2) -> None:
         self.name, self.part, self.signature = part.name, part, signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
         self.once, self.one_step = part.once, part.one_step
         self.variables: Mapping[str, PartVariable] = self._variables()
+        self._start: dict[str, float] = {}
         self._memory = self._make_memory(pieces)
 
     def _variables(self) -> dict[str, PartVariable]:
@@ -49,24 +53,37 @@ class NodalPart:
     def _make_memory(self, pieces: int) -> np.ndarray:
         n, m = len(self._inputs), len(self._outputs)
         known = self.part.variables
+        rate = np.array(self.signature.rate_inputs or [-1] * n, np.int64)
         self._arrays = {
             "input_references": np.array([known[x].reference for x in self._inputs], np.uint32),
             "output_references": np.array([known[x].reference for x in self._outputs], np.uint32),
             "given": np.zeros((n, STRIDE)),
             "driven": np.zeros(n, np.int64),
             "coefficients": np.zeros((n, STRIDE)),
-            "held": np.zeros(n),
+            "order": _rates_first(rate),
+            "held": np.zeros((2, n)),
             "packed": np.zeros(n),
             "packed_references": np.zeros(n, np.uint32),
             "raw": np.zeros(m),
             "values": np.zeros((m, STRIDE)),
             "feedthrough": np.nan_to_num(self.signature.feedthrough),
             "place": np.array(self.signature.given or [0] * n, np.int64),
-            "rate": np.array(self.signature.rate_inputs or [-1] * n, np.int64),
+            "rate": rate,
+            "offset": np.zeros(m),
+            "seen_held": np.zeros((2, n)),
+            "seen_raw": np.zeros(m),
+            "answer": np.zeros((m, n)),
+            "changes": np.array([amplitude(known[x], 0.0) for x in self._inputs]),
+            "responses": np.zeros((5, m)),
+            "trial_state": np.zeros(1, np.int64),
         }
-        memory = np.zeros(1, calls.MEMORY)
-        memory["inputs"], memory["outputs"], memory["pieces"] = n, m, pieces
+        memory = np.zeros(1, MEMORY)
+        memory["inputs"], memory["outputs"] = n, m
         memory["at_end"] = not self.has_states
+        memory["pieces"] = pieces if self.has_states else 1
+        memory["watched"] = self.has_states and self.signature.restores is True
+        memory["suspected"] = 1  # what states answer is not known yet
+        memory["seen_time"] = np.nan
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
         for name, address in self.part.addresses._asdict().items():
@@ -92,10 +109,31 @@ class NodalPart:
             self._memory["degree"] = int(value)
         elif name in self.part.variables:  # nodes of inputs that nothing feeds need no value
             self.part.set(name, value)
+            if name in self._inputs:
+                self._start[name] = float(value)
 
     def get(self, names: Sequence[str]) -> list[float]:
-        """Values of real variables of the part."""
-        return self.part.get(names)
+        """Values of real variables of the part; before the first step with what they lack."""
+        values = self.part.get(names)
+        if self._memory["stepped"]:
+            return values
+        lacking = dict(zip(self._outputs, self._arrays["offset"], strict=True))
+        return [x + lacking.get(name, 0.0) for name, x in zip(names, values, strict=True)]
+
+    def correct_start(self, inputs: Mapping[str, float]) -> None:
+        """Outputs before the first step follow inputs that differ from those of initialisation.
+
+        Sources that show their start values after it only are no rarity; a part must not be set
+        and read without a step between, so that it is done by its feedthrough.
+
+        Args:
+            inputs: values that its sources give now.
+        """
+        change = np.zeros(len(self._inputs))
+        for number, name in enumerate(self._inputs):
+            if name in inputs and name in self._start:
+                change[number] = inputs[name] - self._start[name]
+        self._arrays["offset"][:] = self._arrays["feedthrough"] @ change
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """See `Part`."""
@@ -116,3 +154,20 @@ class NodalPart:
     def close(self) -> None:
         """See `Part`."""
         self.part.close()
+
+
+def _rates_first(rate: np.ndarray) -> np.ndarray:
+    """(n,) inputs, each after its rate, whose number stands in `rate`; -1: it has none."""
+    depth = np.zeros(rate.size, np.int64)
+    for _ in range(rate.size):
+        depth = np.where(rate >= 0, 1 + depth[rate], 0)
+    return np.argsort(depth, kind="stable").astype(np.int64)
+
+
+def correct_starts(network: Network) -> None:
+    """Start values of parts behind adapters, after initialisation; bodies, elements, bodies."""
+    for p in (*network.bodies, *network.elements, *network.bodies):
+        part = network.parts[p]
+        if isinstance(part, NodalPart):
+            now = {c.input: network.parts[c.source].get([c.output])[0] for c in network.inputs(p)}
+            part.correct_start(now)
