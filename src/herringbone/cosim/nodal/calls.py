@@ -25,6 +25,7 @@ from herringbone.cosim.loops.calls import do_step as step_part
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.cosim.nodal.held import hold
 from herringbone.cosim.nodal.memory import MEMORY_POINTER
+from herringbone.cosim.nodal.once import answer, make_up, remember
 from herringbone.cosim.nodal.watch import compare, measure_if_suspected
 from herringbone.cosim.signature.rotation import Given
 from herringbone.kernels.jit import allocating, c_function
@@ -146,10 +147,15 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
     whole = carray(memory, 1)
     part = whole[0]
     nodes = max(1, part.degree)
+    if part.once and part.taken_time == time and part.taken_step == step:
+        answer(whole)
+        return types.int32(0)
     _expand(whole)
     length = step / (nodes * part.pieces)
     for node in range(1, nodes + 1):
         hold(whole, (node - 1) / nodes, node / nodes, step)
+        if part.once:
+            make_up(whole, step)
         for piece in range(part.pieces):
             status = _give(whole, piece)
             if status > LAST_GOOD:
@@ -165,6 +171,8 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
             compare(whole, time, step)
         _keep(whole, node, node / nodes, length)
     whole[0].seen_piece, whole[0].stepped = length, 1
+    if part.once:
+        remember(whole, time, step)
     return types.int32(0)
 
 

@@ -45,6 +45,12 @@ MEMORY = np.dtype(
         ("changes", np.int64),
         ("responses", np.int64),
         ("trial_state", np.int64),
+        ("once", np.int64),
+        ("taken_time", np.float64),
+        ("taken_step", np.float64),
+        ("taken", np.int64),
+        ("answers", np.int64),
+        ("missed", np.int64),
     ]
 )
 """What an adapter knows.
@@ -62,6 +68,10 @@ For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; res
 a measurement; seen_time, seen_step, seen_piece: of the last step and its pieces [s]. Addresses:
 seen_held (2, n), seen_raw (m): at its first node; answer (m, n): what states answer in a piece;
 changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a saved state.
+
+For `nodal.once`: once: 1 if the part cannot repeat a step; taken_time, taken_step: of the last step
+[s]. Addresses: taken (n, STRIDE): inputs of that step; answers (m, STRIDE): outputs; missed (n):
+mean of what its inputs became after it.
 """
 
 MEMORY_POINTER = types.CPointer(from_dtype(MEMORY))

@@ -76,6 +76,9 @@ class NodalPart:
             "changes": np.array([amplitude(known[x], 0.0) for x in self._inputs]),
             "responses": np.zeros((5, m)),
             "trial_state": np.zeros(1, np.int64),
+            "taken": np.zeros((n, STRIDE)),
+            "answers": np.zeros((m, STRIDE)),
+            "missed": np.zeros(n),
         }
         memory = np.zeros(1, MEMORY)
         memory["inputs"], memory["outputs"] = n, m
@@ -83,7 +86,8 @@ class NodalPart:
         memory["pieces"] = pieces if self.has_states else 1
         memory["watched"] = self.has_states and self.signature.restores is True
         memory["suspected"] = 1  # what states answer is not known yet
-        memory["seen_time"] = np.nan
+        memory["seen_time"] = memory["taken_time"] = np.nan
+        memory["once"] = self.answers_again
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
         for name, address in self.part.addresses._asdict().items():
@@ -92,10 +96,15 @@ class NodalPart:
         return memory
 
     @property
+    def answers_again(self) -> bool:
+        """True if the part cannot repeat a step; see `nodal.once`."""
+        return not (self.part.addresses.can_restore and self.signature.restores)
+
+    @property
     def addresses(self) -> Addresses:
         """Addresses of the adapter; the component is its memory."""
         functions = [calls.set_real, calls.get_real, calls.do_step]
-        if self.part.addresses.can_restore and self.signature.restores:
+        if not self.answers_again:
             functions += [calls.get_state, calls.set_state, calls.free_state]
         return Addresses(self._memory.ctypes.data, *(f.address for f in functions))
 
