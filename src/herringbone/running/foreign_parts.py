@@ -108,6 +108,12 @@ def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Si
 def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     """The part as the coupling takes it, and lines on it."""
     lines = list(signature.notes)
+    if _can_be_watched(part, signature):
+        lines.append(
+            "trials do not tell what passes directly for all of its motions: it is measured anew "
+            "as the part moves"
+        )
+        return NodalPart(part, _as_it_moves(signature)), lines
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
         return part, lines
@@ -118,6 +124,24 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         return part, lines
     lines.append(_coupled_as(signature))
     return NodalPart(part, signature), lines
+
+
+def _can_be_watched(part: Part, signature: Signature) -> bool:
+    """True if only the feedthrough of a part is unknown, and its steps can be repeated."""
+    return (
+        signature.kind is Kind.UNKNOWN
+        and signature.memory is not Answer.UNKNOWN
+        and bool(np.isnan(signature.feedthrough).any())
+        and signature.restores is True
+        and signature.tick == 0.0
+        and not part.addresses.set_derivatives
+    )
+
+
+def _as_it_moves(signature: Signature) -> Signature:
+    """What is known of the signature, for a start."""
+    kind = Kind.ELEMENT if signature.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH
+    return replace(signature, kind=kind)
 
 
 def _coupled_as(signature: Signature) -> str:

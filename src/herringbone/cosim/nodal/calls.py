@@ -167,8 +167,8 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
         status = _read(whole)
         if status > LAST_GOOD:
             return types.int32(status)
-        if node == 1 and part.watched:
-            compare(whole, time, step)
+        if part.watched:
+            compare(whole, node, time, step)
         _keep(whole, node, node / nodes, length)
     whole[0].seen_piece, whole[0].stepped = length, 1
     if part.once:

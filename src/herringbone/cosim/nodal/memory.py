@@ -66,7 +66,7 @@ number of an input's rate, or -1; offset (m): what start values of the outputs l
 
 For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without
 a measurement; seen_time, seen_step, seen_piece: of the last step and its pieces [s]. Addresses:
-seen_held (2, n), seen_raw (m): at its first node; answer (m, n): what states answer in a piece;
+seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a piece;
 changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a saved state.
 
 For `nodal.once`: once: 1 if the part cannot repeat a step; taken_time, taken_step: of the last step

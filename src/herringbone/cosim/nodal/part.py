@@ -44,7 +44,10 @@ class NodalPart:
         for number, name in enumerate((*self._inputs, *self._outputs)):
             v = known[name]
             if name in self._outputs:
-                v = replace(v, dependencies=passed[name])
+                direct = passed[name]
+                if direct is None:  # of an element all, of a body what the coupling finds
+                    direct = frozenset() if self.has_states else frozenset(self._inputs)
+                v = replace(v, dependencies=direct)
             for node in range(NODES + 1):
                 own = name if node == 0 else node_name(name, node)
                 found[own] = replace(v, name=own, reference=number * STRIDE + node)
@@ -70,8 +73,8 @@ class NodalPart:
             "place": np.array(self.signature.given or [0] * n, np.int64),
             "rate": rate,
             "offset": np.zeros(m),
-            "seen_held": np.zeros((2, n)),
-            "seen_raw": np.zeros(m),
+            "seen_held": np.zeros((STRIDE, 2, n)),
+            "seen_raw": np.zeros((STRIDE, m)),
             "answer": np.zeros((m, n)),
             "changes": np.array([amplitude(known[x], 0.0) for x in self._inputs]),
             "responses": np.zeros((5, m)),

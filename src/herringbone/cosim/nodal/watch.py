@@ -1,15 +1,17 @@
 r"""Watch over the direct feedthrough D, which dead zones, clutches and hardening laws change.
 
-A repeated step gives pairs: the same start, other inputs. At the first node, where states had the
-least time to answer,
+A repeated step gives pairs: the same start, other inputs. At each node
 
-    delta y = D delta u_held + what states make of delta u.
+    delta y = D delta u_held + what states make of delta u,
 
-Where the rest exceeds a tenth of what D explains, and what states may explain, D is measured anew
+the latter in k pieces at most k^2 times as much as in one. Where the rest exceeds a tenth of what D
+explains, and what states may explain, D is measured anew
 before the next step: trial steps of the last piece's length l / 2^k from the saved state, with each
 input changed, extrapolated to zero as in `cosim.signature.response`. It stays the same during a
 step, so that a repeated step repeats. What states make of an input is measured with it.
 """
+
+import math
 
 import numpy as np
 from numba import carray
@@ -21,9 +23,9 @@ from herringbone.kernels.signals import STRIDE, evaluate
 
 OFF = 0.1
 """Share of a response that D need not explain."""
-_PIECES_SQUARED = 4.0
-"""Response of states after two pieces over that after one, at the most."""
 _HALVINGS = 4
+_SMALLEST = 1e-8
+"""Change of an input over its value, below which rounding would show."""
 _ROUNDING = 1e4 * float(np.finfo(float).eps)
 _SURE, _NONE, _JITTER = 0.02, 0.01, 1e-3
 _RESTING = 8
@@ -31,44 +33,44 @@ _RESTING = 8
 
 
 @allocating
-def compare(memory: np.ndarray, time: float, step: float) -> None:
-    """Compare a step at its first node with the one from the same start before; note this one."""
+def compare(memory: np.ndarray, node: int, time: float, step: float) -> None:
+    """Compare a step at a node with the one from the same start before; note this one."""
     part = memory[0]
     n, m = part.inputs, part.outputs
     held = carray(at_address(part.held), 2 * n, np.float64)
     raw = carray(at_address(part.raw), m, np.float64)
-    seen_held = carray(at_address(part.seen_held), 2 * n, np.float64)
-    seen_raw = carray(at_address(part.seen_raw), m, np.float64)
+    seen_held = carray(at_address(part.seen_held), 2 * n * STRIDE, np.float64)
+    seen_raw = carray(at_address(part.seen_raw), m * STRIDE, np.float64)
     feedthrough = carray(at_address(part.feedthrough), m * n, np.float64)
     answer = carray(at_address(part.answer), m * n, np.float64)
-    last = (part.pieces - 1) * n
-    if part.seen_time == time and part.seen_step == step:
-        for j in range(m):
-            rest, allowed = raw[j] - seen_raw[j], _ROUNDING * abs(raw[j])
-            for i in range(n):
-                first, final = held[i] - seen_held[i], held[last + i] - seen_held[last + i]
-                passed = feedthrough[j * n + i] * final
-                rest -= passed
-                by_states = abs(answer[j * n + i]) * max(abs(first), abs(final))
-                allowed += OFF * abs(passed) + _PIECES_SQUARED * by_states
-                allowed += _ROUNDING * abs(feedthrough[j * n + i] * held[last + i])
-            if abs(rest) > allowed:
-                memory[0].suspected = 1
+    last, before, below = (part.pieces - 1) * n, 2 * n * node, m * node
+    steps = float(node * part.pieces)
+    for j in range(m if part.seen_time == time and part.seen_step == step else 0):
+        rest, allowed = raw[j] - seen_raw[below + j], _ROUNDING * abs(raw[j])
+        for i in range(n):
+            known = feedthrough[j * n + i]
+            first = held[i] - seen_held[before + i]
+            final = held[last + i] - seen_held[before + last + i]
+            rest -= known * final
+            by_states = abs(answer[j * n + i]) * max(abs(first), abs(final))
+            allowed += OFF * abs(known * final) + steps * steps * by_states
+            allowed += _ROUNDING * abs(known * held[last + i])
+        if abs(rest) > allowed:
+            memory[0].suspected = 1
     for k in range(2 * n):
-        seen_held[k] = held[k]
+        seen_held[before + k] = held[k]
     for j in range(m):
-        seen_raw[j] = raw[j]
-    memory[0].seen_time, memory[0].seen_step = time, step
+        seen_raw[below + j] = raw[j]
+    if node >= part.degree:
+        memory[0].seen_time, memory[0].seen_step = time, step
 
 
 @allocating
 def measure_if_suspected(memory: np.ndarray) -> None:
     """Measure D at the present state, if a step before has shown that it may be another one."""
     part = memory[0]
-    if part.watched == 0 or part.stepped == 0 or part.suspected == 0:
-        return
-    if part.resting > 0:
-        memory[0].resting -= 1
+    memory[0].resting = max(0, part.resting - 1)
+    if part.watched == 0 or part.stepped == 0 or part.suspected == 0 or part.resting > 0:
         return
     memory[0].suspected = 0
     status = state_call(part.get_state, part.component, part.trial_state)
@@ -97,7 +99,7 @@ def _responses(memory: np.ndarray, state: int, number: int) -> int:
     n, m = part.inputs, part.outputs
     raw = carray(at_address(part.raw), m, np.float64)
     found = carray(at_address(part.responses), (_HALVINGS + 1) * m, np.float64)
-    change = carray(at_address(part.changes), n, np.float64)[number]
+    change = _change(memory, number)
     for j in range(m):
         found[_HALVINGS * m + j] = 0.0
     for k in range(_HALVINGS):
@@ -121,6 +123,20 @@ def _responses(memory: np.ndarray, state: int, number: int) -> int:
                 size = _ROUNDING * abs(raw[j] / change)
                 found[_HALVINGS * m + j] = max(found[_HALVINGS * m + j], size)
     return 0
+
+
+@allocating
+def _change(memory: np.ndarray, number: int) -> float:
+    """Change of an input in a trial: a tenth of what the last step changed it by, onward."""
+    part = memory[0]
+    coefficients = carray(at_address(part.coefficients), part.inputs * STRIDE, np.float64)
+    largest = carray(at_address(part.changes), part.inputs, np.float64)[number]
+    at = number * STRIDE
+    end = evaluate(coefficients, at, part.degree, 1.0)
+    moved = 0.1 * (end - coefficients[at])
+    if abs(moved) <= _SMALLEST * abs(end) or moved == 0.0:
+        return largest
+    return math.copysign(min(abs(moved), largest), moved)
 
 
 @allocating
