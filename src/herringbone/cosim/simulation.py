@@ -9,10 +9,10 @@ from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
-from herringbone.cosim.nodal import correct_starts
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
+from herringbone.cosim.start_values import start_offsets
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
@@ -97,8 +97,8 @@ def simulate(
             part.set(INTERFACE_DEGREE, float(degree))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch)
-    correct_starts(network)
     run = Run(network, prepared, grid, watch, settle_derivatives(network, prepared))
+    run.start_offsets = start_offsets(network)
     if loop is None:
         run.loop_notes = tuple(
             f"the motion of {parts[p].name} depends directly on forces, which does not show in "

@@ -121,6 +121,7 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
+        part.signature = signature
         return part, lines
     lines.append(_coupled_as(signature))
     return NodalPart(part, signature), lines

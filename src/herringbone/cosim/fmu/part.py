@@ -17,6 +17,7 @@ from herringbone.core.part import Addresses, PartVariable
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.signature.signature import Signature
 
 
 class FmuPart(ABC):
@@ -41,6 +42,7 @@ class FmuPart(ABC):
     ) -> None:
         self.name, self.file = name, file
         self.has_states: bool | None = None
+        self.signature: Signature | None = None
         self._running = False
         self.model = model or read_fmu(file)
         self.variables: Mapping[str, PartVariable] = read_variables(self.model)

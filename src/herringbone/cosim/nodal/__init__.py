@@ -1,5 +1,5 @@
 """Parts that hold their inputs, made to take and give polynomial signals."""
 
-from herringbone.cosim.nodal.part import NodalPart, correct_starts
+from herringbone.cosim.nodal.part import NodalPart
 
-__all__ = ["NodalPart", "correct_starts"]
+__all__ = ["NodalPart"]

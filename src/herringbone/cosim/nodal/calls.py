@@ -133,9 +133,8 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     if part.stepped == 0:
         status = _read(whole)
         raw = carray(at_address(part.raw), part.outputs, np.float64)
-        offset = carray(at_address(part.offset), part.outputs, np.float64)
         for j in range(part.outputs):
-            kept[j * STRIDE] = raw[j] + offset[j]
+            kept[j * STRIDE] = raw[j]
     for i in range(count):
         value[i] = kept[reference[i] - part.inputs * STRIDE]
     return types.int32(status)

@@ -32,7 +32,6 @@ MEMORY = np.dtype(
         ("feedthrough", np.int64),
         ("place", np.int64),
         ("rate", np.int64),
-        ("offset", np.int64),
         ("watched", np.int64),
         ("suspected", np.int64),
         ("resting", np.int64),
@@ -62,12 +61,12 @@ given: signals of the inputs (n, STRIDE); driven: 1 for inputs that were set (in
 (n, STRIDE); order (n, int64): of the inputs, those that are rates first; held (2, n): in each
 piece; packed and packed_references: of driven inputs; raw (m) outputs of the part; values: signals
 of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; rate (n, int64):
-number of an input's rate, or -1; offset (m): what start values of the outputs lack.
+number of an input's rate, or -1.
 
 For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without
 a measurement; seen_time, seen_step, seen_piece: of the last step and its pieces [s]. Addresses:
-seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a piece;
-changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a saved state.
+seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a
+piece; changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a state.
 
 For `nodal.once`: once: 1 if the part cannot repeat a step; taken_time, taken_step: of the last step
 [s]. Addresses: taken (n, STRIDE): inputs of that step; answers (m, STRIDE): outputs; missed (n):

@@ -12,7 +12,6 @@ from herringbone.cosim.nodal import calls
 from herringbone.cosim.nodal.memory import MEMORY
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.signature import Kind, Signature
-from herringbone.cosim.structure.network import Network
 from herringbone.kernels.signals import STRIDE
 
 _ADDRESSES = Addresses._fields[:7]
@@ -33,7 +32,6 @@ class NodalPart:
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
         self.once, self.one_step = part.once, part.one_step
         self.variables: Mapping[str, PartVariable] = self._variables()
-        self._start: dict[str, float] = {}
         self._memory = self._make_memory(pieces)
 
     def _variables(self) -> dict[str, PartVariable]:
@@ -72,7 +70,6 @@ class NodalPart:
             "feedthrough": np.nan_to_num(self.signature.feedthrough),
             "place": np.array(self.signature.given or [0] * n, np.int64),
             "rate": rate,
-            "offset": np.zeros(m),
             "seen_held": np.zeros((STRIDE, 2, n)),
             "seen_raw": np.zeros((STRIDE, m)),
             "answer": np.zeros((m, n)),
@@ -121,31 +118,10 @@ class NodalPart:
             self._memory["degree"] = int(value)
         elif name in self.part.variables:  # nodes of inputs that nothing feeds need no value
             self.part.set(name, value)
-            if name in self._inputs:
-                self._start[name] = float(value)
 
     def get(self, names: Sequence[str]) -> list[float]:
-        """Values of real variables of the part; before the first step with what they lack."""
-        values = self.part.get(names)
-        if self._memory["stepped"]:
-            return values
-        lacking = dict(zip(self._outputs, self._arrays["offset"], strict=True))
-        return [x + lacking.get(name, 0.0) for name, x in zip(names, values, strict=True)]
-
-    def correct_start(self, inputs: Mapping[str, float]) -> None:
-        """Outputs before the first step follow inputs that differ from those of initialisation.
-
-        Sources that show their start values after it only are no rarity; a part must not be set
-        and read without a step between, so that it is done by its feedthrough.
-
-        Args:
-            inputs: values that its sources give now.
-        """
-        change = np.zeros(len(self._inputs))
-        for number, name in enumerate(self._inputs):
-            if name in inputs and name in self._start:
-                change[number] = inputs[name] - self._start[name]
-        self._arrays["offset"][:] = self._arrays["feedthrough"] @ change
+        """Values of real variables of the part."""
+        return self.part.get(names)
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """See `Part`."""
@@ -174,12 +150,3 @@ def _rates_first(rate: np.ndarray) -> np.ndarray:
     for _ in range(rate.size):
         depth = np.where(rate >= 0, 1 + depth[rate], 0)
     return np.argsort(depth, kind="stable").astype(np.int64)
-
-
-def correct_starts(network: Network) -> None:
-    """Start values of parts behind adapters, after initialisation; bodies, elements, bodies."""
-    for p in (*network.bodies, *network.elements, *network.bodies):
-        part = network.parts[p]
-        if isinstance(part, NodalPart):
-            now = {c.input: network.parts[c.source].get([c.output])[0] for c in network.inputs(p)}
-            part.correct_start(now)

@@ -96,7 +96,7 @@ def measure_if_suspected(memory: np.ndarray) -> None:
 def _responses(memory: np.ndarray, state: int, number: int) -> int:
     """Outputs over the change of an input after steps of l / 2^k; FMI status."""
     part = memory[0]
-    n, m = part.inputs, part.outputs
+    m = part.outputs
     raw = carray(at_address(part.raw), m, np.float64)
     found = carray(at_address(part.responses), (_HALVINGS + 1) * m, np.float64)
     change = _change(memory, number)
