@@ -169,7 +169,7 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
         if part.watched:
             compare(whole, node, time, step)
         _keep(whole, node, node / nodes, length)
-    whole[0].seen_piece, whole[0].stepped = length, 1
+    whole[0].seen_piece, whole[0].stepped, whole[0].state_time = length, 1, time + step
     if part.once:
         remember(whole, time, step)
     return types.int32(0)
@@ -181,13 +181,16 @@ def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     whole = carray(memory, 1)
     part = whole[0]
     measure_if_suspected(whole)
+    whole[0].saved_time = part.state_time
     return state_call(part.get_state, part.component, handle)
 
 
 @c_function(_STATE)
 def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
-    """fmi2SetFMUstate."""
-    part = carray(memory, 1)[0]
+    """fmi2SetFMUstate, of the state that was saved last."""
+    whole = carray(memory, 1)
+    part = whole[0]
+    whole[0].state_time = part.saved_time
     return state_call(part.set_state, part.component, state)
 
 

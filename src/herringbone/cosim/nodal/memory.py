@@ -35,6 +35,8 @@ MEMORY = np.dtype(
         ("watched", np.int64),
         ("suspected", np.int64),
         ("resting", np.int64),
+        ("state_time", np.float64),
+        ("saved_time", np.float64),
         ("seen_time", np.float64),
         ("seen_step", np.float64),
         ("seen_piece", np.float64),
@@ -64,7 +66,8 @@ of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; r
 number of an input's rate, or -1.
 
 For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without
-a measurement; seen_time, seen_step, seen_piece: of the last step and its pieces [s]. Addresses:
+a measurement; state_time, saved_time: of the part and its saved state [s]; seen_time, seen_step,
+seen_piece: of the last step and its pieces [s]. Addresses:
 seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a
 piece; changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a state.
 

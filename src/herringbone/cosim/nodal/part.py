@@ -86,7 +86,7 @@ class NodalPart:
         memory["pieces"] = pieces if self.has_states else 1
         memory["watched"] = self.has_states and self.signature.restores is True
         memory["suspected"] = 1  # what states answer is not known yet
-        memory["seen_time"] = memory["taken_time"] = np.nan
+        memory["seen_time"] = memory["taken_time"] = memory["state_time"] = np.nan
         memory["once"] = self.answers_again
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data

@@ -24,10 +24,10 @@ from herringbone.kernels.signals import STRIDE, evaluate
 OFF = 0.1
 """Share of a response that D need not explain."""
 _HALVINGS = 4
-_SMALLEST = 1e-8
-"""Change of an input over its value, below which rounding would show."""
+_SMALLEST = 2.0**-10
+"""The smallest change of an input over the largest one."""
 _ROUNDING = 1e4 * float(np.finfo(float).eps)
-_SURE, _NONE, _JITTER = 0.02, 0.01, 1e-3
+_SURE, _NONE = 0.02, 0.01
 _RESTING = 8
 """Steps without a measurement, after one that found what was known."""
 
@@ -70,7 +70,8 @@ def measure_if_suspected(memory: np.ndarray) -> None:
     """Measure D at the present state, if a step before has shown that it may be another one."""
     part = memory[0]
     memory[0].resting = max(0, part.resting - 1)
-    if part.watched == 0 or part.stepped == 0 or part.suspected == 0 or part.resting > 0:
+    ended = part.state_time == part.seen_time + part.seen_step
+    if part.watched == 0 or part.suspected == 0 or part.resting > 0 or not ended:
         return
     memory[0].suspected = 0
     status = state_call(part.get_state, part.component, part.trial_state)
@@ -107,8 +108,8 @@ def _responses(memory: np.ndarray, state: int, number: int) -> int:
             status = state_call(part.set_state, part.component, state)
             status = max(status, _give_end(memory, number, change * changed))
             if status <= LAST_GOOD:
-                time, length = part.seen_time + part.seen_step, part.seen_piece / 2.0**k
-                status = do_step(part.do_step, part.component, time, length)
+                length = part.seen_piece / 2.0**k
+                status = do_step(part.do_step, part.component, part.state_time, length)
             if status <= LAST_GOOD:
                 status = exchange_reals(
                     part.get_real, part.component, part.output_references, m, part.raw
@@ -132,11 +133,8 @@ def _change(memory: np.ndarray, number: int) -> float:
     coefficients = carray(at_address(part.coefficients), part.inputs * STRIDE, np.float64)
     largest = carray(at_address(part.changes), part.inputs, np.float64)[number]
     at = number * STRIDE
-    end = evaluate(coefficients, at, part.degree, 1.0)
-    moved = 0.1 * (end - coefficients[at])
-    if abs(moved) <= _SMALLEST * abs(end) or moved == 0.0:
-        return largest
-    return math.copysign(min(abs(moved), largest), moved)
+    moved = 0.1 * (evaluate(coefficients, at, part.degree, 1.0) - coefficients[at])
+    return math.copysign(min(max(abs(moved), _SMALLEST * largest), largest), moved)
 
 
 @allocating
@@ -178,11 +176,11 @@ def _update(memory: np.ndarray, number: int) -> bool:
         largest = max(abs(long), abs(half), abs(quarter), abs(short), floor)
         gone = abs(short) <= max(_SURE * largest, floor)
         seen = max(abs(long), abs(half), abs(quarter), abs(short))
-        lost = seen <= floor and seen > _JITTER * floor
+        known = feedthrough[j * n + number]
+        lost = seen <= floor and floor > _NONE * max(abs(known), seen)
         if lost or (abs(last - before) > _SURE * largest and not gone):
             continue
         new = 0.0 if gone or abs(last) <= max(_NONE * largest, floor) else last
-        known = feedthrough[j * n + number]
         changed |= abs(new - known) > OFF * max(abs(new), abs(known))
         feedthrough[j * n + number] = new
         answer[j * n + number] = abs(long - new)
