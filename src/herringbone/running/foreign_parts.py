@@ -123,8 +123,9 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         part.variables = _measured(part.variables, signature)
         part.signature = signature
         return part, lines
-    lines.append(_coupled_as(signature))
-    return NodalPart(part, signature), lines
+    nodal = NodalPart(part, signature)
+    lines.append(_coupled_as(signature, repeats=not nodal.answers_again))
+    return nodal, lines
 
 
 def _can_be_watched(part: Part, signature: Signature) -> bool:
@@ -145,15 +146,20 @@ def _as_it_moves(signature: Signature) -> Signature:
     return replace(signature, kind=kind)
 
 
-def _coupled_as(signature: Signature) -> str:
+def _coupled_as(signature: Signature, *, repeats: bool) -> str:
     if signature.kind is Kind.ELEMENT:
         return "an element by trial steps; its outputs follow its inputs at every signal node"
-    order = "second order in the step"
-    if signature.kind is Kind.STATES_AND_FEEDTHROUGH:
-        order += ", while its feedthrough is that of the start"
+    if not repeats:
+        return (
+            f"{signature.kind} by trial steps; it cannot repeat a step: li steps it once, on "
+            "predicted inputs, and its feedthrough answers corrections, which makes the coupling "
+            "third order in the step; with other algorithms it is that of their extrapolation"
+        )
+    changes = "; its feedthrough is measured anew where it changes"
     return (
-        f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which makes "
-        f"the coupling {order}"
+        f"{signature.kind} by trial steps; from node to node it takes two steps on values that "
+        "keep mean and slope of its inputs, which makes the coupling fourth order in the step at "
+        f"most{changes if signature.kind is Kind.STATES_AND_FEEDTHROUGH else ''}"
     )
 
 
