@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
+from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs, record_names
 from herringbone.cosim.loops.adaptive import STEP_LIMIT
 from herringbone.cosim.loops.common import (
     BOUND,
@@ -74,6 +74,7 @@ class Run:
         self.record = prepared.record(grid, len(self.names))
         self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
+        self.start_offsets: Mapping[tuple[int, str], float] = {}
 
     def go_around(
         self, loop: AlgebraicLoop, algorithm: str, progress: Progress | None
@@ -95,6 +96,7 @@ class Run:
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
         get_all(self.prepared.layout, self.history, self.record.values, 0)
+        self._correct_start()
         self.history[1:] = self.history[0]
         self.others.sample(1)
         done, status, culprit, chunk = 0, DONE, -1, 1
@@ -126,6 +128,16 @@ class Run:
         self.others.sample(self.record.complete(done))
         if self.others.connected and done < self.grid.count:
             self.others.exchange()
+
+    def _correct_start(self) -> None:
+        """Add to the first values of connected outputs what they lack."""
+        names = connected_outputs(self.network)
+        keys = [(p, name) for p, outputs in enumerate(names) for name in outputs]
+        layout = self.prepared.layout
+        for i, key in enumerate(keys if self.start_offsets else ()):
+            offset = self.start_offsets.get(key, 0.0)
+            self.history[0, i] += offset
+            self.record.values[0, layout.output_record[i]] += offset
 
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
         grid = self.grid

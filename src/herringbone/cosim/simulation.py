@@ -13,6 +13,7 @@ from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
+from herringbone.cosim.start_values import start_offsets
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
@@ -101,6 +102,7 @@ def simulate(
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others)
     notes = [*settle_derivatives(network, prepared), *others.notes]
     run = Run(network, prepared, grid, watch, notes, others)
+    run.start_offsets = start_offsets(network)
     if loop is None:
         run.loop_notes = tuple(
             f"the motion of {parts[p].name} depends directly on forces, which does not show in "

@@ -114,6 +114,12 @@ def _unknown(inputs: list[str], outputs: list[str], step: float, why: str) -> Si
 def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     """The part as the coupling takes it, and lines on it."""
     lines = list(signature.notes)
+    if _can_be_watched(part, signature):
+        lines.append(
+            "trials do not tell what passes directly for all of its motions: it is measured anew "
+            "as the part moves"
+        )
+        return NodalPart(part, _as_it_moves(signature)), lines
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
         return part, lines
@@ -121,20 +127,45 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
+        part.signature = signature
         return part, lines
-    lines.append(_coupled_as(signature))
-    return NodalPart(part, signature), lines
+    nodal = NodalPart(part, signature)
+    lines.append(_coupled_as(signature, repeats=not nodal.answers_again))
+    return nodal, lines
 
 
-def _coupled_as(signature: Signature) -> str:
+def _can_be_watched(part: Part, signature: Signature) -> bool:
+    """True if only the feedthrough of a part is unknown, and its steps can be repeated."""
+    return (
+        signature.kind is Kind.UNKNOWN
+        and signature.memory is not Answer.UNKNOWN
+        and bool(np.isnan(signature.feedthrough).any())
+        and signature.restores is True
+        and signature.tick == 0.0
+        and not part.addresses.set_derivatives
+    )
+
+
+def _as_it_moves(signature: Signature) -> Signature:
+    """What is known of the signature, for a start."""
+    kind = Kind.ELEMENT if signature.memory is Answer.NO else Kind.STATES_AND_FEEDTHROUGH
+    return replace(signature, kind=kind)
+
+
+def _coupled_as(signature: Signature, *, repeats: bool) -> str:
     if signature.kind is Kind.ELEMENT:
         return "an element by trial steps; its outputs follow its inputs at every signal node"
-    order = "second order in the step"
-    if signature.kind is Kind.STATES_AND_FEEDTHROUGH:
-        order += ", while its feedthrough is that of the start"
+    if not repeats:
+        return (
+            f"{signature.kind} by trial steps; it cannot repeat a step: li steps it once, on "
+            "predicted inputs, and its feedthrough answers corrections, which makes the coupling "
+            "third order in the step; with other algorithms it is that of their extrapolation"
+        )
+    changes = "; its feedthrough is measured anew where it changes"
     return (
-        f"{signature.kind} by trial steps; its inputs are means over pieces of a step, which makes "
-        f"the coupling {order}"
+        f"{signature.kind} by trial steps; from node to node it takes two steps on values that "
+        "keep mean and slope of its inputs, which makes the coupling fourth order in the step at "
+        f"most{changes if signature.kind is Kind.STATES_AND_FEEDTHROUGH else ''}"
     )
 
 

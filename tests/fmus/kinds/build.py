@@ -174,6 +174,18 @@ PARTS = {
         "parameters": {"m": 1.0, "k": 0.0, "c": 0.0, "ko": 0.0, "co": 0.0, "x0": 0.0, "v0": 0.0},
         "flags": SAVES,
     },
+    "oscillator_curve.c": {
+        "inputs": ["f", "xo", "vo"],
+        "outputs": ["x", "v", "fo"],
+        "parameters": {"m": 1.0, "k": 0.0, "c": 0.0, "ko": 0.0, "co": 0.0, "x0": 0.0, "v0": 0.0},
+        "flags": {**SAVES, "canInterpolateInputs": "true", "maxOutputDerivativeOrder": "1"},
+    },
+    "oscillator_play.c": {
+        "inputs": ["xo"],
+        "outputs": ["x", "v", "fo"],
+        "parameters": {"m": 1.0, "k": 0.0, "ko": 0.0, "gap": 0.0, "x0": 0.0, "v0": 0.0},
+        "flags": SAVES,
+    },
     "oscillator_spring.c": {
         "inputs": ["xa", "va", "xb", "vb"],
         "outputs": ["fa", "fb"],

@@ -94,6 +94,9 @@ EXPORT Status fmi2SetDebugLogging(Component c, int on, size_t n, const char *con
     EXPORT Status fmi2##name(void) { return ERROR; }
 ABSENT(GetInteger) ABSENT(GetBoolean) ABSENT(GetString)
 ABSENT(SetInteger) ABSENT(SetBoolean) ABSENT(SetString)
-ABSENT(GetDirectionalDerivative) ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
+ABSENT(GetDirectionalDerivative)
+#ifndef DERIVATIVES
+ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
+#endif
 ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetRealStatus) ABSENT(GetIntegerStatus)
 ABSENT(GetBooleanStatus) ABSENT(GetStringStatus)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from herringbone.core import ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm
+from herringbone.cosim.algorithms.iterated import answers_again
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.li import LI
 
@@ -38,8 +39,9 @@ def choose_algorithm(
             f"tolerance = {tolerance:g}: {', '.join(unable)} cannot save and restore its state, "
             "as an adaptive step needs; leave the tolerance out"
         )
+    unable = [name for name in unable if name not in _answering(parts)]
     long = step is not None and step > Jacobi.default_step
-    able = any(part.addresses.can_restore for part in parts)
+    able = any(part.addresses.can_restore for part in parts) or bool(_answering(parts))
     if unable and not (long and able):
         chosen: Algorithm = Jacobi()
         why = f"{', '.join(unable)} cannot save and restore its state"
@@ -51,5 +53,21 @@ def choose_algorithm(
         )
     else:
         chosen = LI()
-        why = "all parts save and restore their state"
+        why = _why_all(_answering(parts))
     return chosen, f"{AUTO}: {chosen}, because {why}"
+
+
+def _answering(parts: Sequence[Part]) -> list[str]:
+    """Names of the parts that step once, and answer corrections by a surrogate."""
+    return [part.name for part in parts if answers_again(part)]
+
+
+def _why_all(answering: Sequence[str]) -> str:
+    """Why li suits all parts."""
+    if not answering:
+        return "all parts save and restore their state"
+    names = ", ".join(answering)
+    return (
+        f"{names} cannot save and restore its state, but its direct feedthrough tells what "
+        "corrections change"
+    )

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from herringbone.core import ParameterError
+from herringbone.core.part import Part
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
@@ -19,6 +20,7 @@ from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.rates import rate_of
 
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
@@ -32,12 +34,19 @@ PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
 
 
+def answers_again(part: Part) -> bool:
+    """True if a part takes a step once, and answers corrections of it by a surrogate."""
+    return bool(getattr(part, "answers_again", False))
+
+
 def explicit_parts(network: Network) -> tuple[int, ...]:
     """Parts with inputs that cannot repeat a step: they step once, first, on predicted inputs."""
     return tuple(
         p
         for p, part in enumerate(network.parts)
-        if network.inputs(p) and p not in network.slow and not part.addresses.can_restore
+        if network.inputs(p)
+        and p not in network.slow
+        and not (part.addresses.can_restore or answers_again(part))
     )
 
 
@@ -48,6 +57,8 @@ def check_rollback(name: str, network: Network, *, of_all: bool = False) -> None
         ParameterError: they cannot.
     """
     unable = explicit_parts(network)
+    if of_all:
+        unable += tuple(p for p, part in enumerate(network.parts) if answers_again(part))
     able = any(network.inputs(p) and p not in unable for p in range(len(network.parts)))
     if unable and (of_all or not able):
         names = ", ".join(network.parts[p].name for p in unable)
@@ -126,6 +137,7 @@ class PreparedNodes(PreparedRun):
             state[:, 1].copy(),
             state[:, 2].copy(),
             self._groups(unknown),
+            self._rates(unknown),
         )
 
     def _groups(self, unknown: np.ndarray) -> np.ndarray:
@@ -136,6 +148,26 @@ class PreparedNodes(PreparedRun):
             for n in names
         ]
         return np.unique(np.array(units)[unknown], return_inverse=True)[1].astype(np.int64)
+
+    def _rates(self, unknown: np.ndarray) -> np.ndarray:
+        """Rates among the outputs of unknowns that parts step on once, as numbers; else -1."""
+        network, parts = self.network, self.network.parts
+        place = {
+            key: k
+            for k, key in enumerate((p, n) for p, names in enumerate(self._outputs) for n in names)
+        }
+        wanted = {
+            (c.source, c.output)
+            for c in network.connections
+            if answers_again(parts[c.target]) or c.target in self._first
+        }
+        found = np.full(unknown.size, -1, dtype=np.int64)
+        keys = list(place)
+        for i, k in enumerate(unknown):
+            p, name = keys[k]
+            if (p, name) in wanted:
+                found[i] = place.get((p, rate_of(parts[p], name) or ""), -1)
+        return found
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
@@ -171,10 +203,10 @@ class PreparedNodes(PreparedRun):
 
     def passes(self, macro_steps: int) -> list[int]:
         """doStep calls of each part, those for Jacobians included."""
-        del macro_steps
         if self._buffers is None:
             return [0] * len(self.degree)
-        passes, slow = self._buffers.passes, self.layout.slow
+        once = np.array([answers_again(part) for part in self.network.parts])
+        passes, slow = np.where(once, macro_steps, self._buffers.passes), self.layout.slow
         return (passes if slow is None else np.maximum(passes, slow.taken)).tolist()
 
     @property

@@ -27,8 +27,16 @@ def node_degrees(network: Network, degree: int) -> tuple[list[int], list[str]]:
             notes.append(
                 f"{part.name} has no signal nodes: its inputs are held at their mean over a step "
                 "and its outputs interpolated, which makes the coupling second order in the step"
+                + _unless_direct(part, outputs)
             )
     return found, notes
+
+
+def _unless_direct(part: Part, outputs: Sequence[str]) -> str:
+    """What feedthrough that nobody knows costs a part that may have states."""
+    if part.has_states is False or not any(part.variables[n].dependencies is None for n in outputs):
+        return ""
+    return ", or first order if it has states and passes inputs directly to its outputs"
 
 
 def _has_output_nodes(part: Part, outputs: Sequence[str], degree: int) -> bool:

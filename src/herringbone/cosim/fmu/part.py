@@ -18,6 +18,7 @@ from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.values import as_value, as_values
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.signature.signature import Signature
 
 
 class FmuPart(ABC):
@@ -42,6 +43,7 @@ class FmuPart(ABC):
     ) -> None:
         self.name, self.file = name, file
         self.has_states: bool | None = None
+        self.signature: Signature | None = None
         self._running = False
         self.model = model or read_fmu(file)
         self.variables: Mapping[str, PartVariable] = read_variables(self.model)

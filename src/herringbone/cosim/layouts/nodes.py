@@ -17,6 +17,7 @@ class NodeLayout(NamedTuple):
             part without them.
         get_state, set_state, free_state: addresses.
         group: of each unknown; those of the same unit are one.
+        rate: of each unknown that a part steps on once: the output that is its rate, or -1.
     """
 
     degree: int
@@ -30,6 +31,7 @@ class NodeLayout(NamedTuple):
     set_state: np.ndarray
     free_state: np.ndarray
     group: np.ndarray
+    rate: np.ndarray
 
 
 class Control(NamedTuple):

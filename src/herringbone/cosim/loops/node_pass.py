@@ -172,6 +172,21 @@ def _predicted(buffers: Buffers, i: int, order: int, c: float) -> float:
 
 
 @inlined
+def _integrated(buffers: Buffers, i: int, rate: int, order: int, c: float, h: float) -> float:
+    """Output i at c of the macro step: its value, and the integral of its predicted rate."""
+    history, past = buffers.history, buffers.spacing
+    mean = history[1, rate]
+    if order >= 1:
+        first = (history[1, rate] - history[2, rate]) / past[0]
+        mean += 0.5 * c * first
+        if order >= 2:
+            before = (history[2, rate] - history[3, rate]) / past[1]
+            bend = (first - before) / (past[0] + past[1])
+            mean += c * (c / 3.0 + 0.5 * past[0]) * bend
+    return history[1, i] + h * c * mean
+
+
+@inlined
 def begin(
     layout: Layout,
     nodes: NodeLayout,
@@ -195,7 +210,11 @@ def begin(
     for k in range(nodes.degree):
         c = (k + 1) / nodes.degree
         for i in range(nodes.unknown.size):
-            guess = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
+            if nodes.rate[i] >= 0:
+                rate, at_most = nodes.rate[i], min(order, known - 1)
+                guess = _integrated(buffers, nodes.unknown[i], rate, at_most, c, h)
+            else:
+                guess = _predicted(buffers, nodes.unknown[i], min(order, known - 1), c)
             buffers.trial[k, i] = guess
             buffers.nodes[k + 1, nodes.unknown[i]] = guess  # for parts that step on it once
     predict_slow_nodes(layout.slow, layout, buffers.nodes, buffers.history[1], known - 1, h)

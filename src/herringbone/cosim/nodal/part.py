@@ -9,6 +9,8 @@ from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.core.variable import NODES
 from herringbone.cosim.nodal import calls
+from herringbone.cosim.nodal.memory import MEMORY
+from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.signature import Kind, Signature
 from herringbone.kernels.signals import STRIDE
 
@@ -21,10 +23,10 @@ class NodalPart:
     Args:
         part: not initialised, without nodes of its own.
         signature: of it, with known feedthrough.
-        pieces: steps of the part per node.
+        pieces: steps of the part from node to node, 1 or 2; see `nodal.held`. Without memory one.
     """
 
-    def __init__(self, part: Part, signature: Signature, pieces: int = 1) -> None:
+    def __init__(self, part: Part, signature: Signature, pieces: int = 2) -> None:
         self.name, self.part, self.signature = part.name, part, signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
@@ -40,7 +42,10 @@ class NodalPart:
         for number, name in enumerate((*self._inputs, *self._outputs)):
             v = known[name]
             if name in self._outputs:
-                v = replace(v, dependencies=passed[name])
+                direct = passed[name]
+                if direct is None:  # of an element all, of a body what the coupling finds
+                    direct = frozenset() if self.has_states else frozenset(self._inputs)
+                v = replace(v, dependencies=direct)
             for node in range(NODES + 1):
                 own = name if node == 0 else node_name(name, node)
                 array = "" if node else v.array
@@ -51,24 +56,40 @@ class NodalPart:
     def _make_memory(self, pieces: int) -> np.ndarray:
         n, m = len(self._inputs), len(self._outputs)
         known = self.part.variables
+        rate = np.array(self.signature.rate_inputs or [-1] * n, np.int64)
         self._arrays = {
             "input_references": np.array([known[x].reference for x in self._inputs], np.uint32),
             "output_references": np.array([known[x].reference for x in self._outputs], np.uint32),
             "given": np.zeros((n, STRIDE)),
             "driven": np.zeros(n, np.int64),
             "coefficients": np.zeros((n, STRIDE)),
-            "held": np.zeros(n),
+            "order": _rates_first(rate),
+            "held": np.zeros((2, n)),
             "packed": np.zeros(n),
             "packed_references": np.zeros(n, np.uint32),
             "raw": np.zeros(m),
             "values": np.zeros((m, STRIDE)),
             "feedthrough": np.nan_to_num(self.signature.feedthrough),
             "place": np.array(self.signature.given or [0] * n, np.int64),
-            "rate": np.array(self.signature.rate_inputs or [-1] * n, np.int64),
+            "rate": rate,
+            "seen_held": np.zeros((STRIDE, 2, n)),
+            "seen_raw": np.zeros((STRIDE, m)),
+            "answer": np.zeros((m, n)),
+            "changes": np.array([amplitude(known[x], 0.0) for x in self._inputs]),
+            "responses": np.zeros((5, m)),
+            "trial_state": np.zeros(1, np.int64),
+            "taken": np.zeros((n, STRIDE)),
+            "answers": np.zeros((m, STRIDE)),
+            "missed": np.zeros(n),
         }
-        memory = np.zeros(1, calls.MEMORY)
-        memory["inputs"], memory["outputs"], memory["pieces"] = n, m, pieces
+        memory = np.zeros(1, MEMORY)
+        memory["inputs"], memory["outputs"] = n, m
         memory["at_end"] = not self.has_states
+        memory["pieces"] = pieces if self.has_states else 1
+        memory["watched"] = self.has_states and self.signature.restores is True
+        memory["suspected"] = 1  # what states answer is not known yet
+        memory["seen_time"] = memory["taken_time"] = memory["state_time"] = np.nan
+        memory["once"] = self.answers_again
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
         for name, address in self.part.addresses._asdict().items():
@@ -77,10 +98,15 @@ class NodalPart:
         return memory
 
     @property
+    def answers_again(self) -> bool:
+        """True if the part cannot repeat a step; see `nodal.once`."""
+        return not (self.part.addresses.can_restore and self.signature.restores)
+
+    @property
     def addresses(self) -> Addresses:
         """Addresses of the adapter; the component is its memory."""
         functions = [calls.set_real, calls.get_real, calls.do_step]
-        if self.part.addresses.can_restore and self.signature.restores:
+        if not self.answers_again:
             functions += [calls.get_state, calls.set_state, calls.free_state]
         return Addresses(self._memory.ctypes.data, *(f.address for f in functions))
 
@@ -130,3 +156,11 @@ class NodalPart:
     def close(self) -> None:
         """See `Part`."""
         self.part.close()
+
+
+def _rates_first(rate: np.ndarray) -> np.ndarray:
+    """(n,) inputs, each after its rate, whose number stands in `rate`; -1: it has none."""
+    depth = np.zeros(rate.size, np.int64)
+    for _ in range(rate.size):
+        depth = np.where(rate >= 0, 1 + depth[rate], 0)
+    return np.argsort(depth, kind="stable").astype(np.int64)

@@ -1,7 +1,8 @@
 r"""What a part makes of an input and its rate inside a step: the rotation test.
 
-An angle that rises evenly, phi = w t, with its speed w, is given to the part in steps of H, H/2 and
-H/4, by three rules; in each of them outputs at the end are y + D (u_end - u_seen):
+An angle that rises evenly, phi = w t, with its speed w, a little faster than at the start, is given
+to the part in steps of H, H/2 and H/4, by three rules; in each of them outputs at the end are
+y + D (u_end - u_seen):
 
     held    the mean of the step is given, and seen to its end
     start   the value at the start is given; the part turns it on by w H, and sees that at the end
@@ -86,13 +87,13 @@ def _end(
 ) -> np.ndarray:
     """(m,) outputs after so many steps, with what passes directly at the end."""
     angle, rate = pair
+    turning = lab.start[rate] + speed
     inputs = []
     for n in range(steps):
         values = lab.start.copy()
         values[rate] += speed
         place = {Given.MEAN: n + 0.5, Given.START: n, Given.END: n + 1.0}[rule]
-        values[angle] += values[rate] * place * h
+        values[angle] += turning * place * h
         inputs.append(values)
-    turned = (lab.start[rate] + speed) * h
-    missing = {Given.MEAN: 0.5, Given.START: 0.0, Given.END: 0.0}[rule] * turned
+    missing = {Given.MEAN: 0.5, Given.START: 0.0, Given.END: 0.0}[rule] * turning * h
     return lab.run(inputs, h)[-1] + feedthrough[:, angle] * missing

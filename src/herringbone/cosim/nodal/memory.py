@@ -1,0 +1,79 @@
+"""What an adapter in front of a part knows, as a record that compiled functions read and write."""
+
+import numpy as np
+from numba import from_dtype, types
+
+MEMORY = np.dtype(
+    [
+        ("component", np.int64),
+        ("set_real", np.int64),
+        ("get_real", np.int64),
+        ("do_step", np.int64),
+        ("get_state", np.int64),
+        ("set_state", np.int64),
+        ("free_state", np.int64),
+        ("inputs", np.int64),
+        ("outputs", np.int64),
+        ("degree", np.int64),
+        ("pieces", np.int64),
+        ("at_end", np.int64),
+        ("stepped", np.int64),
+        ("input_references", np.int64),
+        ("output_references", np.int64),
+        ("given", np.int64),
+        ("driven", np.int64),
+        ("coefficients", np.int64),
+        ("order", np.int64),
+        ("held", np.int64),
+        ("packed", np.int64),
+        ("packed_references", np.int64),
+        ("raw", np.int64),
+        ("values", np.int64),
+        ("feedthrough", np.int64),
+        ("place", np.int64),
+        ("rate", np.int64),
+        ("watched", np.int64),
+        ("suspected", np.int64),
+        ("resting", np.int64),
+        ("state_time", np.float64),
+        ("saved_time", np.float64),
+        ("seen_time", np.float64),
+        ("seen_step", np.float64),
+        ("seen_piece", np.float64),
+        ("seen_held", np.int64),
+        ("seen_raw", np.int64),
+        ("answer", np.int64),
+        ("changes", np.int64),
+        ("responses", np.int64),
+        ("trial_state", np.int64),
+        ("once", np.int64),
+        ("taken_time", np.float64),
+        ("taken_step", np.float64),
+        ("taken", np.int64),
+        ("answers", np.int64),
+        ("missed", np.int64),
+    ]
+)
+"""What an adapter knows.
+
+component, and the addresses of the part's functions; numbers of inputs n and outputs m; degree of
+the signals; pieces: steps from node to node, 1 or 2; at_end: 1 for a part without memory; stepped:
+1 after the first step. Addresses: value references of the part's inputs and outputs (uint32);
+given: signals of the inputs (n, STRIDE); driven: 1 for inputs that were set (int64); coefficients
+(n, STRIDE); order (n, int64): of the inputs, those that are rates first; held (2, n): in each
+piece; packed and packed_references: of driven inputs; raw (m) outputs of the part; values: signals
+of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; rate (n, int64):
+number of an input's rate, or -1.
+
+For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without
+a measurement; state_time, saved_time: of the part and its saved state [s]; seen_time, seen_step,
+seen_piece: of the last step and its pieces [s]. Addresses:
+seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a
+piece; changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a state.
+
+For `nodal.once`: once: 1 if the part cannot repeat a step; taken_time, taken_step: of the last step
+[s]. Addresses: taken (n, STRIDE): inputs of that step; answers (m, STRIDE): outputs; missed (n):
+mean of what its inputs became after it.
+"""
+
+MEMORY_POINTER = types.CPointer(from_dtype(MEMORY))
