@@ -67,7 +67,7 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     try:
-        start = _start(make(), inputs)
+        start = start_inputs(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
             return find_signature(lab, part.variables)
     except FmuError as error:
@@ -82,7 +82,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     ]
 
 
-def _start(part: Part, inputs: list[str]) -> np.ndarray:
+def start_inputs(part: Part, inputs: list[str]) -> np.ndarray:
     """Start values of the inputs, as an instance has them when it is initialised."""
     try:
         part.enter_initialization(0.0, 1.0)

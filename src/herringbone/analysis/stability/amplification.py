@@ -17,7 +17,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
-from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part, state_changes
+from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
+from herringbone.analysis.stability.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -64,7 +65,8 @@ class Amplification:
 
     Args:
         network: parts and connections.
-        instances: of its parts, at the operating point; they are left as they were.
+        members: its parts at the operating point, as `linear_network` gives them; they are left as
+            they were.
         algorithm: coupling algorithm.
 
     Raises:
@@ -72,13 +74,13 @@ class Amplification:
     """
 
     def __init__(
-        self, network: Network, instances: Sequence[Instance], algorithm: Algorithm
+        self, network: Network, members: Sequence[Instance | StandIn], algorithm: Algorithm
     ) -> None:
-        self._parts = [linear_part(i) for i in instances]
-        self.network = replace(network, parts=tuple(self._parts))
+        self._parts = [linear_part(member) for member in members]
+        self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
-        self._counts = [part.declaration.state_count for part in self._parts]
+        self._counts = [len(part.state_changes) for part in self._parts]
         layout = algorithm.prepare(self.network).layout
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
@@ -91,14 +93,15 @@ class Amplification:
 
     def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each entry of z."""
-        found = [change for part in self._parts for change in state_changes(part.instance)]
+        found = [change for part in self._parts for change in part.state_changes]
         signals: list[float] = []
         for p, part in enumerate(self._parts):
-            units = {v.reference: v.unit for v in part.variables.values() if v.is_real}
-            signals += [
-                CHANGE.get(units[int(r)] or "", OTHER_CHANGE)
-                for r in references[first[p] : first[p + 1]]
-            ]
+            known = self.network.parts[p].variables.values()
+            outputs = {v.reference: v for v in known if v.causality == "output"}
+            for reference in references[first[p] : first[p + 1]]:
+                v = outputs[int(reference)]
+                change = CHANGE.get(v.unit or "", OTHER_CHANGE)
+                signals.append(part.output_change(v.name, change))
         return np.array(found + signals * _ROWS)
 
     def growth(self, step: float) -> Growth:
@@ -132,6 +135,11 @@ class Amplification:
             self._used = _coupled(self._differences(step, everything))
         return self._differences(step, self._used)
 
+    @property
+    def residual(self) -> float:
+        """Of the surrogates in it, at the lengths of their steps in the last macro step."""
+        return max(part.residual for part in self._parts)
+
     def motion(self, step: float) -> list[np.ndarray]:
         """Complex amplitudes of each part's outputs in the fastest growing motion.
 
@@ -162,15 +170,14 @@ class Amplification:
     def _prepared(self, step: float) -> Iterator[PreparedRun]:
         """A run of the algorithm; afterwards the parts are as they were."""
         prepared = self.algorithm.prepare(self.network)
-        degrees = [part.instance.block[part.degree_index] for part in self._parts]
         try:
             for part, degree in zip(self._parts, prepared.degree, strict=True):
                 part.prepare(step, degree)
             yield prepared
         finally:
             self._restore(self._base.copy())
-            for part, degree in zip(self._parts, degrees, strict=True):
-                part.instance.block[part.degree_index] = degree
+            for part in self._parts:
+                part.release()
 
     def _advance(
         self,
@@ -180,11 +187,14 @@ class Amplification:
         changes: Mapping[int, float] | None = None,
     ) -> np.ndarray:
         """z after one macro step from the operating point, some of its entries changed."""
-        self._restore(history)
-        for entry, change in (changes or {}).items():
-            self._perturb(history, int(entry), change)
         chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
-        status, _, culprit = prepared.run(history, chunk)
+        while True:
+            self._restore(history)
+            for entry, change in (changes or {}).items():
+                self._perturb(history, int(entry), change)
+            status, _, culprit = prepared.run(history, chunk)
+            if status == DONE or not any([part.learn() for part in self._parts]):
+                break
         if status != DONE:
             name = self._parts[culprit].name if culprit >= 0 else "the coupling"
             raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")

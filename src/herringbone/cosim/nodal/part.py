@@ -27,6 +27,7 @@ class NodalPart:
     def __init__(self, part: Part, signature: Signature, pieces: int = 1) -> None:
         self.name, self.part, self.signature = part.name, part, signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
+        self._pieces = pieces
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
         self.once, self.one_step = part.once, part.one_step
         self.variables: Mapping[str, PartVariable] = self._variables()
@@ -73,6 +74,10 @@ class NodalPart:
             if name in _ADDRESSES:
                 memory[name] = address
         return memory
+
+    def in_front_of(self, part: Part) -> "NodalPart":
+        """The same adapter in front of another part with the same variables."""
+        return NodalPart(part, self.signature, self._pieces)
 
     @property
     def addresses(self) -> Addresses:
