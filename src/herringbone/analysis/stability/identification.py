@@ -98,7 +98,7 @@ class LinearModel:
 
     def over(self, h: float) -> Step:
         """A step of length h [s]."""
-        whole, slope = _integrals(self.a, h)
+        a, whole, slope = _integrals(self.a, h)
         b, d = whole @ self.b, self.d.copy()
         for k, rate in self._moving():
             if self.given[k] is Given.START:
@@ -106,7 +106,6 @@ class LinearModel:
                 d[:, rate] += h * self.d[:, k]
             else:
                 b[:, rate] += slope @ self.b[:, k] - h * (whole @ self.b[:, k])
-        a = expm(h * self.a)
         return Step(a, b, self.c @ a, self.c @ b + d)
 
     def _moving(self) -> list[tuple[int, int]]:
@@ -137,7 +136,7 @@ def in_continuous_time(
     ):
         return None
     a = np.ascontiguousarray(a.real)
-    whole, slope = _integrals(a, h)
+    _, whole, slope = _integrals(a, h)
     c = np.linalg.solve(step.a.T, step.c.T).T
     d, b = step.d - c @ step.b, np.linalg.solve(whole, step.b)
     for k, rate in _moving(given, rates):
@@ -150,10 +149,10 @@ def in_continuous_time(
     return LinearModel(a, b, c, d, tuple(given), tuple(rates))
 
 
-def _integrals(a: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """Integrals over a step of exp(a (h - t)), and of that times t."""
+def _integrals(a: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """exp(a h), and integrals over a step of exp(a (h - t)), and of that times t."""
     count = len(a)
     eye, none = np.eye(count), np.zeros((count, count))
     whole = np.block([[h * a, h * eye, none], [none, none, h * eye], [none, none, none]])
     found = expm(whole)[:count]
-    return found[:, count : 2 * count], found[:, 2 * count :]
+    return found[:, :count], found[:, count : 2 * count], found[:, 2 * count :]

@@ -26,6 +26,7 @@ from herringbone.analysis.stability.recommendation import (
 )
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.step_scan import (
+    COARSE,
     LARGEST_STEP,
     GrowthOf,
     first_unstable_near,
@@ -44,6 +45,7 @@ from herringbone.cosim.tolerance import check_tolerance
 Progress = Callable[[str], None]
 """Called after every matrix, with the name of the algorithm."""
 _BEYOND = 1.01
+_SCAN_WITH_STRANGERS = 1.1
 _UNSEEN = 3.0
 """Powers of e that a motion may grow by in a run that still looks sound."""
 LARGEST_WITH_STRANGERS = 1.0
@@ -232,7 +234,9 @@ def step_limits(
 
     amplification = amplification_at(MeshStiffness.MEAN)
     growth = growth_of(amplification)
-    bands = unstable_bands(growth, largest=largest)
+    bands = unstable_bands(
+        growth, largest=largest, coarse=_SCAN_WITH_STRANGERS if strangers else COARSE
+    )
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
     inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan

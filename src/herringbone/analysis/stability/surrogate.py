@@ -82,7 +82,7 @@ class Surrogate:
         pairs = zip(lab.inputs, lab.start, strict=True)
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
         self._loud = 1.0
-        self._residuals: dict[float, float] = {}
+        self._residuals, self._steps = dict[float, float](), dict[float, Step]()
         self.model: LinearModel | None = None
         self.base, self.why = lab.step, ""
         try:
@@ -96,6 +96,14 @@ class Surrogate:
         """Number of the model's states."""
         return 0 if self.model is None else len(self.model.a)
 
+    def over(self, h: float) -> Step:
+        """A step of the model of length h [s]; there is a model."""
+        assert self.model is not None
+        if h not in self._steps:
+            with _BLAS.limit(limits=1, user_api="blas"):
+                self._steps[h] = self.model.over(h)
+        return self._steps[h]
+
     def residual(self, h: float) -> float:
         """Largest deviation of the model over the answer, of any output, in steps of h [s].
 
@@ -105,7 +113,7 @@ class Surrogate:
             return np.inf
         if h not in self._residuals:
             try:
-                self._residuals[h] = self._missed(self.model.over(h), h)
+                self._residuals[h] = self._missed(self.over(h), h)
             except Refused:
                 self._residuals[h] = np.inf
         return self._residuals[h]

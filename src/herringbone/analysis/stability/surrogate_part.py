@@ -93,8 +93,7 @@ class SurrogatePart:
         count, h = int(self._known[0]), float(self._known[1])
         if h <= 0.0 or count == _MOST_LENGTHS:
             return False
-        assert self._surrogate.model is not None
-        step = self._surrogate.model.over(h)
+        step = self._surrogate.over(h)
         matrix = np.block([[step.a, step.b], [step.c, step.d]])
         at = self._maps + count * (1 + matrix.size)
         self._memory[at] = h
