@@ -66,8 +66,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     with bar, opened_surrogates(structure, LI().start_step) as foreign:
         if foreign.missing:
             raise FmuError("; ".join(foreign.lines))
-        if foreign.strangers and (options.simulate or options.atlas):
-            raise ParameterError("--simulate and --atlas take no foreign FMUs; leave them out")
+        if foreign.strangers and options.atlas:
+            raise ParameterError("--atlas takes no foreign FMUs; leave it out")
 
         def show(algorithm: str) -> None:
             bar.set_description(algorithm, refresh=False)

@@ -1,8 +1,9 @@
 """Linear surrogates of a system's foreign parts, for what is predicted before a run."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -94,7 +95,8 @@ def _add(
     stack: ExitStack,
 ) -> None:
     try:
-        made = _surrogate(spec, part, ports, step, stack)
+        make = stack.enter_context(instances(spec))
+        made = _surrogate(make, part, ports, step, stack)
     except FmuError as error:
         found.missing[part.name] = str(error)
         return
@@ -103,14 +105,26 @@ def _add(
     elif made.model is None:
         found.missing[part.name] = made.why
     else:
-        found.strangers[part.name] = Stranger(part, made)
+        found.strangers[part.name] = Stranger(part, made, partial(_alike, part, make))
+
+
+def _alike(part: Part, make: Callable[[], Part]) -> Part:
+    """A new part, as the coupling takes a given one."""
+    made = make()
+    if isinstance(part, NodalPart):
+        return part.in_front_of(made)
+    made.has_states, made.variables = part.has_states, part.variables
+    return made
 
 
 def _surrogate(
-    spec: PartSpec, part: Part, ports: tuple[list[str], list[str]], step: float, stack: ExitStack
+    make: Callable[[], Part],
+    part: Part,
+    ports: tuple[list[str], list[str]],
+    step: float,
+    stack: ExitStack,
 ) -> Surrogate | str:
     """A part's surrogate, or why there is none; raises FmuError."""
-    make = stack.enter_context(instances(spec))
     signature = part.signature if isinstance(part, NodalPart) else signature_of(part, make, step)
     why = _refusal(part, signature)
     if why:

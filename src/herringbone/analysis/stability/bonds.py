@@ -22,6 +22,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.stability.linear_parts import Member
+from herringbone.analysis.stability.surrogate_part import StandIn
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -123,16 +124,14 @@ def highest_frequency(network: Network, members: Sequence[Member]) -> float:
 def bond_directions(network: Network, members: Sequence[Member]) -> list[Direction]:
     """The bonds of all elements that give forces for motions of the same ports.
 
-    Without those of foreign parts, whose laws and masses are not known.
+    Without elements that are foreign, whose laws are not known.
     """
     found = []
     bodies = set(network.bodies)
     for e in network.elements:
         forces = [c for c in network.connections if c.source == e and c.target in bodies]
         element = members[e]
-        if not isinstance(element, Instance) or not all(
-            isinstance(members[c.target], Instance) for c in forces
-        ):
+        if not isinstance(element, Instance):
             continue
         index = element.component.declaration.index
         motions = {c: motion_of_force(c.output) or () for c in forces}
@@ -203,7 +202,8 @@ def _response(
 ) -> float:
     """Acceleration of a body along some ports per unit force along others [1/kg or 1/(kg.m2)]."""
     instance = members[p]
-    assert isinstance(instance, Instance)
+    if isinstance(instance, StandIn):
+        return _surrogate_response(instance, forces, along)
     block, kernels = instance.block, instance.component.kernels
     declaration = instance.component.declaration
     read = {c.output for c in network.connections if c.source == p}
@@ -224,3 +224,18 @@ def _response(
     after = block[rows].copy()
     block[:] = kept
     return float(np.dot([x for name, x in velocities if name in read], after - before))
+
+
+def _surrogate_response(
+    body: StandIn, forces: Sequence[tuple[str, float]], along: Sequence[tuple[str, float]]
+) -> float:
+    """As `_response`, of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
+    surrogate = body.surrogate
+    assert surrogate.model is not None
+    pushed = np.zeros(len(surrogate.inputs))
+    for name, x in forces:
+        pushed[surrogate.inputs.index(name)] += x
+    rates = surrogate.model.c @ (surrogate.model.b @ pushed)
+    velocities = [(motion_at(name)[1], x) for name, x in along]
+    read = [(surrogate.outputs.index(v), x) for v, x in velocities if v in surrogate.outputs]
+    return float(sum(x * rates[row] for row, x in read))

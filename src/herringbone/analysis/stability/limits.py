@@ -45,11 +45,11 @@ from herringbone.cosim.tolerance import check_tolerance
 Progress = Callable[[str], None]
 """Called after every matrix, with the name of the algorithm."""
 _BEYOND = 1.01
-_SCAN_WITH_STRANGERS = 1.1
+_SCAN_OF_STRANGERS = 1.1
 _UNSEEN = 3.0
 """Powers of e that a motion may grow by in a run that still looks sound."""
-LARGEST_WITH_STRANGERS = 1.0
-"""Step [s] at which the scan of systems with foreign parts ends: these may be slow."""
+_LARGEST_OF_STRANGERS = 1.0
+"""Step [s] at which the scan of systems of foreign parts alone ends: these may be slow."""
 
 
 @dataclass(frozen=True)
@@ -163,14 +163,20 @@ def stability(
             with activity(f"{what} with {algorithm}", shown=progress is not None):
                 limit = step_limits(system, algorithm, progress, strangers)
                 if simulate:
-                    seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands)
+                    seen = nonlinear_limit(
+                        system, algorithm, limit.limit, limit.unstable_bands, strangers
+                    )
                     limit = replace(limit, simulated_limit=seen)
             limits.append(limit)
             chosen.append(algorithm)
         except ParameterError as error:
             notes.append(f"{algorithm}: {error}")
     by_limit = [(a, found.limit) for a, found in zip(chosen, limits, strict=True)]
-    ranking = rank(by_limit, highest, tolerance, _micro_step(instances))
+    ranking = Ranking()
+    if strangers:
+        notes.append("algorithms are not ranked: the rule of accuracy knows no foreign parts")
+    else:
+        ranking = rank(by_limit, highest, tolerance, _micro_step(instances))
     notes += [f"{name} is not ranked: {why}" for name, why in ranking.unranked.items()]
     notes += _unfrozen(instances)
     return Stability(
@@ -217,7 +223,8 @@ def step_limits(
     strangers: Strangers = NO_STRANGERS,
 ) -> StepLimits:
     """Unstable steps of an algorithm at mean mesh stiffness, and its limit at all stiffnesses."""
-    largest = LARGEST_WITH_STRANGERS if strangers else LARGEST_STEP
+    alone = len(strangers) == len(system.parts)
+    largest = _LARGEST_OF_STRANGERS if alone else LARGEST_STEP
 
     def amplification_at(stiffness: MeshStiffness) -> Amplification:
         return Amplification(*linear_network(system, stiffness, strangers), algorithm)
@@ -234,9 +241,7 @@ def step_limits(
 
     amplification = amplification_at(MeshStiffness.MEAN)
     growth = growth_of(amplification)
-    bands = unstable_bands(
-        growth, largest=largest, coarse=_SCAN_WITH_STRANGERS if strangers else COARSE
-    )
+    bands = unstable_bands(growth, largest=largest, coarse=_SCAN_OF_STRANGERS if alone else COARSE)
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
     inside = min(_BEYOND * first, np.sqrt(np.prod(bands[0]))) if bands else np.nan

@@ -17,6 +17,8 @@ from herringbone.analysis.stability.surrogate_part import StandIn, Stranger
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
+from herringbone.core.part import Part
+from herringbone.core.part_path import PartPath
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 
@@ -57,10 +59,9 @@ def linear_network(
         StructureError: nothing stands for a foreign part, or the connections are wrong.
         ParameterError: a mesh is open, or a value is wrong.
     """
-    own = tuple(spec for spec in system.parts if spec.name not in strangers)
-    made = iter(make_instances(replace(system, parts=own, connections=())))
+    own = _own_instances(system, strangers)
     members: list[Member] = [
-        StandIn(strangers[spec.name]) if spec.name in strangers else next(made)
+        StandIn(strangers[spec.name]) if spec.name in strangers else own[spec.name]
         for spec in system.parts
     ]
     parts = [InProcessPart(m) if isinstance(m, Instance) else m.part for m in members]
@@ -70,6 +71,25 @@ def linear_network(
         if isinstance(member, Instance) and member.component.freeze:
             member.component.freeze(member, stiffness.of)
     return network, members
+
+
+def real_parts(system: System, strangers: Strangers = NO_STRANGERS) -> list[Instance | Part]:
+    """Parts of a system at its start values, for a run: instances, and fresh foreign parts.
+
+    Raises:
+        HerringboneError: nothing stands for a foreign part, or a value is wrong.
+    """
+    own = _own_instances(system, strangers)
+    return [
+        strangers[spec.name].fresh() if spec.name in strangers else own[spec.name]
+        for spec in system.parts
+    ]
+
+
+def _own_instances(system: System, strangers: Strangers) -> dict[PartPath, Instance]:
+    parts = tuple(spec for spec in system.parts if spec.name not in strangers)
+    made = make_instances(replace(system, parts=parts, connections=()))
+    return {spec.name: instance for spec, instance in zip(parts, made, strict=True)}
 
 
 def _propagate(network: Network, members: Sequence[Member]) -> None:

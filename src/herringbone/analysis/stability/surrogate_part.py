@@ -1,7 +1,7 @@
 """A surrogate as a part that the compiled loops step, in the place of the foreign one."""
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,10 +21,17 @@ _SHARE = 1e-4
 
 @dataclass(frozen=True)
 class Stranger:
-    """A foreign part as the coupling takes it, and what stands for it."""
+    """A foreign part as the coupling takes it, and what stands for it.
+
+    Attributes:
+        part: the real one.
+        surrogate: its linear model.
+        fresh: makes one more of the real part.
+    """
 
     part: Part
     surrogate: Surrogate
+    fresh: Callable[[], Part]
 
 
 class SurrogatePart:
