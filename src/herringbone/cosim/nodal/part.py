@@ -99,8 +99,19 @@ class NodalPart:
             self.part.set(name, value)
 
     def get(self, names: Sequence[str]) -> list[float]:
-        """Values of real variables of the part."""
-        return self.part.get(names)
+        """Values of real variables of the part, and of its signals' nodes, which only this has."""
+        return [
+            self.part.get([name])[0] if name in self.part.variables else self._node(name)
+            for name in names
+        ]
+
+    def _node(self, name: str) -> float:
+        """Value of a signal at a node, as it was given or found last."""
+        number, node = divmod(self.variables[name].reference, STRIDE)
+        inputs = len(self._inputs)
+        if number < inputs:
+            return float(self._arrays["given"][number, node])
+        return float(self._arrays["values"][number - inputs, node])
 
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """See `Part`."""
