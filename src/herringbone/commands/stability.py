@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from herringbone.commands import flange
 from herringbone.commands.options import files_of_parts, replacements
 from herringbone.commands.output import check_writable, say
 from herringbone.core import FmuError, ParameterError
@@ -25,6 +26,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--atlas", action="store_true", help="also draw limits, by runs too; two minutes"
     )
     sub.add_argument("-o", "--output", type=Path, help="folder for the files")
+    flange.add_options(sub)
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -43,6 +45,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.running.surrogates import opened_surrogates, under_load  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
+    if flange.is_asked(options):
+        return flange.flange_limits(options)
     output = options.output or (Path("results") if options.atlas else None)
     _check(options)
     if output:

@@ -60,6 +60,22 @@ class Growth:
     mirror_radius: float = 0.0
 
 
+def growth_of(matrix: np.ndarray, step: float) -> Growth:
+    """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix."""
+    with _BLAS.limit(limits=1, user_api="blas"):
+        eigenvalues = np.linalg.eigvals(matrix)
+    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
+    sizes = np.abs(eigenvalues)
+    if sizes.size == 0:
+        return Growth(0.0, 0.0, 0.0)
+    angles = np.abs(np.angle(eigenvalues))
+    largest = int(np.argmax(sizes))
+    frequency = float(angles[largest] / (2.0 * np.pi * step))
+    fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
+    mirror = float(sizes[angles == np.pi].max(initial=0.0))
+    return Growth(float(sizes[largest]), frequency, fast, mirror)
+
+
 class Amplification:
     """Amplification matrices of one algorithm on one system of linear parts.
 
@@ -110,19 +126,7 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        matrix = self.matrix(step)
-        with _BLAS.limit(limits=1, user_api="blas"):
-            eigenvalues = np.linalg.eigvals(matrix)
-        eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
-        sizes = np.abs(eigenvalues)
-        if sizes.size == 0:
-            return Growth(0.0, 0.0, 0.0)
-        angles = np.abs(np.angle(eigenvalues))
-        largest = int(np.argmax(sizes))
-        frequency = float(angles[largest] / (2.0 * np.pi * step))
-        fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
-        mirror = float(sizes[angles == np.pi].max(initial=0.0))
-        return Growth(float(sizes[largest]), frequency, fast, mirror)
+        return growth_of(self.matrix(step), step)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
