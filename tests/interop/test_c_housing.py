@@ -5,51 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.c_fmu import compiled_fmu
+from support.c_housing import build_c_housing
 from support.housing import seat_points
 
 import herringbone as hb
 from herringbone.commands import main as cli
-from herringbone.components.ports import HALVES
 from herringbone.housing import ModalHousing, write_housing
 
-SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
 MASS, DAMPING_TIME = 40.0, 5e-6
 STIFFNESS, COUPLING = np.array([7e8, 7e8, 1.5e8]), np.array([1e8, 1e8, 8e7])
-DOFS = list(product(HALVES, "xyz"))
-
-
-def description() -> str:
-    kinds = (("f", "N", "input"), ("s", "m", "output"), ("v", "m/s", "output"))
-    variables, outputs = [], []
-    for group, (quantity, unit, causality) in enumerate(kinds):
-        for i, (seat, axis) in enumerate(DOFS):
-            start = ' start="0"' if causality == "input" else ""
-            name, reference = f"{seat}.{quantity}_{axis}", 12 * group + i
-            variables.append(
-                f'<ScalarVariable name="{name}" valueReference="{reference}" '
-                f'causality="{causality}"><Real unit="{unit}"{start}/></ScalarVariable>'
-            )
-            if causality == "output":
-                outputs.append(f'<Unknown index="{len(variables)}" dependencies=""/>')
-    return f"""<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName="c_housing" guid="c" numberOfEventIndicators="0">
-<CoSimulation modelIdentifier="c_housing" canHandleVariableCommunicationStepSize="true"/>
-<UnitDefinitions>
-<Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
-<Unit name="m"><BaseUnit m="1"/></Unit>
-<Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit>
-</UnitDefinitions>
-<ModelVariables>{"".join(variables)}</ModelVariables>
-<ModelStructure><Outputs>{"".join(outputs)}</Outputs>
-<InitialUnknowns>{"".join(outputs)}</InitialUnknowns></ModelStructure>
-</fmiModelDescription>
-"""
 
 
 @pytest.fixture(scope="module")
 def c_housing(tmp_path_factory) -> Path:
-    return compiled_fmu(SOURCE, description(), tmp_path_factory.mktemp("c_housing"))
+    return build_c_housing(tmp_path_factory.mktemp("c_housing"))
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,10 @@ from herringbone.cosim.structure.network import build_network
 
 FOLDS = 14.0
 """Powers of e by which a motion grows or decays in a run."""
+DEEPEST = 20.0
+"""Powers of e by which a motion may have died out; below, it is rounding."""
 FEWEST, MOST = 400, 60000
-WINDOWS = 20
+WINDOWS = 10
 BELOW, ABOVE, RESOLUTION = 0.98, 1.02, 1.005
 
 
@@ -41,10 +43,12 @@ def run_rate(system, strangers, algorithm, step, expected):
     moving = np.diff(values, axis=0)  # without the rest at which free bodies end
     moving = moving / np.abs(moving[:FEWEST]).max(axis=0).clip(1e-300)
     length = len(moving) // WINDOWS
-    windows = moving[: WINDOWS * length].reshape(WINDOWS, -1)
-    sizes = np.log(np.sqrt((windows**2).mean(axis=1)).clip(1e-300))
-    half = np.arange(WINDOWS // 2, WINDOWS)
-    return np.polyfit(half, sizes[half], 1)[0] / length
+    windows = moving[: WINDOWS * length].reshape(WINDOWS, length, -1)
+    weights = np.hanning(length)[:, None]
+    sizes = np.log(np.sqrt((weights * windows**2).mean(axis=(1, 2))).clip(1e-300))
+    last = int(np.argmin(np.append(sizes > sizes[0] - DEEPEST, False)))
+    used = np.arange(last // 2 if last > 3 else 0, max(last, 2))
+    return np.polyfit(used, sizes[used], 1)[0] / length
 
 
 def limits(system, strangers, algorithm):
@@ -60,6 +64,8 @@ def limits(system, strangers, algorithm):
         return expected, run_rate(system, strangers, algorithm, step, expected)
 
     low, high = BELOW * limit, ABOVE * limit
+    if found.unstable_bands:
+        high = min(high, math.sqrt(math.prod(found.unstable_bands[0])))  # narrow bands
     ends = [rates(low), rates(high)]
     if not ends[0][1] < 0.0 < ends[1][1]:
         return limit, math.nan, found.residual, *zip(*ends, strict=True)

@@ -93,8 +93,9 @@ def _text(found: "HostedFlange") -> str:
         more = f"to {1e6 * edge:.1f}, {more}".rstrip(", ") if math.isfinite(edge) else more
         lines.append(f"{x.order:>5}  {name:<{len(_NAMES[False])}}  {limit:>9}  {more}".rstrip())
     said = [
-        "order 0 holds what is exchanged, order 1 and 2 give its derivatives through the last 2 and "
-        "3 points" + ("" if found.takes_derivatives else "; this FMU takes no input derivatives"),
+        "order 0 holds what is exchanged, orders 1 and 2 give its derivatives, through the last 2 "
+        "and 3 points"
+        + ("" if found.takes_derivatives else "; this FMU takes no input derivatives"),
         f"the FMU as a linear system of order {found.order} by trial steps of {found.base:g} s; on "
         f"other trials, at the limits, it misses by {100.0 * found.residual:.2g} %",
     ]

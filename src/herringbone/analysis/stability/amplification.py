@@ -31,6 +31,8 @@ _BLAS = ThreadpoolController()
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
+RIGID_STRANGERS = 3e-5
+"""The same with foreign parts, whose models are known to about 1e-9 of their answers."""
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
 _SLOW = 0.3
@@ -60,11 +62,17 @@ class Growth:
     mirror_radius: float = 0.0
 
 
-def growth_of(matrix: np.ndarray, step: float) -> Growth:
-    """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix."""
+def growth_of(matrix: np.ndarray, step: float, rigid: float = RIGID) -> Growth:
+    """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
+
+    Args:
+        matrix: of the step.
+        step: its length [s].
+        rigid: distance from 1 of eigenvalues that are left out.
+    """
     with _BLAS.limit(limits=1, user_api="blas"):
         eigenvalues = np.linalg.eigvals(matrix)
-    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
+    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > rigid]
     sizes = np.abs(eigenvalues)
     if sizes.size == 0:
         return Growth(0.0, 0.0, 0.0)
@@ -93,6 +101,8 @@ class Amplification:
         self, network: Network, members: Sequence[Instance | StandIn], algorithm: Algorithm
     ) -> None:
         self._parts = [linear_part(member) for member in members]
+        foreign = any(isinstance(member, StandIn) for member in members)
+        self._rigid = RIGID_STRANGERS if foreign else RIGID
         self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
@@ -126,7 +136,7 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        return growth_of(self.matrix(step), step)
+        return growth_of(self.matrix(step), step, self._rigid)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -155,7 +165,7 @@ class Amplification:
         matrix = self.matrix(step)
         with _BLAS.limit(limits=1, user_api="blas"):
             eigenvalues, vectors = np.linalg.eig(matrix)
-        sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
+        sizes = np.where(np.abs(eigenvalues - 1.0) > self._rigid, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
         used = np.empty(0, int) if self._used is None else self._used
         vector = vector / np.abs(vector / self._change[used]).max()

@@ -1,0 +1,43 @@
+"""The housing in C of `tests/fmus`, as an FMU."""
+
+from itertools import product
+from pathlib import Path
+
+from herringbone.components.ports import HALVES
+from support.c_fmu import compiled_fmu
+
+SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
+DOFS = list(product(HALVES, "xyz"))
+
+
+def description() -> str:
+    kinds = (("f", "N", "input"), ("s", "m", "output"), ("v", "m/s", "output"))
+    variables, outputs = [], []
+    for group, (quantity, unit, causality) in enumerate(kinds):
+        for i, (seat, axis) in enumerate(DOFS):
+            start = ' start="0"' if causality == "input" else ""
+            name, reference = f"{seat}.{quantity}_{axis}", 12 * group + i
+            variables.append(
+                f'<ScalarVariable name="{name}" valueReference="{reference}" '
+                f'causality="{causality}"><Real unit="{unit}"{start}/></ScalarVariable>'
+            )
+            if causality == "output":
+                outputs.append(f'<Unknown index="{len(variables)}" dependencies=""/>')
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="2.0" modelName="c_housing" guid="c" numberOfEventIndicators="0">
+<CoSimulation modelIdentifier="c_housing" canHandleVariableCommunicationStepSize="true"/>
+<UnitDefinitions>
+<Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
+<Unit name="m"><BaseUnit m="1"/></Unit>
+<Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit>
+</UnitDefinitions>
+<ModelVariables>{"".join(variables)}</ModelVariables>
+<ModelStructure><Outputs>{"".join(outputs)}</Outputs>
+<InitialUnknowns>{"".join(outputs)}</InitialUnknowns></ModelStructure>
+</fmiModelDescription>
+"""
+
+
+def build_c_housing(folder: Path) -> Path:
+    """Build it in a folder."""
+    return compiled_fmu(SOURCE, description(), folder)
