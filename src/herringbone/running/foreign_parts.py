@@ -51,6 +51,14 @@ def understood(
     return found, notes
 
 
+def alike(part: Part, made: Part) -> Part:
+    """A new part, as the coupling takes another one of the same FMU."""
+    if isinstance(part, NodalPart):
+        return part.in_front_of(made)
+    made.has_states, made.variables = part.has_states, part.variables
+    return made
+
+
 def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
     """Signature of a part, found on further instances; what they refuse leaves it unknown.
 

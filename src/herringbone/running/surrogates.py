@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.foreign_parts import signature_of, start_inputs, understood
+from herringbone.running.foreign_parts import alike, signature_of, start_inputs, understood
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.start import equilibrium_values, ramp_times
 
@@ -105,16 +104,7 @@ def _add(
     elif made.model is None:
         found.missing[part.name] = made.why
     else:
-        found.strangers[part.name] = Stranger(part, made, partial(_alike, part, make))
-
-
-def _alike(part: Part, make: Callable[[], Part]) -> Part:
-    """A new part, as the coupling takes a given one."""
-    made = make()
-    if isinstance(part, NodalPart):
-        return part.in_front_of(made)
-    made.has_states, made.variables = part.has_states, part.variables
-    return made
+        found.strangers[part.name] = Stranger(part, made, lambda: alike(part, make()))
 
 
 def _surrogate(
