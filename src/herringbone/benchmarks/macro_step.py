@@ -25,8 +25,9 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
-from herringbone.running.loading import load_scene, load_system, open_parts
-from herringbone.running.start import started
+from herringbone.running.foreign_parts import understood
+from herringbone.running.loading import instances, open_parts
+from herringbone.running.prepared import Wishes, prepared
 
 STEP = 2.5e-6
 """The gear mesh's micro step [s]."""
@@ -49,29 +50,31 @@ class MacroStep:
     kernels: float
 
 
-def measure(steps: int = 20000, repeats: int = 5) -> MacroStep:
+def measure(steps: int = 20000, repeats: int = 5, wishes: Wishes | None = None) -> MacroStep:
     """Measure all loops, one after another, repeatedly.
 
     Args:
         steps: macro steps of each measurement.
         repeats: measurements of each loop.
+        wishes: other parts and values of the rig; with foreign FMUs only this master is measured.
 
     Raises:
         HerringboneError: native FMUs cannot be built, or another master fails.
     """
-    structure, folder = load_system("test_rig")
-    system, _ = started(structure, load_scene(folder, "loaded"))
-    components = sorted({str(p.component) for p in system.parts})
+    system = prepared("test_rig", "loaded", wishes or Wishes(start_offset={})).system
+    components = sorted({str(p.component) for p in system.parts if not p.foreign})
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / "test_rig.ssp"
-        write_ssp(system, build_native_fmus(components), file, step=STEP, t_end=steps * STEP)
+        native = build_native_fmus(components)
         loops: dict[str, Callable[[], float | None]] = {
             OURS: lambda: _ours(system, "native", steps),
             "this master, in-process": lambda: _ours(system, "in-process", steps),
             "this master, Python FMUs": lambda: _ours(system, "python", steps // _SLOW),
-            "plain fmpy loop": lambda: _fmpy(system, steps // _SLOW),
-            **_others(system, file, steps // _SLOW),
         }
+        if not system.foreign_parts:
+            write_ssp(system, native, file, step=STEP, t_end=steps * STEP)
+            loops["plain fmpy loop"] = lambda: _fmpy(system, steps // _SLOW)
+            loops |= _others(system, file, steps // _SLOW)
         kernels = lambda: _ours(replace(system, connections=()), "native", steps, steps)  # noqa: E731
         found = {name: [measure_() for _ in range(repeats)] for name, measure_ in loops.items()}
         alone = [kernels() for _ in range(repeats)]
@@ -101,6 +104,8 @@ def _ours(system: System, fmu: str, steps: int, every: int = 1) -> float:
     """Time of a macro step [s] as `run` has it; records every so many steps."""
     bond = fastest_bond(system) if system.connections else None
     parts = open_parts(system, fmu)
+    if system.connections:
+        parts, _ = understood(system, parts, instances, STEP)
     try:
         grid = make_grid(steps * STEP, STEP, every * STEP)
         found = simulate(system, parts, PARALLEL, grid, bond_frequency=bond)

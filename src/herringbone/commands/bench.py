@@ -2,11 +2,22 @@
 
 import argparse
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from herringbone.commands.options import (
+    add_replacements,
+    add_start_values,
+    files_of_parts,
+    replacements,
+    start_values,
+)
 from herringbone.commands.output import say
 
-_PARTS = ("macro-step", "accuracy", "fmus")
+if TYPE_CHECKING:
+    from herringbone.running.prepared import Wishes
+
+_RIG = "macro-step"
+_PARTS = (_RIG, "accuracy", "fmus")
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -14,6 +25,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "part", nargs="*", metavar="PART", help=f"{', '.join(_PARTS)}; all if none is given"
     )
+    add_replacements(sub)
+    add_start_values(sub)
     sub.add_argument("--json", action="store_true", help="print the figures as JSON")
 
 
@@ -28,20 +41,42 @@ def bench(options: argparse.Namespace) -> str:
     chosen = options.part or list(_PARTS)
     if unknown := [name for name in chosen if name not in _PARTS]:
         raise ParameterError(f"bench: there is no part '{unknown[0]}'; it has {', '.join(_PARTS)}")
+    wishes = _wishes(options)
+    if wishes and chosen != [_RIG]:
+        raise ParameterError(
+            f"bench: other parts and values are measured by '{_RIG}' alone; name it: bench {_RIG}"
+        )
+    measure = {**_MEASURE, _RIG: lambda: _macro_step(wishes)}
     tables: list[str] = []
     figures: dict[str, Any] = {}
     for name in _PARTS:
         if name in chosen:
             say(f"measuring {name} ...")
-            table, figures[name] = _MEASURE[name]()
+            table, figures[name] = measure[name]()
             tables.append(table)
     return json.dumps(figures, indent=2) if options.json else "\n\n".join(tables)
 
 
-def _macro_step() -> tuple[str, dict[str, Any]]:
+def _wishes(options: argparse.Namespace) -> "Wishes | None":
+    """Other parts and values of the rig; None if there are none."""
+    from herringbone.running.prepared import Wishes  # noqa: PLC0415
+
+    files, values, parts = files_of_parts(options), start_values(options.set), replacements(options)
+    if not (files.gear or files.housing or values or parts):
+        return None
+    return Wishes(
+        values=values,
+        gear=files.gear,
+        housing=files.housing,
+        replace_parts=parts,
+        start_offset={},
+    )
+
+
+def _macro_step(wishes: "Wishes | None") -> tuple[str, dict[str, Any]]:
     from herringbone.benchmarks import macro_step  # noqa: PLC0415
 
-    found = macro_step.measure()
+    found = macro_step.measure(wishes=wishes)
     first = found.loops[macro_step.OURS] or 0.0
     lines = [
         f"Macro step of the test rig: h = {1e6 * macro_step.STEP:g} us, one micro step; Jacobi, "
@@ -93,4 +128,4 @@ def _fmus() -> tuple[str, dict[str, Any]]:
     return "\n".join(lines), {"platforms": platforms, "fmus": figures}
 
 
-_MEASURE = {"macro-step": _macro_step, "accuracy": _accuracy, "fmus": _fmus}
+_MEASURE = {"accuracy": _accuracy, "fmus": _fmus}

@@ -7,8 +7,10 @@ from typing import Any
 
 from tqdm import tqdm
 
+from herringbone.analysis.accuracy.converged import Converged
 from herringbone.analysis.accuracy.step_ladder import (
     STEPS,
+    OpenParts,
     Progress,
     Reference,
     charted_algorithms,
@@ -18,12 +20,16 @@ from herringbone.analysis.accuracy.step_ladder import (
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.part import Part
 from herringbone.core.roles import Quantity, Role
 from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
+from herringbone.cosim.record import Grid
+from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
+from herringbone.running.foreign_parts import alike, understood
 from herringbone.running.gears import Gear
-from herringbone.running.loading import open_parts
+from herringbone.running.loading import instances, open_parts
 from herringbone.running.prepared import Named, Wishes, prepared
 
 LEVELS = (1e-2, 1e-3)
@@ -42,6 +48,7 @@ def measure(
     values: Mapping[str, float | str] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
+    replace_parts: Mapping[str, str | Path] | None = None,
     fmu: str = AUTO_FMU,
     progress: Progress = lambda algorithm, step: None,
 ) -> WorkPrecision:
@@ -54,7 +61,7 @@ def measure(
         steps: communication step sizes [s].
         tolerances: relative errors for which li adapts its step, one more curve; none if not given.
         t_end: duration of each run [s]; the scene's if not given.
-        values, gear, housing: as in `herringbone.run`.
+        values, gear, housing, replace_parts: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
         progress: called before each run with the algorithm and the step [s].
 
@@ -70,18 +77,39 @@ def measure(
         raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
     refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
     chosen = [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
-    wishes = Wishes(t_end=t_end, values=values or {}, gear=gear, housing=housing)
+    wishes = Wishes(
+        t_end=t_end,
+        values=values or {},
+        gear=gear,
+        housing=housing,
+        replace_parts=replace_parts or {},
+    )
     structure, options, notes = prepared(system, scene, wishes)
     fmu, why = choose_kind(fmu)
     notes = (*notes, *why)
     grids = ladder(steps, options.t_end)
-    reference = Reference(structure, grids)
-    found = list(
-        run_points(
-            structure, lambda: open_parts(structure, fmu), reference, chosen, grids, progress
-        )
-    )
-    modes, micro_step = _internals(reference.twin)
+    if structure.foreign_parts and tolerances:
+        raise ParameterError("tolerances: with foreign FMUs a curve is drawn over fixed steps only")
+
+    known: list[Part] = []
+
+    def opened() -> list[Part]:
+        parts = open_parts(structure, fmu)
+        if known:
+            return [
+                alike(first, part) if spec.foreign else part
+                for spec, first, part in zip(structure.parts, known, parts, strict=True)
+            ]
+        known.extend(understood(structure, parts, instances, grids[0].step)[0])
+        return list(known)
+
+    reference = _reference(structure, opened, grids)
+    found = list(run_points(structure, opened, reference, chosen, grids, progress))
+    modes, micro_step = 0, 0.0
+    if isinstance(reference, Reference):
+        modes, micro_step = _internals(reference.twin)
+    else:
+        notes = (*notes, reference.note)
     return WorkPrecision(
         structure.name,
         options.name,
@@ -92,6 +120,13 @@ def measure(
         tuple(point for point, _ in found),
         tuple(dict.fromkeys([*notes, *(note for _, own in found for note in own)])),
     )
+
+
+def _reference(system: System, opened: OpenParts, grids: Sequence[Grid]) -> Reference | Converged:
+    """The twin, or finer runs where there is none."""
+    if system.foreign_parts:
+        return Converged(system, opened, grids)
+    return Reference(system, grids)
 
 
 def _internals(twin: Twin) -> tuple[int, float]:

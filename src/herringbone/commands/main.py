@@ -21,9 +21,11 @@ from herringbone.commands.housing import command as housing_command
 from herringbone.commands.options import (
     add_command,
     add_kind,
+    add_replacements,
     add_scene,
     add_start_values,
     files_of_parts,
+    replacements,
     start_values,
 )
 from herringbone.commands.output import (
@@ -89,6 +91,7 @@ def _parser() -> argparse.ArgumentParser:
     sub = add("stability", _stability, "predict the stable steps of algorithms")
     _comparison_options(sub)
     stability_command.add_options(sub)
+    add_replacements(sub)
     add_start_values(sub)
     bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
@@ -115,6 +118,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     )
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
+    add_replacements(sub)
     add_start_values(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
@@ -155,6 +159,7 @@ def _chart(options: argparse.Namespace) -> int:
         values=start_values(options.set),
         gear=files.gear,
         housing=files.housing,
+        replace_parts=replacements(options),
         **{name: value for name, value in given.items() if value is not None},
     )
     show(text)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from herringbone.core import ParameterError
 
-_SET = "INSTANCE.VARIABLE=VALUE"
+_SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
 
@@ -59,6 +59,23 @@ def add_start_values(sub: argparse.ArgumentParser) -> None:
         help="start value in SI units, of an FMU in its own, instead of the scene's; may be "
         "repeated",
     )
+
+
+def add_replacements(sub: argparse.ArgumentParser) -> None:
+    """Declare FMUs in the place of instances; see `replacements`."""
+    sub.add_argument(
+        "--replace", action="append", default=[], metavar=_REPLACE,
+        help="FMU in the place of an instance; may be repeated",
+    )  # fmt: skip
+
+
+def replacements(options: argparse.Namespace) -> dict[str, str]:
+    """FMU files by instance.
+
+    Raises:
+        ParameterError: an item is no assignment.
+    """
+    return assignments(options.replace, "--replace", _REPLACE)
 
 
 def start_values(items: Sequence[str]) -> dict[str, float | str]:

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
     add_kind,
+    add_replacements,
     add_scene,
     add_start_values,
     assignments,
     files_of_parts,
+    replacements,
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
@@ -21,7 +23,7 @@ from herringbone.running.progress import Bar
 if TYPE_CHECKING:
     from herringbone.result.result import Result
 
-_SLOW, _REPLACE = "INSTANCE=N,...", "INSTANCE=FILE.fmu"
+_SLOW = "INSTANCE=N,..."
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -43,10 +45,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     add_kind(sub)
-    sub.add_argument(
-        "--replace", action="append", default=[], metavar=_REPLACE,
-        help="FMU in the place of an instance; may be repeated",
-    )  # fmt: skip
+    add_replacements(sub)
     add_start_values(sub)
     sub.add_argument(
         "--no-probe", action="store_true",
@@ -83,7 +82,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             options.system,
             **optional,
             fmu=options.fmu,
-            replace_parts=assignments(options.replace, "--replace", _REPLACE),
+            replace_parts=replacements(options),
             values=start_values(options.set),
             gear=files.gear,
             housing=files.housing,

@@ -9,9 +9,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from herringbone.commands.options import files_of_parts
+from herringbone.commands import flange
+from herringbone.commands.options import files_of_parts, replacements
 from herringbone.commands.output import check_writable, say
-from herringbone.core import ParameterError
+from herringbone.core import FmuError, ParameterError
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -25,6 +26,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--atlas", action="store_true", help="also draw limits, by runs too; two minutes"
     )
     sub.add_argument("-o", "--output", type=Path, help="folder for the files")
+    flange.add_options(sub)
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -38,10 +40,13 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability import report  # noqa: PLC0415
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
-    from herringbone.cosim.algorithms import parse_algorithm, refuse_adaptive  # noqa: PLC0415
+    from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
+    from herringbone.running.surrogates import opened_surrogates, under_load  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
+    if flange.is_asked(options):
+        return flange.flange_limits(options)
     output = options.output or (Path("results") if options.atlas else None)
     _check(options)
     if output:
@@ -55,11 +60,18 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         start_offset={},
         gear=given.gear,
         housing=given.housing,
+        replace_parts=replacements(options),
     )
     structure, scene, notes = prepared(options.system, options.scene, wishes)
     for note in notes:
         say(note)
-    with tqdm(unit=" matrices", disable=None) as bar:
+    structure = under_load(structure)
+    bar = tqdm(unit=" matrices", disable=None)
+    with bar, opened_surrogates(structure, LI().start_step) as foreign:
+        if foreign.missing:
+            raise FmuError("; ".join(foreign.lines))
+        if foreign.strangers and options.atlas:
+            raise ParameterError("--atlas takes no foreign FMUs; leave it out")
 
         def show(algorithm: str) -> None:
             bar.set_description(algorithm, refresh=False)
@@ -67,7 +79,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
 
         if options.step is not None:
             chosen = algorithms or analysis.default_algorithms()
-            verdicts = step_verdicts(structure, chosen, options.step, show)
+            verdicts = step_verdicts(structure, chosen, options.step, show, foreign.strangers)
             if options.json:
                 return json.dumps([{**asdict(v), "stable": v.stable} for v in verdicts])
             return "\n".join(line for verdict in verdicts for line in verdict.lines())
@@ -78,6 +90,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             tolerance=options.tolerance,
             simulate=options.simulate,
             progress=show,
+            strangers=foreign.strangers,
         )
         panels = atlas(structure, progress=show) if options.atlas else ()
         if options.atlas:

@@ -33,8 +33,14 @@ class EnergyReport:
     window: float
 
 
+_WHOLE = 100.0
 _SHOWN = 0.005
 """Smallest share that is shown."""
+
+
+def hertz(frequency: float) -> str:
+    """A frequency [Hz] as text: whole numbers, but three digits of slow motions."""
+    return f"{frequency:.0f} Hz" if frequency >= _WHOLE else f"{frequency:.3g} Hz"
 
 
 @dataclass(frozen=True)
@@ -67,8 +73,8 @@ class Diagnosis:
         )
         seen = ", as seen at the communication points," if self.sampled else ""
         return [
-            f"{self.algorithm} at {self.step:.4g} s: a motion at {self.frequency:.0f} Hz{seen} "
+            f"{self.algorithm} at {self.step:.4g} s: a motion at {hertz(self.frequency)}{seen} "
             f"grows by {100.0 * self.growth:.3g} % per step",
-            f"bonds: {shares}",
+            *([f"bonds: {shares}"] if shares else []),
             *(f"({k}) {remedy}" for k, remedy in enumerate(self.remedies, 1)),
         ]

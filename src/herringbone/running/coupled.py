@@ -28,6 +28,7 @@ from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
 from herringbone.running.run_result import decimated, judged, make_result
 from herringbone.running.suited_step import suited_step
+from herringbone.running.surrogates import surrogates_of, under_load
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)
@@ -121,7 +122,7 @@ def coupled(
                 f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
             )
         if asked.warn:
-            lines += _stability_notes(system, algorithm, step, asked.slow)
+            lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
@@ -154,16 +155,27 @@ def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:
 
 
 def _stability_notes(
-    system: System, algorithm: Algorithm, step: float, slow: Mapping[str, int] | None
+    system: System,
+    parts: Sequence[Part],
+    algorithm: Algorithm,
+    step: float,
+    t_end: float,
+    asked: Asked,
 ) -> list[str]:
-    """A line if the step is unstable; nothing is predicted with slow bodies.
+    """A line if the step is unstable; nothing is predicted with slow bodies, or without trials.
 
     An adaptive step needs none: it finds the limit, and goes below.
     """
-    if system.foreign_parts or algorithm.adaptive or slow:
+    known = not system.foreign_parts or (asked.probe and system.connections)
+    if algorithm.adaptive or asked.slow or not known:
         return []
-    with activity(f"predicting whether {system.name} is stable"):
-        warning = warn_if_unstable(system, algorithm, step)
+    what = f"predicting whether {system.name} is stable"
+    with activity(what), surrogates_of(system, parts, step) as found:
+        if found.missing:
+            return []
+        warning = warn_if_unstable(
+            under_load(system), algorithm, step, t_end, strangers=found.strangers
+        )
     return [warning] if warning else []
 
 

@@ -57,6 +57,14 @@ def _tried(spec: PartSpec, part: Part, instances: Instances, step: float) -> Sig
         return signature_of(part, make, step)
 
 
+def alike(part: Part, made: Part) -> Part:
+    """A new part, as the coupling takes another one of the same FMU."""
+    if isinstance(part, NodalPart):
+        return part.in_front_of(made)
+    made.has_states, made.variables = part.has_states, part.variables
+    return made
+
+
 def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
     """Signature of a part, found on further instances; what they refuse leaves it unknown.
 
@@ -73,7 +81,7 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
     try:
-        start = _start(make(), inputs)
+        start = start_inputs(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
             return find_signature(lab, part.variables)
     except FmuError as error:
@@ -88,7 +96,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     ]
 
 
-def _start(part: Part, inputs: list[str]) -> np.ndarray:
+def start_inputs(part: Part, inputs: list[str]) -> np.ndarray:
     """Start values of the inputs, as an instance has them when it is initialised."""
     try:
         part.enter_initialization(0.0, 1.0)

@@ -37,7 +37,7 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
         system = system.with_values(_ramps(system))
     if start is not Start.REST:
         try:
-            values, lines = _equilibrium_values(system)
+            values, lines = equilibrium_values(system)
             system, notes = system.with_values(values), (*notes, *lines)
         except EquilibriumError:
             if not system.foreign_parts:
@@ -51,15 +51,20 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
 
 def _ramps(system: System) -> Values:
     """Ramp times of all parts that have one and whose user gave none."""
+    return {path: given or LOAD_RAMP_TIME for path, given in ramp_times(system).items()}
+
+
+def ramp_times(system: System) -> Values:
+    """What users gave for the ramp times of all parts that have one; 0: nothing."""
     return {
-        f"{part.name}.{ramp.name}": part.values.get(ramp.name) or LOAD_RAMP_TIME
+        f"{part.name}.{ramp.name}": part.values.get(ramp.name) or 0.0
         for part in system.parts
         if part.component
         for ramp in COMPONENTS[part.component].declaration.offered(Quantity.LOAD_RAMP_TIME)
     }
 
 
-def _equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
+def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
     foreign = set(system.foreign_parts)
     known = replace(

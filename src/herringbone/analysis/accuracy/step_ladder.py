@@ -9,6 +9,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from herringbone.analysis.accuracy.converged import Converged
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.accuracy.work_precision import REFUSED, Point
 from herringbone.analysis.twin.monolithic import Twin
@@ -125,7 +126,7 @@ def _key(times: np.ndarray) -> np.ndarray:
 def run_points(
     system: System,
     open_parts: OpenParts,
-    reference: Reference,
+    reference: Reference | Converged,
     algorithms: Sequence[Algorithm],
     grids: Sequence[Grid],
     progress: Progress,
@@ -174,7 +175,7 @@ def _warm(system: System, open_parts: OpenParts, algorithm: Algorithm, grid: Gri
 def _point(
     system: System,
     open_parts: OpenParts,
-    reference: Reference,
+    reference: Reference | Converged,
     algorithm: Algorithm,
     grid: Grid,
 ) -> tuple[Point, tuple[str, ...]]:

@@ -17,7 +17,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
-from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part, state_changes
+from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
+from herringbone.analysis.stability.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -30,6 +31,8 @@ _BLAS = ThreadpoolController()
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
+RIGID_STRANGERS = 3e-5
+"""The same with foreign parts, whose models are known to about 1e-9 of their answers."""
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
 _SLOW = 0.3
@@ -59,12 +62,35 @@ class Growth:
     mirror_radius: float = 0.0
 
 
+def growth_of(matrix: np.ndarray, step: float, rigid: float = RIGID) -> Growth:
+    """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
+
+    Args:
+        matrix: of the step.
+        step: its length [s].
+        rigid: distance from 1 of eigenvalues that are left out.
+    """
+    with _BLAS.limit(limits=1, user_api="blas"):
+        eigenvalues = np.linalg.eigvals(matrix)
+    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > rigid]
+    sizes = np.abs(eigenvalues)
+    if sizes.size == 0:
+        return Growth(0.0, 0.0, 0.0)
+    angles = np.abs(np.angle(eigenvalues))
+    largest = int(np.argmax(sizes))
+    frequency = float(angles[largest] / (2.0 * np.pi * step))
+    fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
+    mirror = float(sizes[angles == np.pi].max(initial=0.0))
+    return Growth(float(sizes[largest]), frequency, fast, mirror)
+
+
 class Amplification:
     """Amplification matrices of one algorithm on one system of linear parts.
 
     Args:
         network: parts and connections.
-        instances: of its parts, at the operating point; they are left as they were.
+        members: its parts at the operating point, as `linear_network` gives them; they are left as
+            they were.
         algorithm: coupling algorithm.
 
     Raises:
@@ -72,13 +98,15 @@ class Amplification:
     """
 
     def __init__(
-        self, network: Network, instances: Sequence[Instance], algorithm: Algorithm
+        self, network: Network, members: Sequence[Instance | StandIn], algorithm: Algorithm
     ) -> None:
-        self._parts = [linear_part(i) for i in instances]
-        self.network = replace(network, parts=tuple(self._parts))
+        self._parts = [linear_part(member) for member in members]
+        foreign = any(isinstance(member, StandIn) for member in members)
+        self._rigid = RIGID_STRANGERS if foreign else RIGID
+        self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
-        self._counts = [part.declaration.state_count for part in self._parts]
+        self._counts = [len(part.state_changes) for part in self._parts]
         layout = algorithm.prepare(self.network).layout
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
@@ -91,14 +119,15 @@ class Amplification:
 
     def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each entry of z."""
-        found = [change for part in self._parts for change in state_changes(part.instance)]
+        found = [change for part in self._parts for change in part.state_changes]
         signals: list[float] = []
         for p, part in enumerate(self._parts):
-            units = {v.reference: v.unit for v in part.variables.values() if v.is_real}
-            signals += [
-                CHANGE.get(units[int(r)] or "", OTHER_CHANGE)
-                for r in references[first[p] : first[p + 1]]
-            ]
+            known = self.network.parts[p].variables.values()
+            outputs = {v.reference: v for v in known if v.causality == "output"}
+            for reference in references[first[p] : first[p + 1]]:
+                v = outputs[int(reference)]
+                change = CHANGE.get(v.unit or "", OTHER_CHANGE)
+                signals.append(part.output_change(v.name, change))
         return np.array(found + signals * _ROWS)
 
     def growth(self, step: float) -> Growth:
@@ -107,19 +136,7 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        matrix = self.matrix(step)
-        with _BLAS.limit(limits=1, user_api="blas"):
-            eigenvalues = np.linalg.eigvals(matrix)
-        eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > RIGID]
-        sizes = np.abs(eigenvalues)
-        if sizes.size == 0:
-            return Growth(0.0, 0.0, 0.0)
-        angles = np.abs(np.angle(eigenvalues))
-        largest = int(np.argmax(sizes))
-        frequency = float(angles[largest] / (2.0 * np.pi * step))
-        fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
-        mirror = float(sizes[angles == np.pi].max(initial=0.0))
-        return Growth(float(sizes[largest]), frequency, fast, mirror)
+        return growth_of(self.matrix(step), step, self._rigid)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -132,6 +149,11 @@ class Amplification:
             self._used = _coupled(self._differences(step, everything))
         return self._differences(step, self._used)
 
+    @property
+    def residual(self) -> float:
+        """Of the surrogates in it, at the lengths of their steps in the last macro step."""
+        return max(part.residual for part in self._parts)
+
     def motion(self, step: float) -> list[np.ndarray]:
         """Complex amplitudes of each part's outputs in the fastest growing motion.
 
@@ -143,7 +165,7 @@ class Amplification:
         matrix = self.matrix(step)
         with _BLAS.limit(limits=1, user_api="blas"):
             eigenvalues, vectors = np.linalg.eig(matrix)
-        sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
+        sizes = np.where(np.abs(eigenvalues - 1.0) > self._rigid, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
         used = np.empty(0, int) if self._used is None else self._used
         vector = vector / np.abs(vector / self._change[used]).max()
@@ -162,15 +184,14 @@ class Amplification:
     def _prepared(self, step: float) -> Iterator[PreparedRun]:
         """A run of the algorithm; afterwards the parts are as they were."""
         prepared = self.algorithm.prepare(self.network)
-        degrees = [part.instance.block[part.degree_index] for part in self._parts]
         try:
             for part, degree in zip(self._parts, prepared.degree, strict=True):
                 part.prepare(step, degree)
             yield prepared
         finally:
             self._restore(self._base.copy())
-            for part, degree in zip(self._parts, degrees, strict=True):
-                part.instance.block[part.degree_index] = degree
+            for part in self._parts:
+                part.release()
 
     def _advance(
         self,
@@ -180,11 +201,14 @@ class Amplification:
         changes: Mapping[int, float] | None = None,
     ) -> np.ndarray:
         """z after one macro step from the operating point, some of its entries changed."""
-        self._restore(history)
-        for entry, change in (changes or {}).items():
-            self._perturb(history, int(entry), change)
         chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
-        status, _, culprit = prepared.run(history, chunk)
+        while True:
+            self._restore(history)
+            for entry, change in (changes or {}).items():
+                self._perturb(history, int(entry), change)
+            status, _, culprit = prepared.run(history, chunk)
+            if status == DONE or not any([part.learn() for part in self._parts]):
+                break
         if status != DONE:
             name = self._parts[culprit].name if culprit >= 0 else "the coupling"
             raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")

@@ -21,6 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from herringbone.analysis.stability.linear_parts import Member
+from herringbone.analysis.stability.surrogate_part import StandIn
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -80,20 +82,20 @@ class Direction:
     damping: float
 
 
-def bond_table(network: Network, instances: Sequence[Instance]) -> tuple[Bond, ...]:
-    """All bonds of a system of components at their present operating point."""
+def bond_table(network: Network, members: Sequence[Member]) -> tuple[Bond, ...]:
+    """All bonds between components of a system at their present operating point."""
     bonds = []
-    for direction in bond_directions(network, instances):
+    for direction in bond_directions(network, members):
         by_body: dict[int, list[tuple[str, float]]] = {}
         for c, value in direction.forces:
             by_body.setdefault(c.target, []).append((c.input, value))
         inverse = {
-            p: _response(network, instances, p, forces, forces) for p, forces in by_body.items()
+            p: _response(network, members, p, forces, forces) for p, forces in by_body.items()
         }
         masses = {p: 1.0 / x for p, x in inverse.items() if x > 0.0}
         w = math.sqrt(direction.stiffness * sum(inverse.values()))
         zeta = direction.damping * w / (2.0 * direction.stiffness)
-        bodies = tuple(instances[p].name for p in masses)
+        bodies = tuple(members[p].name for p in masses)
         values = tuple(masses.values())
         bonds.append(
             Bond(direction.name, bodies, values, direction.stiffness, direction.damping, w, zeta)
@@ -101,9 +103,9 @@ def bond_table(network: Network, instances: Sequence[Instance]) -> tuple[Bond, .
     return tuple(bonds)
 
 
-def highest_frequency(network: Network, instances: Sequence[Instance]) -> float:
+def highest_frequency(network: Network, members: Sequence[Member]) -> float:
     """Angular frequency [rad/s] of all bonds together: the largest at fixed inner springs."""
-    directions = bond_directions(network, instances)
+    directions = bond_directions(network, members)
     coupling = np.zeros((len(directions), len(directions)))
     for i, one in enumerate(directions):
         for j, other in enumerate(directions):
@@ -112,29 +114,35 @@ def highest_frequency(network: Network, instances: Sequence[Instance]) -> float:
                     [(c.input, x) for c, x in d.forces if c.target == p] for d in (one, other)
                 )
                 if ours and theirs:
-                    response = _response(network, instances, p, ours, theirs)
+                    response = _response(network, members, p, ours, theirs)
                     coupling[i, j] += math.sqrt(one.stiffness * other.stiffness) * response
     if not directions:
         return 0.0
     return math.sqrt(max(0.0, float(np.linalg.eigvalsh(0.5 * (coupling + coupling.T))[-1])))
 
 
-def bond_directions(network: Network, instances: Sequence[Instance]) -> list[Direction]:
-    """The bonds of all elements that give forces for motions of the same ports."""
+def bond_directions(network: Network, members: Sequence[Member]) -> list[Direction]:
+    """The bonds of all elements that give forces for motions of the same ports.
+
+    Without elements that are foreign, whose laws are not known.
+    """
     found = []
     bodies = set(network.bodies)
     for e in network.elements:
         forces = [c for c in network.connections if c.source == e and c.target in bodies]
-        index = instances[e].component.declaration.index
+        element = members[e]
+        if not isinstance(element, Instance):
+            continue
+        index = element.component.declaration.index
         motions = {c: motion_of_force(c.output) or () for c in forces}
         forces = [c for c in forces if motions[c] and all(name in index for name in motions[c])]
         if not forces:
             continue
-        stiffness, damping = (_slopes(instances[e], forces, kind) for kind in (0, 1))
+        stiffness, damping = (_slopes(element, forces, kind) for kind in (0, 1))
         _, block = connected_components(np.abs(stiffness) > 0.0, directed=False)
         for b in range(block.max() + 1):
             at = np.flatnonzero(block == b)
-            found += _of_block(instances[e].name, [forces[i] for i in at], stiffness, damping, at)
+            found += _of_block(element.name, [forces[i] for i in at], stiffness, damping, at)
     return found
 
 
@@ -187,13 +195,15 @@ def _slopes(element: Instance, forces: Sequence[Connection], kind: int) -> np.nd
 
 def _response(
     network: Network,
-    instances: Sequence[Instance],
+    members: Sequence[Member],
     p: int,
     forces: Sequence[tuple[str, float]],
     along: Sequence[tuple[str, float]],
 ) -> float:
     """Acceleration of a body along some ports per unit force along others [1/kg or 1/(kg.m2)]."""
-    instance = instances[p]
+    instance = members[p]
+    if isinstance(instance, StandIn):
+        return _surrogate_response(instance, forces, along)
     block, kernels = instance.block, instance.component.kernels
     declaration = instance.component.declaration
     read = {c.output for c in network.connections if c.source == p}
@@ -214,3 +224,18 @@ def _response(
     after = block[rows].copy()
     block[:] = kept
     return float(np.dot([x for name, x in velocities if name in read], after - before))
+
+
+def _surrogate_response(
+    body: StandIn, forces: Sequence[tuple[str, float]], along: Sequence[tuple[str, float]]
+) -> float:
+    """As `_response`, of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
+    surrogate = body.surrogate
+    assert surrogate.model is not None
+    pushed = np.zeros(len(surrogate.inputs))
+    for name, x in forces:
+        pushed[surrogate.inputs.index(name)] += x
+    rates = surrogate.model.c @ (surrogate.model.b @ pushed)
+    velocities = [(motion_at(name)[1], x) for name, x in along]
+    read = [(surrogate.outputs.index(v), x) for v, x in velocities if v in surrogate.outputs]
+    return float(sum(x * rates[row] for row, x in read))

@@ -12,7 +12,12 @@ import numpy as np
 from herringbone.analysis.stability.amplification import GROWTH, Amplification
 from herringbone.analysis.stability.bonds import Direction, bond_directions, highest_frequency
 from herringbone.analysis.stability.limits import default_algorithms
-from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.linear_parts import (
+    NO_STRANGERS,
+    Member,
+    Strangers,
+    linear_network,
+)
 from herringbone.analysis.stability.step_scan import first_unstable
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.energy_report import Diagnosis
@@ -29,24 +34,26 @@ _FACTORS = (1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
 """Of the damping, ascending."""
 _DAMPING_UNIT = {"N": "N.s/m", "N.m": "N.m.s/rad"}
 
-Linear = tuple[Network, Sequence[Instance]]
+Linear = tuple[Network, Sequence[Member]]
 """Linear parts at their operating point."""
 
 
-def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | None:
+def diagnose(
+    system: System, algorithm: Algorithm, step: float, strangers: Strangers = NO_STRANGERS
+) -> Diagnosis | None:
     """Why an algorithm is unstable at a step; None if the linear parts are stable there.
 
-    None also where nothing can be said: foreign parts, or a start with an open mesh.
+    None also where nothing can be said: nothing stands for a foreign part, or a mesh is open at
+    the start.
 
     Args:
         system: as it is started.
         algorithm: coupling algorithm.
         step: macro step [s].
+        strangers: what stands for foreign parts.
     """
-    if system.foreign_parts:
-        return None
     try:
-        linear = network, instances = linear_network(system)
+        linear = network, members = linear_network(system, strangers=strangers)
         amplification = Amplification(*linear, algorithm)
         growth = amplification.growth(step)
         if growth.radius <= 1.0 + GROWTH:
@@ -54,15 +61,15 @@ def diagnose(system: System, algorithm: Algorithm, step: float) -> Diagnosis | N
         outputs = amplification.motion(step)
     except HerringboneError:
         return None
-    sampled = highest_frequency(network, instances) * step > np.pi
-    directions = bond_directions(network, instances)
+    sampled = highest_frequency(network, members) * step > np.pi
+    directions = bond_directions(network, members)
     shares = _shares(network, directions, outputs)
     order = np.argsort(-shares)
     bonds = tuple((directions[i].name, float(shares[i])) for i in order)
     remedies = (
         _smaller_step(amplification, step),
         *_other_algorithms(linear, algorithm, step),
-        *_more_damping(linear, algorithm, step, directions[order[0]]),
+        *(_more_damping(linear, algorithm, step, directions[order[0]]) if bonds else ()),
     )
     return Diagnosis(
         str(algorithm),
@@ -132,6 +139,7 @@ def _more_damping(
     """
     element = next(i for i in linear[1] if direction.name.startswith(f"{i.name}."))
     name, force = element.name, direction.name.removeprefix(f"{element.name}.")
+    assert isinstance(element, Instance)
     declaration = element.component.declaration
     now = {v.name: element[v.name] for v in declaration.offered(Quantity.DAMPING)}
     if not now:

@@ -1,18 +1,24 @@
 """A system as linear parts: components in this process at an operating point, meshes frozen.
 
+Foreign parts are those that were identified, each in the place of the real one.
+
 Laws that change with the phase of a mesh are frozen by the components that have them (`freeze`), at
 one tangent stiffness of a mesh period. Then everything is affine while meshes stay closed and no
 limit of a motor acts.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
 
+from herringbone.analysis.stability.surrogate_part import StandIn, Stranger
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
+from herringbone.core.part import Part
+from herringbone.core.part_path import PartPath
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 
@@ -30,31 +36,73 @@ class MeshStiffness(StrEnum):
         return float(kinds[self](values))
 
 
+Member = Instance | StandIn
+"""A part of a linear system."""
+Strangers = Mapping[str, Stranger]
+"""What stands for foreign parts, by name."""
+NO_STRANGERS: Strangers = {}
+
+
 def linear_network(
-    system: System, stiffness: MeshStiffness = MeshStiffness.MEAN
-) -> tuple[Network, list[Instance]]:
+    system: System,
+    stiffness: MeshStiffness = MeshStiffness.MEAN,
+    strangers: Strangers = NO_STRANGERS,
+) -> tuple[Network, list[Member]]:
     """Parts of a system at its start values, linear.
 
     Args:
-        system: of components of this package; its start values are an equilibrium.
+        system: its start values are an equilibrium.
         stiffness: at which all meshes are frozen.
+        strangers: what stands for its foreign parts, all with a model.
 
     Raises:
-        StructureError: a part is a foreign FMU, or the connections are wrong.
+        StructureError: nothing stands for a foreign part, or the connections are wrong.
         ParameterError: a mesh is open, or a value is wrong.
     """
-    instances = make_instances(system)
-    network = build_network(system, [InProcessPart(i) for i in instances])
-    _propagate(network, instances)
-    for instance in instances:
-        if instance.component.freeze:
-            instance.component.freeze(instance, stiffness.of)
-    return network, instances
+    own = _own_instances(system, strangers)
+    members: list[Member] = [
+        StandIn(strangers[spec.name]) if spec.name in strangers else own[spec.name]
+        for spec in system.parts
+    ]
+    parts = [InProcessPart(m) if isinstance(m, Instance) else m.part for m in members]
+    network = build_network(system, parts)
+    _propagate(network, members)
+    for member in members:
+        if isinstance(member, Instance) and member.component.freeze:
+            member.component.freeze(member, stiffness.of)
+    return network, members
 
 
-def _propagate(network: Network, instances: Sequence[Instance]) -> None:
-    """Outputs of elements from the bodies' motions, and of bodies from the elements' forces."""
+def real_parts(system: System, strangers: Strangers = NO_STRANGERS) -> list[Instance | Part]:
+    """Parts of a system at its start values, for a run: instances, and fresh foreign parts.
+
+    Raises:
+        HerringboneError: nothing stands for a foreign part, or a value is wrong.
+    """
+    own = _own_instances(system, strangers)
+    return [
+        strangers[spec.name].fresh() if spec.name in strangers else own[spec.name]
+        for spec in system.parts
+    ]
+
+
+def _own_instances(system: System, strangers: Strangers) -> dict[PartPath, Instance]:
+    parts = tuple(spec for spec in system.parts if spec.name not in strangers)
+    made = make_instances(replace(system, parts=parts, connections=()))
+    return {spec.name: instance for spec, instance in zip(parts, made, strict=True)}
+
+
+def _propagate(network: Network, members: Sequence[Member]) -> None:
+    """Outputs of elements from the bodies' motions, and of bodies from the elements' forces.
+
+    What foreign parts feed stays as it is: the equilibrium was found without them.
+    """
     for target in (*network.elements, *network.bodies):
+        member = members[target]
+        if not isinstance(member, Instance):
+            continue
         for c in network.inputs(target):
-            instances[target].set(c.input, instances[c.source][c.output])
-        instances[target].component.kernels.out(instances[target].block, 0.0)
+            source = members[c.source]
+            if isinstance(source, Instance):
+                member.set(c.input, source[c.output])
+        member.component.kernels.out(member.block, 0.0)

@@ -17,6 +17,7 @@ import numpy as np
 
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import HerringboneError, Instance
+from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.energy.watch import power_pairs
 from herringbone.cosim.simulation import make_grid, simulate
@@ -32,13 +33,13 @@ _ROUNDING = 1e-4
 """Of what was there at first: the least that rounding of the shafts' angles does not cover."""
 _WINDOWS, _FIRST = 10, 20
 
-MakeInstances = Callable[[], Sequence[Instance]]
-"""Makes the parts of a run, at their start values."""
+MakeParts = Callable[[], Sequence[Instance | Part]]
+"""Makes the parts of a run, at their start values: components as instances, foreign parts."""
 
 
 def perturbation_growth(
     system: System,
-    instances: MakeInstances,
+    make: MakeParts,
     algorithm: Algorithm,
     step: float,
     *,
@@ -49,7 +50,7 @@ def perturbation_growth(
 
     Args:
         system: structure; where bodies and elements meet, forces are compared.
-        instances: makes its parts.
+        make: makes its parts; components among them are perturbed.
         algorithm: coupling algorithm.
         step: macro step [s].
         steps: macro steps of each run.
@@ -59,32 +60,38 @@ def perturbation_growth(
     Returns:
         Positive in an unstable coupling; infinite if a run ends early.
     """
-    kicked = _forces(system, _kicked(instances()), algorithm, step, steps)
-    plain = kicked[:1] if at_rest else _forces(system, instances(), algorithm, step, steps)
+    kicked = _forces(system, _kicked(make()), algorithm, step, steps)
+    plain = kicked[:1] if at_rest else _forces(system, make(), algorithm, step, steps)
     if not (np.isfinite(kicked).all() and np.isfinite(plain).all()):
         return math.inf
     return _rate(np.diff(kicked - plain, n=2, axis=0), power=0 if at_rest else 1)
 
 
-def _kicked(instances: Sequence[Instance]) -> Sequence[Instance]:
-    """The instances with other velocities of all bodies, the same ones in every call."""
+def _kicked(made: Sequence[Instance | Part]) -> Sequence[Instance | Part]:
+    """The parts with other velocities of all bodies, the same ones in every call."""
     random = np.random.default_rng(0)
-    for instance in instances:
+    for instance in made:
+        if not isinstance(instance, Instance):
+            continue
         for entry, v in enumerate(instance.component.declaration.states):
             instance.block[entry] += KICK.get(v.unit, 0.0) * random.uniform(-1.0, 1.0)
-    return instances
+    return made
 
 
 def _forces(
-    system: System, instances: Sequence[Instance], algorithm: Algorithm, step: float, steps: int
+    system: System,
+    made: Sequence[Instance | Part],
+    algorithm: Algorithm,
+    step: float,
+    steps: int,
 ) -> np.ndarray:
     """Forces between the parts (steps + 1, m) in a run; one row of infinity if it ends early."""
-    parts = [InProcessPart(i) for i in instances]
-    pairs = [pair.force for pair in power_pairs(build_network(system, parts))]
-    try:
-        run = simulate(system, parts, algorithm, make_grid(steps * step, step, step))
-    except HerringboneError:  # no Jacobian where the values overflow
-        return np.full((1, len(pairs)), np.inf)
+    with closing_all([InProcessPart(p) if isinstance(p, Instance) else p for p in made]) as parts:
+        pairs = [pair.force for pair in power_pairs(build_network(system, parts))]
+        try:
+            run = simulate(system, parts, algorithm, make_grid(steps * step, step, step))
+        except HerringboneError:  # no Jacobian where the values overflow
+            return np.full((1, len(pairs)), np.inf)
     if not run.outcome.reached_end:
         return np.full((1, len(pairs)), np.inf)
     columns = [run.names.index(f"{parts[c.source].name}.{c.output}") for c in pairs]

@@ -22,8 +22,8 @@ _SCHEDULE = ",schedule=bodies_first"
 """The default, left out of names."""
 
 
-def _us(step: float) -> str:
-    return f"{_MICRO * step:.1f}" if math.isfinite(step) else f"> {_MICRO * LARGEST_STEP:.0f}"
+def _us(step: float, largest: float = LARGEST_STEP) -> str:
+    return f"{_MICRO * step:.1f}" if math.isfinite(step) else f"> {_MICRO * largest:.0f}"
 
 
 def _simulated(step: float | None) -> str:
@@ -67,7 +67,7 @@ def _limit_rows(found: Stability, *, runs: bool) -> list[tuple[str, ...]]:
     for limits in found.limits:
         seen = (_simulated(limits.simulated_limit),) if runs else ()
         frequency = f"{limits.frequency:.0f}" if math.isfinite(limits.frequency) else "-"
-        steps = (_us(limits.mesh_stiffness[name]) for name in names)
+        steps = (_us(limits.mesh_stiffness[name], limits.largest) for name in names)
         name = limits.algorithm.removesuffix(_SCHEDULE)
         rows.append((name, *steps, *seen, frequency, _bands(limits)))
     return rows
@@ -111,12 +111,31 @@ def stability_text(found: Stability) -> str:
             "runs: of the non-linear system; - if none was found from "
             f"{LOWEST:g} to {HIGHEST:g} times the predicted one"
         )
+    if found.orders:
+        lines += _foreign_lines(found)
     if found.bonds:
         lines += ["", *_bond_lines(found.bonds)]
         lines.append(f"all bonds together: {found.highest_frequency / (2.0 * math.pi):.0f} Hz")
     if found.ranking.best:
         lines += ["", *_recommended(found.ranking, found.tolerance)]
     return "\n".join([*lines, *(line for n in found.notes for line in wrap(f"note: {n}", _WIDTH))])
+
+
+def _foreign_lines(found: Stability) -> list[str]:
+    """What stands for foreign parts, how well, and what is not promised therefore."""
+    parts = ", ".join(f"{name} of order {order}" for name, order in found.orders.items())
+    missed = max((100.0 * limits.residual for limits in found.limits), default=0.0)
+    lines = [
+        f"foreign parts as linear systems that trial steps show: {parts}; on other trials, at the "
+        f"limits, they miss by {missed:.1g} % at most"
+    ]
+    lines += [
+        f"nothing is promised for {limits.algorithm.removesuffix(_SCHEDULE)}: at its limit they "
+        f"miss by {100.0 * limits.residual:.2g} %"
+        for limits in found.limits
+        if not limits.promised
+    ]
+    return [piece for line in lines for piece in wrap(line, _WIDTH)]
 
 
 def _recommended(ranking: Ranking, tolerance: float) -> list[str]:
@@ -169,6 +188,8 @@ def stability_summary(found: Stability) -> dict[str, Any]:
                 "mesh_stiffness": {k: _number(v) for k, v in limits.mesh_stiffness.items()},
                 "frequency": _number(limits.frequency),
                 "simulated_limit": limits.simulated_limit,
+                "residual": limits.residual,
+                "promised": limits.promised,
             }
             for limits in found.limits
         ],
@@ -189,6 +210,7 @@ def stability_summary(found: Stability) -> dict[str, Any]:
         "recommended": ranked[0] if ranked else None,
         "ranking": ranked,
         "unranked": dict(found.ranking.unranked),
+        "foreign_orders": dict(found.orders),
         "notes": list(found.notes),
     }
 

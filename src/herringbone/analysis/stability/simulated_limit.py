@@ -8,8 +8,8 @@ interval before the first unstable one is halved.
 import math
 from collections.abc import Callable, Sequence
 
+from herringbone.analysis.stability.linear_parts import NO_STRANGERS, Strangers, real_parts
 from herringbone.analysis.stability.perturbed_run import perturbation_growth
-from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 
@@ -22,15 +22,20 @@ Bands = Sequence[tuple[float, float]]
 
 
 def nonlinear_limit(
-    system: System, algorithm: Algorithm, predicted: float, bands: Bands = ()
+    system: System,
+    algorithm: Algorithm,
+    predicted: float,
+    bands: Bands = (),
+    strangers: Strangers = NO_STRANGERS,
 ) -> float | None:
     """First macro step [s] at which runs of the non-linear parts are unstable, to 1 %.
 
     Args:
-        system: of components of this package, as it is started.
+        system: as it is started.
         algorithm: coupling algorithm.
         predicted: limit of the linear parts [s].
         bands: predicted unstable steps (from, to) [s].
+        strangers: its foreign parts.
 
     Returns:
         A step between half the predicted limit and twice of it; None if runs are stable, or
@@ -40,7 +45,7 @@ def nonlinear_limit(
     def unstable(step: float) -> bool:
         steps = run_steps(predicted)
         growth = perturbation_growth(
-            system, lambda: make_instances(system), algorithm, step, steps=steps
+            system, lambda: real_parts(system, strangers), algorithm, step, steps=steps
         )
         return growth > 0.0
 

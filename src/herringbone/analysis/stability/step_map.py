@@ -12,10 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from herringbone.analysis.stability.surrogate_part import StandIn
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.part import Addresses, Part, PartVariable
 from herringbone.core.variable import NODES
 from herringbone.kernels import affine_step
 from herringbone.kernels.affine_step import HEADER
@@ -28,7 +29,7 @@ CHANGE = {
 OTHER_CHANGE = 1e-6
 
 
-def state_changes(instance: Instance) -> list[float]:
+def _state_changes(instance: Instance) -> list[float]:
     """Differences of a part's states, those of its state vectors last."""
     declaration = instance.component.declaration
     found = [CHANGE.get(v.unit, OTHER_CHANGE) for v in declaration.states]
@@ -38,17 +39,44 @@ def state_changes(instance: Instance) -> list[float]:
 
 
 class LinearPart(InProcessPart):
-    """A linear component in this process; `values` are those that a step may change."""
+    """A linear component in this process.
+
+    Attributes:
+        values: that a step may change; the states come first.
+        state_changes: differences of the states.
+    """
+
+    residual = 0.0
 
     def __init__(self, instance: Instance) -> None:
         super().__init__(instance)
         self.values = instance.block[: self.declaration.mutable_size]
-        self.degree_index = self.declaration.index[INTERFACE_DEGREE]
+        self.state_changes = _state_changes(instance)
+        self._degree_index = self.declaration.index[INTERFACE_DEGREE]
+        self._degree = float(instance.block[self._degree_index])
+
+    @property
+    def part(self) -> Part:
+        """As the network takes it."""
+        return self
 
     def prepare(self, step: float, degree: int) -> None:
         """Make ready for macro steps of a length [s] at an interface degree."""
         del step
-        self.instance.block[self.degree_index] = degree
+        self.instance.block[self._degree_index] = degree
+
+    def release(self) -> None:
+        """After macro steps: the degree is what it was."""
+        self.instance.block[self._degree_index] = self._degree
+
+    def learn(self) -> bool:
+        """False: it takes steps of any length."""
+        return False
+
+    def output_change(self, name: str, change: float) -> float:
+        """Difference of an output."""
+        del name
+        return change
 
 
 class MappedPart(LinearPart):
@@ -137,7 +165,7 @@ class MappedPart(LinearPart):
     def _entries(self, degree: int) -> tuple[np.ndarray, list[float]]:
         """Indices of states and of inputs at the live nodes, and their differences."""
         declaration = self.declaration
-        entries, changes = list(range(declaration.state_count)), state_changes(self.instance)
+        entries, changes = list(range(declaration.state_count)), _state_changes(self.instance)
         for v in declaration.inputs:
             for node in range(degree + 1):
                 entries.append(declaration.index[node_name(v.name, node) if node else v.name])
@@ -155,7 +183,13 @@ class MappedPart(LinearPart):
         return np.array(found)
 
 
-def linear_part(instance: Instance) -> LinearPart:
-    """A map for a component that takes micro steps, else the component itself."""
-    mapped = "micro_step" in instance.component.declaration.index
-    return MappedPart(instance) if mapped else LinearPart(instance)
+Linear = LinearPart | StandIn
+"""A part as a linear analysis runs it."""
+
+
+def linear_part(of: Instance | StandIn) -> Linear:
+    """A map for a component that takes micro steps, else the component itself, or the stand-in."""
+    if isinstance(of, StandIn):
+        return of
+    mapped = "micro_step" in of.component.declaration.index
+    return MappedPart(of) if mapped else LinearPart(of)

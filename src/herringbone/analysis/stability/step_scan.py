@@ -27,7 +27,8 @@ from herringbone.core import HerringboneError, ParameterError
 
 SMALLEST_STEP, LARGEST_STEP = 1e-6, 2e-3
 """Range of the scan [s]."""
-_COARSE, _FINE = 1.25, 1.025
+COARSE, _FINE = 1.25, 1.025
+"""Factors between steps of the scans."""
 _BELOW, _ABOVE = 0.25, 2.0
 _CLEARLY, _FOR_LONG = 1.2, 1.3
 _RESOLUTION = 1.005
@@ -41,7 +42,10 @@ GrowthOf = Callable[[float], Growth]
 
 
 def unstable_bands(
-    growth: GrowthOf, smallest: float = SMALLEST_STEP, largest: float = LARGEST_STEP
+    growth: GrowthOf,
+    smallest: float = SMALLEST_STEP,
+    largest: float = LARGEST_STEP,
+    coarse: float = COARSE,
 ) -> tuple[tuple[float, float], ...]:
     """Unstable bands (from, to) [s] over the steps of a range [s].
 
@@ -49,12 +53,12 @@ def unstable_bands(
     the coarse one's first hit: above a finite last band steps are stable up to there, and nothing
     is known beyond.
     """
-    coarse = _find_unstable(growth, smallest, _COARSE, largest)
-    if coarse is None:
+    first = _find_unstable(growth, smallest, coarse, largest)
+    if first is None:
         return ()
     # The smallest step may be unstable itself: then nothing is looked for below.
-    samples = _samples(growth, max(smallest, _BELOW * coarse), min(_ABOVE * coarse, largest))
-    samples.append((coarse, _safe(growth, coarse)))
+    samples = _samples(growth, max(smallest, _BELOW * first), min(_ABOVE * first, largest))
+    samples.append((first, _safe(growth, first)))
     samples = _with_maxima(growth, sorted(samples, key=_step))
     samples += _closely(growth, next(step for step, value in samples if _grows(value)))
     samples.sort(key=_step)
@@ -88,10 +92,10 @@ def first_unstable(growth: GrowthOf, smallest: float, largest: float) -> float |
 
     Many times cheaper than all bands; a narrow one can be missed, but not just below what is found.
     """
-    found = _find_unstable(growth, smallest, _COARSE, largest)
+    found = _find_unstable(growth, smallest, COARSE, largest)
     if found in {None, smallest}:
         return found
-    return first_unstable_near(growth, _crossing(growth, found / _COARSE, found))
+    return first_unstable_near(growth, _crossing(growth, found / COARSE, found))
 
 
 def _safe(growth: GrowthOf, step: float) -> Growth:

@@ -6,8 +6,14 @@ from dataclasses import dataclass
 from herringbone.analysis.stability.amplification import GROWTH, Amplification
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.limits import Progress
-from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
-from herringbone.core.energy_report import Diagnosis
+from herringbone.analysis.stability.linear_parts import (
+    NO_STRANGERS,
+    MeshStiffness,
+    Strangers,
+    linear_network,
+)
+from herringbone.analysis.stability.surrogate import PROMISED
+from herringbone.core.energy_report import Diagnosis, hertz
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 
@@ -24,6 +30,7 @@ class StepVerdict:
         mesh_stiffness: at which it grows most: minimum, mean or maximum.
         frequency: of that motion [Hz].
         why: what grows at mean stiffness and what helps; None if nothing does.
+        residual: of what stands for foreign parts, on trials that were not fitted.
     """
 
     algorithm: str
@@ -32,6 +39,7 @@ class StepVerdict:
     mesh_stiffness: str
     frequency: float
     why: Diagnosis | None
+    residual: float = 0.0
 
     @property
     def stable(self) -> bool:
@@ -41,41 +49,54 @@ class StepVerdict:
     def lines(self) -> list[str]:
         """For people."""
         name = f"{self.algorithm} at {self.step:.4g} s"
+        if self.residual > PROMISED:
+            return [
+                f"{name}: nothing is promised, because what stands for foreign parts misses their "
+                f"answers by {100.0 * self.residual:.2g} %"
+            ]
         if self.stable:
             return [f"{name}: stable"]
         if self.why:
             return ["unstable: " + self.why.lines()[0], *self.why.lines()[1:]]
         return [
-            f"unstable: {name}: a motion at {self.frequency:.0f} Hz grows by "
+            f"unstable: {name}: a motion at {hertz(self.frequency)} grows by "
             f"{100.0 * self.growth:.3g} % per step at {self.mesh_stiffness} mesh stiffness"
         ]
 
 
 def step_verdicts(
-    system: System, algorithms: Sequence[Algorithm], step: float, progress: Progress
+    system: System,
+    algorithms: Sequence[Algorithm],
+    step: float,
+    progress: Progress,
+    strangers: Strangers = NO_STRANGERS,
 ) -> tuple[StepVerdict, ...]:
     """Verdicts of algorithms at a macro step.
 
     Args:
-        system: of components of this package, at the start values of an equilibrium under load.
+        system: at the start values of an equilibrium under load.
         algorithms: to examine.
         step: macro step [s].
         progress: called before every matrix.
+        strangers: what stands for foreign parts.
 
     Raises:
-        StructureError: a part is a foreign FMU.
+        StructureError: nothing stands for a foreign part.
         HerringboneError: a mesh is open at the start, or a part fails within one step.
     """
     found = []
     for algorithm in algorithms:
-        by_stiffness = {}
+        by_stiffness, residual = {}, 0.0
         for stiffness in MeshStiffness:
             progress(str(algorithm))
-            network = linear_network(system, stiffness)
-            by_stiffness[stiffness] = Amplification(*network, algorithm).growth(step)
+            amplification = Amplification(*linear_network(system, stiffness, strangers), algorithm)
+            by_stiffness[stiffness] = amplification.growth(step)
+            residual = max(residual, amplification.residual)
         worst = max(by_stiffness, key=lambda s: by_stiffness[s].radius)
         growth = by_stiffness[worst].radius - 1.0
-        why = diagnose(system, algorithm, step) if growth > GROWTH else None
+        why = diagnose(system, algorithm, step, strangers) if growth > GROWTH else None
         frequency = by_stiffness[worst].frequency
-        found.append(StepVerdict(str(algorithm), step, growth, worst.value, frequency, why))
+        found.append(
+            StepVerdict(str(algorithm), step, growth, worst.value, frequency, why, residual)
+        )
     return tuple(found)

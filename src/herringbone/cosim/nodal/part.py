@@ -29,6 +29,7 @@ class NodalPart:
     def __init__(self, part: Part, signature: Signature, pieces: int = 2) -> None:
         self.name, self.part, self.signature = part.name, part, signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
+        self._pieces = pieces
         self.has_states: bool | None = signature.kind is not Kind.ELEMENT
         self.once, self.one_step = part.once, part.one_step
         self.variables: Mapping[str, PartVariable] = self._variables()
@@ -97,6 +98,10 @@ class NodalPart:
                 memory[name] = address
         return memory
 
+    def in_front_of(self, part: Part) -> "NodalPart":
+        """The same adapter in front of another part with the same variables."""
+        return NodalPart(part, self.signature, self._pieces)
+
     @property
     def answers_again(self) -> bool:
         """True if the part cannot repeat a step; see `nodal.once`."""
@@ -122,8 +127,19 @@ class NodalPart:
             self.part.set(name, value)
 
     def get(self, names: Sequence[str]) -> list[float]:
-        """Values of real variables of the part."""
-        return self.part.get(names)
+        """Values of real variables of the part, and of its signals' nodes, which only this has."""
+        return [
+            self.part.get([name])[0] if name in self.part.variables else self._node(name)
+            for name in names
+        ]
+
+    def _node(self, name: str) -> float:
+        """Value of a signal at a node, as it was given or found last."""
+        number, node = divmod(self.variables[name].reference, STRIDE)
+        inputs = len(self._inputs)
+        if number < inputs:
+            return float(self._arrays["given"][number, node])
+        return float(self._arrays["values"][number - inputs, node])
 
     def put_values(self, values: Mapping[str, Value]) -> None:
         """See `Part`."""

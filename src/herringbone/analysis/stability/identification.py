@@ -1,0 +1,158 @@
+"""Linear models from answers to pulses: arrays in, arrays out.
+
+An input that differs from rest in one step of length h0 changes the outputs after each step: the
+Markov parameters H_0, H_1, ... of a discrete system. The eigensystem realisation algorithm (J.-N.
+Juang and R. S. Pappa, Journal of Guidance 8, 1985, 620-627, equations 21 to 26) makes a system of
+them by a singular value decomposition of their Hankel matrix; its leading blocks are the systems of
+lower order. The logarithm of its transition matrix gives the system in continuous time, and that
+gives the step of any length, as long as h0 resolves the motions: their angles per step must be
+below pi, and they must not have died out within one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm, logm
+
+from herringbone.cosim.signature.rotation import Given
+
+_ROUNDING = 1e-13
+"""Singular values below this share of the largest one are rounding."""
+MOST_STATES = 160
+_ROWS, _COLUMNS = 420, 260
+"""Size of a Hankel matrix that is large enough for so many states."""
+_FEWEST, _LONGEST = 6, 40
+"""Block rows and columns."""
+_GONE, _TURNED = 1e-5, 3.0
+"""Eigenvalues of a step that have no usable logarithm: smaller ones, and larger angles [rad]."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a linear part: x' = a x + b u, outputs at its end c x + d u, with held u."""
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+
+    def answers(self, inputs: np.ndarray) -> np.ndarray:
+        """Outputs (steps, m) on inputs (steps, n), from rest."""
+        x, found = np.zeros(len(self.a)), np.empty((len(inputs), len(self.d)))
+        for k, u in enumerate(inputs):
+            found[k] = self.c @ x + self.d @ u
+            x = self.a @ x + self.b @ u
+        return found
+
+    def reduced(self, order: int) -> "Step":
+        """The leading states alone."""
+        return Step(self.a[:order, :order], self.b[:order], self.c[:, :order], self.d)
+
+
+def blocks(inputs: int, outputs: int) -> tuple[int, int]:
+    """Block rows and columns of a Hankel matrix; both together are the pulses' steps."""
+    rows = min(max(_ROWS // max(outputs, 1), _FEWEST), _LONGEST)
+    columns = min(max(_COLUMNS // max(inputs, 1), _FEWEST), _LONGEST)
+    return rows, columns
+
+
+def realised(markov: np.ndarray) -> Step:
+    """The system of the highest order that answers to pulses can tell.
+
+    Args:
+        markov: (steps, m, n) outputs after each step, of pulses in the first one; about 1 in size.
+    """
+    _, outputs, inputs = markov.shape
+    rows, columns = blocks(inputs, outputs)
+    columns = min(columns, len(markov) - 1 - rows)
+    first, later = (
+        np.block([[markov[1 + i + j + late] for j in range(columns)] for i in range(rows)])
+        for late in (0, 1)
+    )
+    u, s, v = np.linalg.svd(first, full_matrices=False)
+    order = int(np.sum(s > _ROUNDING * max(s[0], 1e-300))) if s.size else 0
+    order = min(order, MOST_STATES)
+    root = np.sqrt(s[:order])
+    u, v = u[:, :order], v[:order]
+    a = (u / root).T @ later @ (v.T / root)
+    return Step(a, root[:, None] * v[:, :inputs], u[:outputs] * root, markov[0])
+
+
+@dataclass(frozen=True)
+class LinearModel:
+    """A linear part in continuous time: dx/dt = a x + b u, y = c x + d u.
+
+    Attributes:
+        a, b, c, d: (k, k), (k, n), (m, k), (m, n).
+        given: of each input, how the part takes what it is given for a step.
+        rates: (n,) number of the input that is an input's rate, or -1.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+    given: tuple[Given, ...]
+    rates: tuple[int, ...]
+
+    def over(self, h: float) -> Step:
+        """A step of length h [s]."""
+        a, whole, slope = _integrals(self.a, h)
+        b, d = whole @ self.b, self.d.copy()
+        for k, rate in self._moving():
+            if self.given[k] is Given.START:
+                b[:, rate] += slope @ self.b[:, k]
+                d[:, rate] += h * self.d[:, k]
+            else:
+                b[:, rate] += slope @ self.b[:, k] - h * (whole @ self.b[:, k])
+        return Step(a, b, self.c @ a, self.c @ b + d)
+
+    def _moving(self) -> list[tuple[int, int]]:
+        """Inputs that move inside a step, and their rates."""
+        return _moving(self.given, self.rates)
+
+
+def _moving(given: Sequence[Given], rates: Sequence[int]) -> list[tuple[int, int]]:
+    return [
+        (k, rate)
+        for k, (rule, rate) in enumerate(zip(given, rates, strict=True))
+        if rule is not Given.MEAN and rate >= 0
+    ]
+
+
+def in_continuous_time(
+    step: Step, h: float, given: Sequence[Given], rates: Sequence[int]
+) -> LinearModel | None:
+    """The model whose step of length h [s] is this one; None if it has none."""
+    values = np.linalg.eigvals(step.a)
+    if values.size == 0:
+        return LinearModel(step.a, step.b, step.c, step.d, tuple(given), tuple(rates))
+    if np.any(np.abs(values) < _GONE) or np.any(np.abs(np.angle(values)) > _TURNED):
+        return None
+    a = np.asarray(logm(step.a)) / h
+    if not np.isfinite(a).all() or np.abs(a.imag).max(initial=0.0) > 1e-6 * np.abs(a).max(
+        initial=1.0
+    ):
+        return None
+    a = np.ascontiguousarray(a.real)
+    _, whole, slope = _integrals(a, h)
+    c = np.linalg.solve(step.a.T, step.c.T).T
+    d, b = step.d - c @ step.b, np.linalg.solve(whole, step.b)
+    for k, rate in _moving(given, rates):
+        moved = np.linalg.solve(whole, slope @ b[:, k])
+        if given[k] is Given.START:
+            b[:, rate] -= moved
+            d[:, rate] -= h * d[:, k]
+        else:
+            b[:, rate] += h * b[:, k] - moved
+    return LinearModel(a, b, c, d, tuple(given), tuple(rates))
+
+
+def _integrals(a: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """exp(a h), and integrals over a step of exp(a (h - t)), and of that times t."""
+    count = len(a)
+    eye, none = np.eye(count), np.zeros((count, count))
+    whole = np.block([[h * a, h * eye, none], [none, none, h * eye], [none, none, none]])
+    found = expm(whole)[:count]
+    return found[:, :count], found[:, count : 2 * count], found[:, 2 * count :]

@@ -1,0 +1,258 @@
+"""What stands for a foreign part in linear analyses: a model identified from trial steps.
+
+The part is trialled at its start. All that is used of the trials are differences to a run without
+change, so that the model is that of small motions about that run. Steps of the trials are sought
+that resolve the part's motions: much shorter ones tell nothing of slow motions, longer ones nothing
+of those that have died out or have turned by more than half a circle.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from herringbone.analysis.stability.identification import (
+    LinearModel,
+    Step,
+    blocks,
+    in_continuous_time,
+    realised,
+)
+from herringbone.core.part import PartVariable
+from herringbone.cosim.signature.amplitudes import amplitude
+from herringbone.cosim.signature.laboratory import Laboratory
+from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.signature import Signature
+from herringbone.cosim.signature.trial import Refused
+
+_BLAS = ThreadpoolController()
+PROMISED = 0.01
+"""Residual on trials that were not fitted, above which nothing is promised."""
+_GOOD, _ENOUGH = 1e-8, 3.0
+"""The order is the smallest whose residual is this small, or at most so many times the least."""
+_TRIED_STEPS, _FRESH_STEPS = 8, 24
+_FAST, _SLOW, _AIM = 2.2, 0.2, 1.0
+"""Largest change of a motion in a step: base steps with more or less than this are changed."""
+_SHORTER, _LONGER = 0.25, 64.0
+_SHORTEST, _LONGEST = 1e-7, 1.0
+"""Base steps [s] that are tried."""
+_LOUD = 1024.0
+"""Larger changes, of parts that answer them alike: their answers stand higher above rounding."""
+_ALIKE = 1e-7
+_QUIET = 1e-9
+"""Answers below this share of an output are rounding."""
+_SEED = 12
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """A model, and how well the step that it was made at answers to other inputs."""
+
+    model: LinearModel
+    residual: float
+    base: float
+    order: int
+
+
+class Surrogate:
+    """A linear model of a part at its start.
+
+    Args:
+        lab: of the part, entered; it is used as long as residuals are asked for.
+        signature: of the part.
+        variables: of the part.
+
+    Attributes:
+        model: None if there is none.
+        inputs, outputs: names, (n,) and (m,).
+        base: step of the trials [s].
+        why: why there is none, "" if there is.
+        amplitudes: (n,) changes of the inputs for which the model's states are about 1.
+        start, start_outputs: (n,) and (m,) of the operating point.
+    """
+
+    def __init__(
+        self, lab: Laboratory, signature: Signature, variables: Mapping[str, PartVariable]
+    ) -> None:
+        self._lab = lab
+        self.inputs, self.outputs = lab.inputs, lab.outputs
+        self.start, self.start_outputs = lab.start.copy(), lab.start_outputs.copy()
+        self._given, self._rates = _rules(signature, lab.inputs)
+        pairs = zip(lab.inputs, lab.start, strict=True)
+        self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
+        self._loud = 1.0
+        self._residuals, self._steps = dict[float, float](), dict[float, Step]()
+        self.model: LinearModel | None = None
+        self.base, self.why = lab.step, ""
+        try:
+            with _BLAS.limit(limits=1, user_api="blas"):
+                self._identify()
+        except Refused as error:
+            self.why = f"trials are not possible: {error}"
+
+    @property
+    def order(self) -> int:
+        """Number of the model's states."""
+        return 0 if self.model is None else len(self.model.a)
+
+    def over(self, h: float) -> Step:
+        """A step of the model of length h [s]; there is a model."""
+        assert self.model is not None
+        if h not in self._steps:
+            with _BLAS.limit(limits=1, user_api="blas"):
+                self._steps[h] = self.model.over(h)
+        return self._steps[h]
+
+    def residual(self, h: float) -> float:
+        """Largest deviation of the model over the answer, of any output, in steps of h [s].
+
+        On inputs that were not fitted, all at once; infinite if the part refuses such steps.
+        """
+        if self.model is None:
+            return np.inf
+        if h not in self._residuals:
+            try:
+                self._residuals[h] = self._missed(self.over(h), h)
+            except Refused:
+                self._residuals[h] = np.inf
+        return self._residuals[h]
+
+    def _identify(self) -> None:
+        """Look for the base step that resolves the motions."""
+        h, best, tried = self._lab.step, None, set[float]()
+        self._loud = self._loudest(h)
+        for _ in range(_TRIED_STEPS):
+            if h in tried or not _SHORTEST <= h <= _LONGEST:
+                break
+            tried.add(h)
+            fit, next_step = self._fitted(h)
+            if fit is not None and (best is None or fit.residual < best.residual):
+                best = fit
+            if next_step == h:
+                break
+            h = next_step
+        if best is None:
+            self.why = "its answers to pulses are those of no linear system in continuous time"
+            return
+        self.model, self.base = best.model, best.base
+
+    def _loudest(self, h: float) -> float:
+        """How much larger changes may be that are answered alike."""
+        if not self._lab.inputs:
+            return 1.0
+        rest = self._run(np.zeros((4, len(self.amplitudes))), h)
+        inputs = np.zeros((4, len(self.amplitudes)))
+        inputs[0] = 1.0
+        small, large = ((self._run(inputs * size, h) - rest) / size for size in (1.0, _LOUD))
+        off = np.abs(small - large).max(axis=0)
+        rounding = _QUIET * np.abs(rest).max(axis=0)
+        alike = off <= _ALIKE * np.abs(large).max(axis=0) + rounding
+        return _LOUD if alike.all() else 1.0
+
+    def _fitted(self, h: float) -> tuple[_Fit | None, float]:
+        """The best model of trials with steps of h [s], and the step to be tried next."""
+        whole = realised(self._markov(h))
+        inputs, truth = self._fresh(h)
+        found: list[tuple[float, int]] = []
+        for order in _orders(len(whole.a)):
+            missed = _relative(whole.reduced(order).answers(inputs), truth)
+            found.append((missed, order))
+            if missed <= _GOOD:
+                break
+        least = min(found)[0]
+        accurate = max(_GOOD, _ENOUGH * least)
+        residual, order = next(pair for pair in found if pair[0] <= accurate)
+        step = whole.reduced(order)
+        model = in_continuous_time(self._scaled(step), h, self._given, self._rates)
+        change = _fastest(step)
+        if model is None or change > _FAST:
+            following = _SHORTER * h
+        elif change < _SLOW:
+            following = h * min(_LONGER, _AIM / max(change, _AIM / _LONGER))
+        else:
+            following = h
+        return (None if model is None else _Fit(model, residual, h, order)), following
+
+    def _scaled(self, step: Step) -> Step:
+        """The step with inputs and outputs in their own units."""
+        size = self._sizes
+        return Step(
+            step.a,
+            step.b / self.amplitudes,
+            size[:, None] * step.c,
+            size[:, None] * step.d / self.amplitudes,
+        )
+
+    def _markov(self, h: float) -> np.ndarray:
+        """(steps, m, n) answers to pulses of the amplitudes, over the outputs' sizes."""
+        count = len(self._lab.inputs)
+        steps = 1 + sum(blocks(count, len(self._lab.outputs)))
+        rest = self._run(np.zeros((steps, count)), h)
+        found = np.empty((steps, len(self._lab.outputs), count))
+        for number in range(count):
+            inputs = np.zeros((steps, count))
+            inputs[0, number] = self._loud
+            found[:, :, number] = (self._run(inputs, h) - rest) / self._loud
+        sizes = np.abs(found).max(axis=(0, 2), initial=0.0)
+        quiet = sizes * self._loud <= _QUIET * np.abs(rest).max(axis=0, initial=0.0)
+        found[:, quiet] = 0.0
+        self._sizes = np.where(quiet | (sizes == 0.0), 1.0, sizes)
+        return found / self._sizes[:, None]
+
+    def _fresh(self, h: float) -> tuple[np.ndarray, np.ndarray]:
+        """Inputs (steps, n) in amplitudes that are fitted nowhere, and outputs over their sizes."""
+        inputs = _stirring(len(self._lab.inputs))
+        rest = self._run(np.zeros_like(inputs), h)
+        return inputs, (self._run(self._loud * inputs, h) - rest) / self._loud / self._sizes
+
+    def _missed(self, step: Step, h: float) -> float:
+        inputs, truth = self._fresh(h)
+        return _relative(step.answers(inputs * self.amplitudes) / self._sizes, truth)
+
+    def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
+        """(steps, m) outputs on changes (steps, n), in amplitudes."""
+        return self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
+
+
+def _rules(
+    signature: Signature, inputs: Sequence[str]
+) -> tuple[tuple[Given, ...], tuple[int, ...]]:
+    """How the part takes each of these inputs, and the number of its rate among them, or -1."""
+    given, rates = [Given.MEAN] * len(inputs), [-1] * len(inputs)
+    known = dict(
+        zip(
+            signature.inputs, zip(signature.given, signature.rate_inputs, strict=True), strict=False
+        )
+    )
+    for number, name in enumerate(inputs):
+        rule, rate = known.get(name, (Given.MEAN, -1))
+        if rate >= 0 and signature.inputs[rate] in inputs:
+            given[number], rates[number] = rule, inputs.index(signature.inputs[rate])
+    return tuple(given), tuple(rates)
+
+
+def _stirring(count: int) -> np.ndarray:
+    """Inputs (steps, n) that no two outputs answer alike, the same ones in every call."""
+    return np.random.default_rng(_SEED).uniform(-1.0, 1.0, (_FRESH_STEPS, count))
+
+
+def _relative(found: np.ndarray, truth: np.ndarray) -> float:
+    """Largest deviation of any column, root of the sum of squares, over the column."""
+    sizes = np.linalg.norm(truth, axis=0)
+    answered = sizes > 0.0
+    if not answered.any():
+        return 0.0
+    return float(np.max(np.linalg.norm(found - truth, axis=0)[answered] / sizes[answered]))
+
+
+def _orders(most: int) -> list[int]:
+    """Orders that are tried, ascending; all of the small ones."""
+    return sorted({*range(min(most, 24) + 1), *range(24, most, 4), most})
+
+
+def _fastest(step: Step) -> float:
+    """Largest change of a motion in a step: growth or decay, and angle [rad], in one number."""
+    values = np.linalg.eigvals(step.a)
+    values = values[np.abs(values) > 0.0]
+    return float(np.abs(np.log(values.astype(complex))).max(initial=0.0))

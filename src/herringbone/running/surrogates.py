@@ -1,0 +1,144 @@
+"""Linear surrogates of a system's foreign parts, for what is predicted before a run."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from herringbone.analysis.stability.surrogate import Surrogate
+from herringbone.analysis.stability.surrogate_part import Stranger
+from herringbone.core import EquilibriumError, FmuError
+from herringbone.core.activity import activity
+from herringbone.core.part import Part, closing_all
+from herringbone.cosim.nodal import NodalPart
+from herringbone.cosim.signature import Kind, Laboratory, Signature
+from herringbone.cosim.structure.network import Network, build_network
+from herringbone.cosim.structure.rates import rates
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.foreign_parts import alike, signature_of, start_inputs, understood
+from herringbone.running.loading import instances, open_parts
+from herringbone.running.start import equilibrium_values, ramp_times
+
+
+@dataclass
+class Surrogates:
+    """What stands for the foreign parts of a system.
+
+    Attributes:
+        strangers: by name.
+        missing: why nothing stands for a part, by name.
+    """
+
+    strangers: dict[str, Stranger] = field(default_factory=dict)
+    missing: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def lines(self) -> list[str]:
+        """Why nothing is promised, for each part for which nothing stands."""
+        return [f"nothing is promised: {name}: {why}" for name, why in self.missing.items()]
+
+
+@contextmanager
+def surrogates_of(system: System, parts: Sequence[Part], step: float) -> Iterator[Surrogates]:
+    """Surrogates of a system's foreign parts, as long as the context lasts.
+
+    Args:
+        system: of the parts, in the same order.
+        parts: as the coupling takes them, see `understood`; they are left as they are.
+        step: of the first trials [s].
+    """
+    found = Surrogates()
+    with ExitStack() as stack:
+        if system.foreign_parts:
+            network = build_network(system, parts)
+            for number, (spec, part) in enumerate(zip(system.parts, parts, strict=True)):
+                if spec.foreign:
+                    with activity(f"identifying {part.name}"):
+                        _add(found, spec, part, _connected(network, number), step, stack)
+        yield found
+
+
+@contextmanager
+def opened_surrogates(system: System, step: float) -> Iterator[Surrogates]:
+    """As `surrogates_of`, of parts that are opened for it and closed in the end."""
+    if not system.foreign_parts:
+        yield Surrogates()
+        return
+    with closing_all(open_parts(system, "in-process")) as opened:
+        parts, _ = understood(system, opened, instances, step)
+        with surrogates_of(system, parts, step) as found:
+            yield found
+
+
+def under_load(system: System) -> System:
+    """The system with its own parts in steady rotation under load, as they are after a ramp.
+
+    What foreign parts would feed is taken as zero. As it is where there is no such rotation.
+    """
+    if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
+        return system
+    loaded = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
+    try:
+        return loaded.with_values(equilibrium_values(loaded)[0])
+    except EquilibriumError:
+        return system
+
+
+def _add(
+    found: Surrogates,
+    spec: PartSpec,
+    part: Part,
+    ports: tuple[list[str], list[str]],
+    step: float,
+    stack: ExitStack,
+) -> None:
+    try:
+        make = stack.enter_context(instances(spec))
+        made = _surrogate(make, part, ports, step, stack)
+    except FmuError as error:
+        found.missing[part.name] = str(error)
+        return
+    if isinstance(made, str):
+        found.missing[part.name] = made
+    elif made.model is None:
+        found.missing[part.name] = made.why
+    else:
+        found.strangers[part.name] = Stranger(part, made, lambda: alike(part, make()))
+
+
+def _surrogate(
+    make: Callable[[], Part],
+    part: Part,
+    ports: tuple[list[str], list[str]],
+    step: float,
+    stack: ExitStack,
+) -> Surrogate | str:
+    """A part's surrogate, or why there is none; raises FmuError."""
+    signature = part.signature if isinstance(part, NodalPart) else signature_of(part, make, step)
+    why = _refusal(part, signature)
+    if why:
+        return why
+    inputs, outputs = ports
+    start = start_inputs(make(), inputs) if inputs else np.empty(0)
+    lab = stack.enter_context(Laboratory(make, inputs, outputs, start, step))
+    return Surrogate(lab, signature, part.variables)
+
+
+def _refusal(part: Part, signature: Signature) -> str:
+    """Why no trials tell of the part's steps; "" if they do."""
+    if part.once or part.one_step or signature.kind is Kind.NOISY:
+        return signature.notes[0]
+    if part.addresses.set_derivatives:
+        return "it takes derivatives of its inputs, of which the trials tell nothing"
+    if signature.tick:
+        return f"its outputs change every {signature.tick:g} s only"
+    return ""
+
+
+def _connected(network: Network, number: int) -> tuple[list[str], list[str]]:
+    """Connected inputs and outputs of a part, with the rates of these."""
+    inputs = [c.input for c in network.inputs(number)]
+    outputs = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    more = rates(network.parts[number], outputs)
+    return inputs, list(dict.fromkeys([*outputs, *more]))

@@ -1,0 +1,186 @@
+"""Limits of systems of strangers: predicted before the run, and as runs of the FMUs show them.
+
+Masses, springs and drives of `tests/fmus/kinds`; the values of the first two systems were drawn
+from a commit's hash. Growth per step is compared, too: it is that of the amplification matrix.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from support.c_housing import c_housing_fmu
+from support.stranger_limits import ABOVE, BELOW, limits, run_rate
+
+import herringbone as hb
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.limits import default_algorithms, step_limits
+from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.simulated_limit import nonlinear_limit
+from herringbone.commands import main as cli
+from herringbone.cosim.algorithms import Jacobi, parse_algorithm
+from herringbone.cosim.structure.system_file import read_system
+from herringbone.running.prepared import Wishes, prepared
+from herringbone.running.surrogates import opened_surrogates, under_load
+
+WITHIN = 0.02
+RATE = 0.03
+"""Deviation of growth per step above the limit: what other motions leave in a run."""
+STEP = 4e-5
+MASS, SPRING, DRIVE = "oscillator_mass.fmu", "oscillator_spring.fmu", "c_e_drive.fmu"
+HASH = 0x56E4D81
+"""Of the commit that the work began with."""
+
+
+def _drawn(names):
+    """Values between half and twice of these, by the hash."""
+    random = np.random.default_rng(HASH + len(names))
+    return {name: float(x * 2.0 ** random.uniform(-1.0, 1.0)) for name, x in names.items()}
+
+
+SYSTEMS = {
+    "2 inputs and 1 output": (
+        {"one": MASS, "two": MASS},
+        [["one.fo", "two.f"], ["two.x", "one.xo"], ["two.v", "one.vo"]],
+        {"two.v0": -1.0}
+        | _drawn({"one.m": 1.0, "one.k": 10.0, "one.c": 1.0, "one.ko": 100.0, "one.co": 1.0,
+                  "two.m": 1.0, "two.k": 1000.0, "two.c": 1.0}),
+    ),
+    "2 inputs and 2 outputs": (
+        {"one": MASS, "two": MASS},
+        [["one.x", "two.xo"], ["one.v", "two.vo"], ["two.x", "one.xo"], ["two.v", "one.vo"]],
+        {"one.v0": 1.0}
+        | _drawn({"one.m": 1.0, "one.k": 10.0, "one.c": 1.0, "one.ko": 100.0, "one.co": 1.0,
+                  "two.m": 1.0, "two.k": 1000.0, "two.c": 1.0, "two.ko": 100.0, "two.co": 1.0}),
+    ),
+    "an element alone": (
+        {"one": MASS, "two": MASS, "spring": SPRING},
+        [["one.x", "spring.xa"], ["one.v", "spring.va"], ["two.x", "spring.xb"],
+         ["two.v", "spring.vb"], ["spring.fa", "one.f"], ["spring.fb", "two.f"]],
+        {"one.v0": 1.0, "one.k": 10.0, "two.k": 1000.0, "spring.c": 1.0},
+    ),
+    "states and feedthrough": (
+        {"drive": DRIVE, "wheel": MASS},
+        [["drive.flange.tau", "wheel.f"], ["wheel.x", "drive.flange.phi"],
+         ["wheel.v", "drive.flange.w"]],
+        {"wheel.m": 0.5, "wheel.c": 0.1, "wheel.v0": 1.0},
+    ),
+    "free bodies": (
+        {"a": "LinearCarriage.fmu", "b": MASS, "k": "c_spring_damper.fmu"},
+        [["a.position", "k.x1"], ["a.velocity", "k.v1"], ["b.x", "k.x2"], ["b.v", "k.v2"],
+         ["k.f1", "a.force_in"], ["k.f2", "b.f"]],
+        {"b.m": 3.0, "b.v0": 0.1},
+    ),
+}  # fmt: skip
+
+
+def make_system(folder, kinds, name):
+    """One of the systems, with its values."""
+    files, connections, values = SYSTEMS[name]
+    lines = ['name = "strangers"', f"connections = {connections}", "[parts]"]
+    lines += [f'{part} = {{ fmu = "{kinds / file}" }}' for part, file in files.items()]
+    (folder / "system.toml").write_text("\n".join(lines), encoding="utf-8")
+    return read_system(folder).with_values(values)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_limits_of_all_algorithms(kinds, tmp_path, name):
+    """Within 2 %, each; below the limit a perturbation dies out, above it grows, as predicted."""
+    system = make_system(tmp_path, kinds, name)
+    with opened_surrogates(system, STEP) as found:
+        assert not found.missing
+        for algorithm in default_algorithms():
+            predicted, seen, residual, expected, rates = limits(system, found.strangers, algorithm)
+            assert residual < 1e-4
+            if math.isfinite(predicted):
+                assert seen == pytest.approx(predicted, rel=WITHIN), algorithm
+                assert rates[1] == pytest.approx(expected[1], rel=RATE), algorithm
+            else:
+                step = 0.3
+                growth = Amplification(
+                    *linear_network(system, strangers=found.strangers), algorithm
+                ).growth(step)
+                rate = np.log(growth.radius)
+                assert run_rate(system, found.strangers, algorithm, step, rate) < 0.0
+
+
+@pytest.fixture(scope="module")
+def c_housing(tmp_path_factory):
+    return c_housing_fmu(tmp_path_factory.mktemp("c_housing"))
+
+
+@pytest.mark.parametrize(
+    "algorithm",
+    [
+        "jacobi:order=2",
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("jacobi:order=0", "jacobi:order=1", "gauss_seidel", "predict",
+                         "fixed_point", "li")
+        ),
+    ],
+)  # fmt: skip
+def test_housing_on_the_rig(c_housing, algorithm):
+    """With contact: not below the prediction, to the 1 % of the runs, and not above 1.15 of it."""
+    wishes = Wishes(replace_parts={"modal_housing": c_housing}, start_offset={})
+    system = under_load(prepared("test_rig", "loaded", wishes).system)
+    chosen = parse_algorithm(algorithm)
+    with opened_surrogates(system, STEP) as found:
+        (surrogate,) = (s.surrogate for s in found.strangers.values())
+        assert surrogate.order == 24
+        predicted = step_limits(system, chosen, strangers=found.strangers)
+        assert predicted.promised
+        seen = nonlinear_limit(
+            system, chosen, predicted.limit, predicted.unstable_bands, found.strangers
+        )
+    assert seen is not None
+    assert 0.99 <= seen / predicted.limit <= 1.15
+
+
+def _limit(system, algorithm):
+    with opened_surrogates(system, STEP) as found:
+        return step_limits(system, algorithm, strangers=found.strangers).limit
+
+
+def test_a_run_warns_of_an_unstable_step(kinds, tmp_path):
+    """Of growth that the run does not show, too: by its rate, and by what it makes of the run."""
+    system = make_system(tmp_path, kinds, "an element alone")
+    limit = _limit(system, Jacobi(0))
+    options = {
+        "algorithm": "jacobi:order=0",
+        "start": "rest",
+        "values": SYSTEMS["an element alone"][2],
+    }
+
+    def warnings(step, t_end):
+        run = hb.run(tmp_path, step=step, t_end=t_end, record_step=step, **options)
+        return run, [note for note in run.info.notes if "unstable" in note]
+
+    assert not warnings(BELOW * limit, 3.0)[1]
+    quiet, said = warnings(1.05 * limit, 3.0)
+    assert quiet.outcome.completed
+    assert "within the run, which does not show it" in said[0]
+    _, said = warnings(ABOVE * limit, 1000.0)
+    assert "powers of e within the run" in said[0]
+
+
+def test_command(kinds, tmp_path, capsys):
+    """`stability` of a system of strangers, as text and at a step."""
+    make_system(tmp_path, kinds, "an element alone")
+    given = [f"--set={name}={x}" for name, x in SYSTEMS["an element alone"][2].items()]
+    assert cli.main(["stability", str(tmp_path), *given, "--algorithm", "jacobi:order=0"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "one of order 2, two of order 2, spring of order 0" in text
+    assert "nothing is promised" not in text
+    assert cli.main(
+        ["stability", str(tmp_path), *given, "--algorithm", "jacobi:order=0", "--step", "0.04"]
+    ) == 0  # fmt: skip
+    assert capsys.readouterr().out.startswith("unstable: jacobi:order=0")
+
+
+def test_nothing_is_promised_of_a_part_that_cannot_be_tried(kinds, tmp_path, capsys):
+    files = {"one": MASS, "two": "c_single_flywheel.fmu"}
+    lines = ['name = "once"', 'connections = [["one.fo", "two.tau"], ["two.angle", "one.xo"]]']
+    lines += ["[parts]", *(f'{part} = {{ fmu = "{kinds / f}" }}' for part, f in files.items())]
+    (tmp_path / "system.toml").write_text("\n".join(lines), encoding="utf-8")
+    assert cli.main(["stability", str(tmp_path)]) == 2
+    assert "nothing is promised: two: it can be instantiated once only" in capsys.readouterr().err
