@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.analysis.stability.surrogate import Surrogate
 from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.part import Addresses, Part, PartVariable
+from herringbone.core.part import Addresses, Part, PartVariable, Value
 from herringbone.cosim.nodal import NodalPart
 from herringbone.kernels import fmi_calls
 from herringbone.kernels.linear_step import HEADER, KNOWN, linear_step, map_length
@@ -132,6 +132,18 @@ class SurrogatePart:
     def failed(self) -> None:
         """Nothing to be told."""
 
+    def ended(self) -> float | None:
+        """It asks for no end."""
+        return None
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """None of other types."""
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """None of other types."""
+        del names
+        return []
+
     def messages(self) -> list[str]:
         """None."""
         return []
@@ -155,7 +167,7 @@ class StandIn:
         nodal = isinstance(real, NodalPart)
         self.surrogate = stranger.surrogate
         self._inner = SurrogatePart(real.part if nodal else real, stranger.surrogate)
-        self.part: Part = real.in_front_of(self._inner) if nodal else self._inner
+        self.part: Part = real.in_front_of(self._inner, linear=True) if nodal else self._inner
         self.name, self.values = real.name, self._inner.values
         self.state_changes = [1.0] * self._inner.state_count
         self._nodal = nodal

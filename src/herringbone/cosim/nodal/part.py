@@ -78,7 +78,7 @@ class NodalPart:
             "answer": np.zeros((m, n)),
             "changes": np.array([amplitude(known[x], 0.0) for x in self._inputs]),
             "responses": np.zeros((5, m)),
-            "trial_state": np.zeros(1, np.int64),
+            "trial_state": np.array([self.part.new_state()], np.int64),
             "taken": np.zeros((n, STRIDE)),
             "answers": np.zeros((m, STRIDE)),
             "missed": np.zeros(n),
@@ -98,9 +98,17 @@ class NodalPart:
                 memory[name] = address
         return memory
 
-    def in_front_of(self, part: Part) -> "NodalPart":
-        """The same adapter in front of another part with the same variables."""
-        return NodalPart(part, self.signature, self._pieces)
+    def in_front_of(self, part: Part, *, linear: bool = False) -> "NodalPart":
+        """The same adapter in front of another part with the same variables.
+
+        Args:
+            part: the other one.
+            linear: its feedthrough stays as it is, and is not watched.
+        """
+        adapter = NodalPart(part, self.signature, self._pieces)
+        if linear:
+            adapter._memory["watched"] = 0
+        return adapter
 
     @property
     def answers_again(self) -> bool:
