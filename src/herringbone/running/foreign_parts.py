@@ -18,6 +18,7 @@ from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
+from herringbone.cosim.signature.untrusted import without_states
 from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.known_signatures import known_signature
@@ -130,7 +131,8 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         return NodalPart(part, _as_it_moves(signature)), lines
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
-        return part, lines
+        repeats = signature.repeats and signature.restores is not False
+        return (part if repeats else without_states(part)), lines
     lines += _contradictions(part.variables, signature)
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT

@@ -5,10 +5,10 @@ system: the phase of an oscillation without damping drifts away with time. Where
 no rule knows that, and some cannot take a step back. Whole runs tell, see `accuracy.step_power`.
 
 The first steps are long and cost little; from the second run on the step is chosen to err half the
-tolerance. The power of the step counts between 1/2 and 2, as steps that are still too long pretend
-more; of two runs alone, or of some that are far apart, as 1 at most. The first step is a 47th of
-the run, or five times li's own where parts of this project take part: 47 is prime, so that signals
-with a whole number of periods in the run do not look constant.
+tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its own
+predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more. The
+first step is a 47th of the run, or five times li's own where parts of this project take part: 47 is
+prime, so that signals with a whole number of periods in the run do not look constant.
 """
 
 import math
@@ -36,11 +36,11 @@ _AT_ONCE = 8
 """A step is divided by this whole number at the most, so that the next run has all its points."""
 _AIM = 0.5
 """Share of the tolerance that the next step is to err."""
-_LEAST, _MOST, _ROUGH = 0.5, 2.0, 1.0
-"""Powers that count: least, most, and most where two runs are far apart."""
+_LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
+"""Powers that count: least; most of two runs that are far apart, and near; of three near ones."""
 _FAR = 0.3
 """Difference of two runs above which the longer step follows no power."""
-_BLIND = 4.0
+_BLIND = 2.0
 """What the step is divided by as long as nothing is known."""
 _FALLS = 0.3
 """Power below which the difference of two runs does not fall with their steps. Two such runs near
@@ -118,12 +118,14 @@ class _Tried:
         found: the run.
         differences: from the run before; None for the first.
         power: with which the differences fall.
+        counted: power that counts for the error.
         share: the run's error over these differences.
     """
 
     found: Coupled
     differences: Apart | None = None
     power: float = 1.0
+    counted: float = 1.0
     share: float = 0.0
 
     @property
@@ -181,8 +183,8 @@ class _Search:
         last = self.tried[-1]
         if last.apart > _FAR:
             return _BLIND
-        power = last.power if len(self.tried) > 2 else _MOST
-        return (last.error / (_AIM * self._tolerance)) ** (1.0 / min(max(power, _LEAST), _MOST))
+        power = last.counted if len(self.tried) > 2 else _HIGHEST
+        return (last.error / (_AIM * self._tolerance)) ** (1.0 / power)
 
     def _judged(self, found: Coupled) -> _Tried:
         """A run beside those before."""
@@ -194,8 +196,10 @@ class _Search:
         if before.differences is not None:
             steps = (self.tried[-2].step, before.step, step)
             power = step_power(before.apart, new.apart, steps)
-        counted = min(max(power, _LEAST), _ROUGH if new.apart > _FAR else _MOST)
-        return replace(new, power=power, share=left_of(before.step, step, counted))
+        most = _HIGHEST if before.apart < _FAR else _MOST
+        counted = min(max(power, _LEAST), _ROUGH if new.apart > _FAR else most)
+        share = left_of(before.step, step, counted)
+        return replace(new, power=power, counted=counted, share=share)
 
     def _over(self, outcome: Outcome, found: Coupled) -> str:
         """Why no other step is tried; "" if one is."""
