@@ -36,7 +36,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--step", type=float, help="communication step size in s; the largest, with --tolerance"
     )
     sub.add_argument(
-        "--tolerance", type=float, help="relative error for which li adapts its step, e.g. 1e-3"
+        "--tolerance",
+        type=float,
+        help="relative error, e.g. 1e-3: li adapts its step; with foreign FMUs it is found by runs",
     )
     sub.add_argument(
         "--slow", metavar=_SLOW, help="heavy bodies that step once in N communication steps"
