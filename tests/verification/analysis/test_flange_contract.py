@@ -5,8 +5,8 @@ import json
 import pytest
 from support.c_flange import c_flange
 
-from herringbone.analysis.finding import Verdict
-from herringbone.analysis.flange import work
+from herringbone.analysis.finding import Verdict, judged
+from herringbone.analysis.flange import contract, work
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.commands import main as cli
 from herringbone.core.roles import Role
@@ -114,6 +114,19 @@ def test_steps_that_cannot_vary(tmp_path):
     assert failing(found) == ["w = dphi/dt"]
     untested = {f.test for f in found if f.verdict is Verdict.NOT_TESTED}
     assert untested == {"no delay", "H-term"}
+
+
+def test_what_fails_once_only_is_a_remark(monkeypatch, tmp_path):
+    """Without saved states each run has an instance of its own, and one may go wrong."""
+    answers = iter([False, True])
+
+    def sometimes(bench):
+        return judged("passivity", next(answers), "seen", "0")
+
+    monkeypatch.setattr(contract, "_OF_PART", (("passivity", sometimes),))
+    found = named(findings(c_flange(tmp_path, "SHAFT", saves=False), Role.LOAD), "passivity")
+    assert found.verdict is Verdict.REMARK
+    assert found.measured == "seen, but not again: seen"
 
 
 @pytest.mark.parametrize("kind", ["python_fmus", "native_fmus", "fmi3_fmus"])

@@ -121,6 +121,10 @@ class Bench:
             self._rest = self.run({}, steps)
         return self._rest
 
+    def forget(self) -> None:
+        """Drop the run that is kept."""
+        self._rest = None
+
     def change(self, signals: Mapping[str, Signal], steps: int) -> Record:
         """What signals at flanges change against a run without them; raises Refused."""
         return self.run(signals, steps) - self.at_rest(steps)
