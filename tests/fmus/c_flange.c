@@ -22,6 +22,7 @@ enum {
     W_NEGATED, /* against phi */
     W_FILTERED,
     DELAY,
+    UNSTABLE,    /* any speed grows beyond all bounds */
     ACTIVE,      /* negative damping */
     HELD_WRONG,  /* the angle inside a step is off */
     NO_REACTION, /* the torque at b is not that at a */
@@ -43,7 +44,7 @@ enum {
 #ifndef FIXED /* the only step that is accepted, s; 0: any */
 #define FIXED 0.0
 #endif
-enum { REALS = 8, INPUTS = 4, OLD = 4000 };
+enum { REALS = 8, INPUTS = 4, OLD = 2000 };
 typedef int Status;
 typedef struct {
     double real[REALS];
@@ -54,7 +55,7 @@ typedef struct {
 } Model;
 
 static const double INERTIA = 0.15, STIFFNESS = 4e4, DAMPING = 12.0, FRICTION = 0.05;
-static const double MICRO = 1e-6, FILTER = 1e-3, CONTROL = 12.0, PI = 3.14159265358979323846;
+static const double MICRO = 2e-6, FILTER = 1e-3, CONTROL = 12.0, PI = 3.14159265358979323846;
 
 static void reset(Model *m) {
     *m = (Model){0};
@@ -124,6 +125,7 @@ static double torque_on(const Model *m, double phi) { /* on the mass inside */
 static void advance(Model *m, double h, double phi) {
     double torque = torque_on(m, phi);
     if (PART == ROTOR && FAULT == TORQUE_SIGN) torque -= 2.0 * m->real[0];
+    if (FAULT == UNSTABLE) torque += 2e4 * m->w;
     if (PART == ROTOR && FAULT == LATE_CONTROL) {
         torque += CONTROL * (START - m->old[m->place]);
         m->old[m->place] = m->w;

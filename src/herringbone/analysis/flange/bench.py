@@ -11,6 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from herringbone.analysis.flange.variables import Flange
+from herringbone.core import FmuError
 from herringbone.cosim.signature import Laboratory, Signature
 from herringbone.cosim.signature.rotation import Given
 
@@ -20,6 +21,10 @@ _SIMPSON = (1.0, 4.0, 1.0)
 _TIMED = 20
 _FASTEST = 1e5
 """Speeds [rad/s] beyond which the torque's rise does not tell the own speed."""
+
+
+class Diverged(FmuError):
+    """Outputs of a part are not finite."""
 
 
 @dataclass(frozen=True)
@@ -116,12 +121,21 @@ class Bench:
             self._rest = self.run({}, steps)
         return self._rest
 
+    def forget(self) -> None:
+        """Drop the run that is kept."""
+        self._rest = None
+
     def change(self, signals: Mapping[str, Signal], steps: int) -> Record:
         """What signals at flanges change against a run without them; raises Refused."""
         return self.run(signals, steps) - self.at_rest(steps)
 
     def run(self, signals: Mapping[str, Signal], steps: int, h: float | None = None) -> Record:
-        """A run under signals, by the names of flanges, beside the own motion; raises Refused."""
+        """A run under signals, by the names of flanges, beside the own motion.
+
+        Raises:
+            Refused: the part refuses a step.
+            Diverged: its outputs do not stay finite.
+        """
         h = self.step if h is None else h
         t = h * np.arange(steps + 1)
         start = self.lab.start * self._in
@@ -130,6 +144,10 @@ class Bench:
         for flange in self.flanges:
             self._fill(flange, signals.get(flange.name), t, ends, held)
         found = self.lab.run(list(held / self._in), h) * self._out
+        if not np.isfinite(found).all():
+            row, column = np.argwhere(~np.isfinite(found))[0]
+            name = self.signature.outputs[column]
+            raise Diverged(f"{name} = {found[row, column]} after {row} steps of {h:g} s")
         known = np.nan_to_num(self.feedthrough)
         missing = ends - np.vstack([start, self._seen(held, ends)])
         return Record(h, found + missing @ known.T, self)

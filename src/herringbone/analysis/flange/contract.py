@@ -7,12 +7,13 @@ throw-away instances; what is not possible is said.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
 from herringbone.analysis.finding import Finding, Report, Verdict, judged, not_tested, remark
 from herringbone.analysis.flange.answers import delay, feedthrough, sign
-from herringbone.analysis.flange.bench import Bench
+from herringbone.analysis.flange.bench import Bench, Diverged
 from herringbone.analysis.flange.rates import rate, turns
 from herringbone.analysis.flange.reaction import reaction, relative
 from herringbone.analysis.flange.rotation import rotation
@@ -136,16 +137,31 @@ def _behaviour(bench: Bench, progress: Report) -> Iterator[Finding]:
     for flange in bench.flanges:
         for name, test in _OF_FLANGE:
             progress(name)
-            found = _tried(name, lambda test=test, flange=flange: test(bench, flange))
+            found = _tried(bench, name, partial(test, bench, flange))
             yield _named(found, flange.name) if many else found
     for name, of_part in (*_OF_PART, *(_OF_COUPLING if many else ())):
         progress(name)
-        yield _tried(name, lambda of_part=of_part: of_part(bench))
+        yield _tried(bench, name, partial(of_part, bench))
 
 
-def _tried(name: str, test: Callable[[], Finding]) -> Finding:
+def _tried(bench: Bench, name: str, test: Callable[[], Finding]) -> Finding:
+    """A finding; what fails on an instance of its own must fail again on others."""
+    found = _once(name, test)
+    if found.holds or bench.signature.restores:
+        return found
+    bench.forget()
+    again = _once(name, test)
+    if not again.holds:
+        return found
+    shown = f"{found.measured}, but not again: {again.measured}"
+    return remark(found.test, shown, found.limit)
+
+
+def _once(name: str, test: Callable[[], Finding]) -> Finding:
     try:
         return test()
+    except Diverged as error:
+        return judged(name, False, str(error), "finite")
     except Refused as error:
         return not_tested(name, str(error))
 

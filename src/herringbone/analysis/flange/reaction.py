@@ -42,11 +42,11 @@ def reaction(bench: Bench) -> Finding:
         share = float(np.abs(a + b).max()) / scale
         return judged(test, share <= AT_ONCE, f"off by {100 * share:.2g} %", limit)
     twisted = _held(bench, {one.name: ANGLE})
-    a, b = (hann_mean(twisted.of(flange.tau)[TURN:]) for flange in (one, other))
-    scale = max(abs(a), abs(b))
+    means = [hann_mean(twisted.of(flange.tau)[TURN:]) for flange in (one, other)]
+    scale = max(map(abs, means))
     if scale == 0.0:
         return not_tested(test, "a twist leaves no torque")
-    share = abs(a + b) / scale
+    share = abs(sum(means)) / scale
     return judged(test, share <= SHARE, f"off by {100 * share:.2g} % in the mean", limit)
 
 

@@ -2,21 +2,21 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from herringbone.analysis.finding import Finding, Verdict, judged, remark
+from herringbone.analysis.flange.guess import (
+    POWERS,
+    QUANTITIES,
+    UNITS,
+    by_ports,
+    by_units,
+    powers,
+    reals,
+)
 from herringbone.core import ParameterError
 from herringbone.core.part import PartVariable
 
-QUANTITIES = ("tau", "phi", "w")
-UNITS = {"tau": "N.m", "phi": "rad", "w": "rad/s"}
-_POWERS = {"tau": {"kg": 1, "m": 2, "s": -2}, "phi": {}, "w": {"s": -1}}
-"""Exponents of base units; rad is left out, as tools differ on it."""
-_WORDS = {
-    "tau": {"tau", "torque", "moment", "trq", "m", "t"},
-    "phi": {"phi", "angle", "theta", "rotation", "position"},
-    "w": {"w", "omega", "speed", "velocity", "n", "rpm"},
-}
 _NAMED_UNITS = {"rad/s": 1.0, "rad": 1.0, "N.m": 1.0, "Nm": 1.0}
 _MOST = 6
 NEEDS = (
@@ -89,9 +89,9 @@ def find_flanges(
     """
     how = "as told"
     if not wanted:
-        wanted, how = _by_ports(variables), "by the names of ports"
+        wanted, how = by_ports(variables), "by the names of ports"
     if not wanted and count == 1:
-        wanted, how = _by_units(variables), "as the only ones of their units and names"
+        wanted, how = by_units(variables), "as the only ones of their units and names"
     if len(wanted) != count:
         ports = ", ".join(_port(names) for names in wanted) or "none"
         shown = f"{len(wanted)} found ({ports}); it has {_offered(variables)}"
@@ -112,64 +112,15 @@ def find_flanges(
     return flanges, [*findings, _units(flanges, variables)]
 
 
-def _reals(variables: Mapping[str, PartVariable]) -> dict[str, PartVariable]:
-    return {
-        name: v
-        for name, v in variables.items()
-        if v.is_real and v.causality in {"input", "output"} and ".node" not in name
-    }
-
-
 def _offered(variables: Mapping[str, PartVariable]) -> str:
     """Its real inputs and outputs, some of them."""
-    reals = _reals(variables)
+    there_are = reals(variables)
     by_causality = (
         f"{causality}s {', '.join(names[:_MOST])}{', ...' if len(names) > _MOST else ''}"
         for causality in ("input", "output")
-        if (names := [name for name, v in reals.items() if v.causality == causality])
+        if (names := [name for name, v in there_are.items() if v.causality == causality])
     )
     return " and ".join(by_causality) or "no real inputs or outputs"
-
-
-def _by_ports(variables: Mapping[str, PartVariable]) -> list[dict[str, str]]:
-    """Ports that have a torque and a motion, in their order."""
-    names = _reals(variables)
-    ports = dict.fromkeys(name.rpartition(".")[0] for name in names if "." in name)
-    found = []
-    for port in ports:
-        given = {q: f"{port}.{q}" for q in QUANTITIES if f"{port}.{q}" in names}
-        if len(given) > 1:
-            found.append(given)
-    return found
-
-
-def _by_units(variables: Mapping[str, PartVariable]) -> list[dict[str, str]]:
-    """The only torque in and motion out, or motion in and torque out."""
-    reals = _reals(variables)
-    for torque, motion in (("input", "output"), ("output", "input")):
-        given = {}
-        for quantity in QUANTITIES:
-            causality = torque if quantity == "tau" else motion
-            fits = [n for n, v in reals.items() if v.causality == causality and _fits(v, quantity)]
-            if len(fits) == 1:
-                given[quantity] = fits[0]
-        if "tau" in given and len(given) > 1:
-            return [given]
-    return []
-
-
-def _fits(variable: PartVariable, quantity: str) -> bool:
-    """By its unit, or, of those without one and of angles, by the words of its name."""
-    last = variable.name.rpartition(".")[2].lower()
-    named = any(word in _WORDS[quantity] for word in (last, *last.split("_")))
-    if variable.dimension is None or (quantity == "phi" and "rad" not in (variable.unit or "rad")):
-        return named if variable.unit is None else variable.unit == UNITS[quantity]
-    return _powers(variable) == _POWERS[quantity] and (quantity != "w" or variable.unit != "Hz")
-
-
-def _powers(variable: PartVariable) -> dict[str, int]:
-    assert variable.dimension is not None
-    return {name: power for name, power in variable.dimension[2] if name != "rad"}
 
 
 def _port(names: Mapping[str, str]) -> str:
@@ -180,8 +131,8 @@ def _port(names: Mapping[str, str]) -> str:
 
 def _missing(names: Mapping[str, str], variables: Mapping[str, PartVariable]) -> Iterable[str]:
     """What a flange lacks; one that takes motion may do with one of phi and w."""
-    reals = _reals(variables)
-    there = {q: reals[name] for q, name in names.items() if name in reals}
+    there_are = reals(variables)
+    there = {q: there_are[name] for q, name in names.items() if name in there_are}
     torque = there.get("tau")
     if torque is None:
         yield f"{_port(names)}: no variable {names.get('tau', 'for tau')}"
@@ -197,18 +148,14 @@ def _missing(names: Mapping[str, str], variables: Mapping[str, PartVariable]) ->
 def _flange(names: Mapping[str, str], variables: Mapping[str, PartVariable]) -> Flange:
     takes = variables[names["tau"]].causality == "input"
     motion = "output" if takes else "input"
-    flange = Flange(_port(names), names["tau"], "", "", takes, dict.fromkeys(QUANTITIES, 1.0))
+    taken = {"tau": names["tau"]}
     for quantity in ("phi", "w"):
         v = variables.get(names.get(quantity, ""))
-        if v is not None and v.is_real and v.causality == motion:
-            flange = replace(flange, **{quantity: v.name})
-    factors = {
-        q: float(v.dimension[0])
-        if (v := variables.get(flange.variable(q))) and v.dimension
-        else 1.0
-        for q in QUANTITIES
-    }
-    return replace(flange, factors=factors)
+        fits = v is not None and v.is_real and v.causality == motion
+        taken[quantity] = names[quantity] if fits else ""
+    dimensions = {q: variables[name].dimension for q, name in taken.items() if name}
+    factors = {q: float(d[0]) if d else 1.0 for q, d in dimensions.items()}
+    return Flange(_port(names), **taken, takes_torque=takes, factors=factors)
 
 
 def _taken(flange: Flange) -> str:
@@ -231,7 +178,7 @@ def _units(flanges: Sequence[Flange], variables: Mapping[str, PartVariable]) -> 
                 bare.append(v.name)
             elif v.dimension is None:
                 other += [] if v.unit in _NAMED_UNITS else [f"{shown}, which it does not define"]
-            elif _powers(v) != _POWERS[quantity] or v.dimension[1]:
+            elif powers(v) != POWERS[quantity] or v.dimension[1]:
                 wrong.append(shown)
             elif not math.isclose(v.dimension[0], 1.0, rel_tol=1e-9):
                 other.append(f"{shown}, {v.dimension[0]:.6g} {UNITS[quantity]}")

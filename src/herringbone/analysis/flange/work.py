@@ -70,8 +70,8 @@ def passivity(bench: Bench) -> Finding:
     shown = (
         "no negative work" if loss >= 0.0 else f"loss angle {loss:.2g} rad at {frequency:.3g} Hz"
     )
-    limit = f"-{LOSS:g} rad - {LAG:g} step - {EULER:g} k H, {_band(bench)}"
-    return judged(test, relative >= -1.0, shown, limit)
+    allowed = f"-{LOSS:g} rad - {LAG:g} step - {EULER:g} k H, {_band(bench)}"
+    return judged(test, relative >= -1.0, shown, allowed)
 
 
 def _known(bench: Bench) -> bool:
