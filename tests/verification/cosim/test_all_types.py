@@ -246,13 +246,6 @@ def test_types_of_fmi2(selector):
     ]  # fmt: skip
 
 
-def test_fmi2_part_that_ends_the_simulation(selector):
-    result = run(alone(selector), {"last_step": 4})
-    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.ENDED, "p")
-    assert result.data["p.steps"].tolist() == [0, 1, 2, 3, 4]
-    assert result.outcome.time == pytest.approx(0.4, rel=1e-12)
-
-
 # -- the end, and events --------------------------------------------------------------------------
 
 

@@ -22,6 +22,8 @@ from herringbone.core.part import Addresses
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.part import FmuPart
 
+_PYTHONFMU = "finalizePythonInterpreter"
+"""A function that only pythonfmu's libraries have."""
 _keys = itertools.count(1)
 _logs: dict[int, FmuLog] = {}
 """Logs of the open parts; fmpy's logger proxy keeps one logger for the process."""
@@ -86,9 +88,10 @@ class Fmu2Part(FmuPart):
     def ended(self) -> float | None:
         """Time at which the FMU asked to end the simulation [s]; None if it did not.
 
-        It tells only after a step that it discarded, and not after fmi2Fatal.
+        It tells after a step that it discarded, and not after fmi2Fatal. What pythonfmu tells is
+        no answer: it calls every step the end for which `do_step` returns False.
         """
-        if self._log.fatal:
+        if self._log.fatal or hasattr(self.slave.dll, _PYTHONFMU):
             return None
         try:
             if not self.slave.getBooleanStatus(fmi2Terminated):
@@ -111,6 +114,6 @@ def _finalize_at_exit(dll: ctypes.CDLL) -> None:
 
     Otherwise it is released twice by static destructors, and the process may abort at exit.
     """
-    if hasattr(dll, "finalizePythonInterpreter") and not _finalizers:
+    if hasattr(dll, _PYTHONFMU) and not _finalizers:
         _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
         atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)
