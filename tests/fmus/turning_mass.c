@@ -1,8 +1,9 @@
 /* A mass that turns, in units of its own: FMI 2.0 co-simulation without any header; the test writes
    the description. Value references: parameters inertia 0 (SI), size of the unit of the angle 1, of
    the speed 2 and of the torque 3 in SI units, wrap 4 (the angle stays below a turn), speed at the
-   start 5 (SI); input torque 6; outputs angle 7 and speed 8; parameter 9: time at which it ends the
-   simulation, 0 never. Exact for a constant torque. */
+   start 5 (SI); input torque 6; outputs angle 7 and speed 8; parameters: time 9 at which it ends the
+   simulation, 0 never; 10: it discards the step there instead, if not 0. Exact for a constant
+   torque. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 #define EXPORT __attribute__((visibility("default")))
 enum { OK = 0, DISCARD = 2, ERROR = 3 };
 enum { LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3 };
-enum { INERTIA, ANGLE_UNIT, SPEED_UNIT, TORQUE_UNIT, WRAP, START, TORQUE, ANGLE, SPEED, END, COUNT };
+enum { INERTIA, ANGLE_UNIT, SPEED_UNIT, TORQUE_UNIT, WRAP, START, TORQUE, ANGLE, SPEED, END, REFUSES, COUNT };
 
 typedef struct {
     double real[COUNT], phi, w, last;
@@ -57,7 +58,7 @@ EXPORT Status fmi2DoStep(Component c, double t, double h, int no_rollback) {
     return m->ended ? DISCARD : OK;
 }
 EXPORT Status fmi2GetBooleanStatus(Component c, int kind, int *value) {
-    *value = ((Mass *)c)->ended;
+    *value = ((Mass *)c)->ended && !((Mass *)c)->real[REFUSES];
     return kind == TERMINATED ? OK : DISCARD;
 }
 EXPORT Status fmi2GetRealStatus(Component c, int kind, double *value) {

@@ -22,6 +22,7 @@ from herringbone.core.part import Addresses
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.part import FmuPart
 
+_DISCARD = 2
 _PYTHONFMU = "finalizePythonInterpreter"
 """A function that only pythonfmu's libraries have."""
 _keys = itertools.count(1)
@@ -94,11 +95,15 @@ class Fmu2Part(FmuPart):
         if self._log.fatal or hasattr(self.slave.dll, _PYTHONFMU):
             return None
         try:
-            if not self.slave.getBooleanStatus(fmi2Terminated):
-                return None
-            return float(self.slave.getRealStatus(fmi2LastSuccessfulTime))
+            ended = self.slave.getBooleanStatus(fmi2Terminated)
+            last = float(self.slave.getRealStatus(fmi2LastSuccessfulTime))
         except FMICallException:
             return None
+        if ended:
+            return last
+        said = f"the step was discarded; the part came to {last:g} s; use a smaller step"
+        self._log.add(_DISCARD, said.encode())
+        return None
 
     def close(self) -> None:
         """Terminate and free the instance; see `FmuPart.close`."""

@@ -1,4 +1,6 @@
-"""Parts in units of their own: the same run as in SI units, recorded in their units; or refused."""
+"""Parts in units of their own: the same run as in SI units, recorded in their units; or refused.
+
+And what parts of FMI 2.0 say of their end, and of angles."""
 
 import math
 import os
@@ -50,6 +52,8 @@ def description(units):
 <ScalarVariable name="flange.w" valueReference="8" causality="output">
 <Real unit="{w}"/></ScalarVariable>
 <ScalarVariable name="end" valueReference="9" causality="parameter" variability="fixed">
+<Real start="0"/></ScalarVariable>
+<ScalarVariable name="refuses" valueReference="10" causality="parameter" variability="fixed">
 <Real start="0"/></ScalarVariable>
 </ModelVariables>
 <ModelStructure><Outputs><Unknown index="8" dependencies=""/><Unknown index="9" dependencies=""/>
@@ -151,3 +155,6 @@ def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
     assert result.outcome.message == f"one ended the simulation at {end:g} s"
     assert result.data["time"].iloc[-1] == pytest.approx(end, rel=1e-12)
     assert result.data["one.flange.phi"].iloc[-1] == pytest.approx(100.0 * end, rel=1e-12)
+    found = hb.run(tmp_path, values={**values, "one.refuses": 1.0}, t_end=0.1, record_step=0.02)
+    assert found.outcome.kind is OutcomeKind.PART_FAILED
+    assert f"the step was discarded; the part came to {end:g} s" in found.outcome.message
