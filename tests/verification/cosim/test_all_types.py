@@ -208,6 +208,16 @@ def test_integers_reach_wider_types_and_reals(files):
     assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7.0)
 
 
+@pytest.mark.parametrize("name", ["plain", "events"])
+def test_value_that_is_refused_ends_the_run_with_its_results(files, name):
+    system = two(files[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
+    values = {"a.UInt64_in": 13, "a.u": [1.0, 2.0]}
+    result = run(system, values, t_end=1.0, step=0.1, algorithm="li")
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "b")
+    assert result.outcome.message == "b.UInt64_in = 13: 13 is refused, at 0.1 s"
+    assert result.data["a.y[2]"].tolist() == pytest.approx([0.0, 0.2], rel=1e-12)
+
+
 def test_adaptive_step_exchanges_at_its_own_points(files):
     system = two(files["plain"], ("a.y", "b.u"), ("b.y", "a.u"), ("a.events", "b.Int32_in"))
     options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-4}
