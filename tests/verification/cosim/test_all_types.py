@@ -302,7 +302,7 @@ def test_events_inside_a_step_do_not_change_what_is_integrated(files):
     assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
 
 
-def test_clocks_and_other_kinds_are_refused(files, tmp_path):
+def test_descriptions_that_are_refused(files, tmp_path):
     def edited(old, new):
         file = tmp_path / "x.fmu"
         with zipfile.ZipFile(files["plain"]) as whole, zipfile.ZipFile(file, "w") as copy:
@@ -315,6 +315,14 @@ def test_clocks_and_other_kinds_are_refused(files, tmp_path):
     clock += b' intervalVariability="triggered"/></ModelVariables>'
     refused("has Clock variables, which are not supported: tick",
             edited(b"</ModelVariables>", clock), {})  # fmt: skip
+    refused("array 'm' has 10000000000 elements; 100000 are possible at the most",
+            edited(b'<Dimension start="2"/><Dimension start="2"/>',
+                   b'<Dimension start="100000"/><Dimension start="100000"/>'), {})  # fmt: skip
+    refused("variable 'Enumeration_in': an item of 'Gear' has no whole number",
+            edited(b'name="second" value="2"', b'name="second" value="two"'), {})  # fmt: skip
+    start = b'valueReference="10" causality="input" variability="discrete" start="0"'
+    refused("variable 'Int8_in': its start value 'x' is no Int8",
+            edited(start, start.replace(b'"0"', b'"x"')), {"Int8_in": 1})  # fmt: skip
     refused("is for scheduled execution only; co-simulation is needed",
             edited(b"<CoSimulation", b"<ScheduledExecution"), {})  # fmt: skip
 
