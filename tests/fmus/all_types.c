@@ -11,7 +11,8 @@
    Events: parameter 210, every so many seconds, 0 never; output 211, Int32, counts them; they are
    handled in event mode if it is used, else in the step. Parameter 212: time of the end, 0 never;
    213: the discrete states never settle, if not 0. 214: discrete Float64 input, 215 its output.
-   While event mode is used, discrete inputs are refused outside. */
+   While event mode is used, discrete inputs are refused outside; after initialisation the value 13
+   of the input of UInt64. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -190,6 +191,7 @@ EXPORT Status fmi3SetUInt64(void *c, const Reference *vr, size_t n, const uint64
         return OK;
     }
     if (may_set_discrete(part) != OK) return ERROR;
+    if (part->stepping && value[0] == 13) return refuse(part, "13 is refused");
     memcpy(part->values.in[8].data, value, sizeof(uint64_t));
     return OK;
 }

@@ -1,18 +1,22 @@
 /* A mass that turns, in units of its own: FMI 2.0 co-simulation without any header; the test writes
    the description. Value references: parameters inertia 0 (SI), size of the unit of the angle 1, of
    the speed 2 and of the torque 3 in SI units, wrap 4 (the angle stays below a turn), speed at the
-   start 5 (SI); input torque 6; outputs angle 7 and speed 8. Exact for a constant torque. */
+   start 5 (SI); input torque 6; outputs angle 7 and speed 8; parameters: time 9 at which it ends the
+   simulation, 0 never; 10: it discards the step there instead, if not 0. Exact for a constant
+   torque. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define EXPORT __attribute__((visibility("default")))
-enum { OK = 0, ERROR = 3 };
-enum { INERTIA, ANGLE_UNIT, SPEED_UNIT, TORQUE_UNIT, WRAP, START, TORQUE, ANGLE, SPEED, COUNT };
+enum { OK = 0, DISCARD = 2, ERROR = 3 };
+enum { LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3 };
+enum { INERTIA, ANGLE_UNIT, SPEED_UNIT, TORQUE_UNIT, WRAP, START, TORQUE, ANGLE, SPEED, END, REFUSES, COUNT };
 
 typedef struct {
-    double real[COUNT], phi, w;
+    double real[COUNT], phi, w, last;
+    int ended;
 } Mass;
 typedef int Status;
 typedef void *Component;
@@ -45,10 +49,21 @@ EXPORT Status fmi2GetReal(Component c, const unsigned *vr, size_t n, double *val
 }
 EXPORT Status fmi2DoStep(Component c, double t, double h, int no_rollback) {
     Mass *m = c;
+    m->ended = m->real[END] > 0.0 && m->real[END] < t + h - 1e-12;
+    if (m->ended) h = m->real[END] - t;
+    m->last = t + h;
     double a = m->real[TORQUE] * m->real[TORQUE_UNIT] / m->real[INERTIA];
     m->phi += h * (m->w + 0.5 * h * a);
     m->w += h * a;
-    return OK;
+    return m->ended ? DISCARD : OK;
+}
+EXPORT Status fmi2GetBooleanStatus(Component c, int kind, int *value) {
+    *value = ((Mass *)c)->ended && !((Mass *)c)->real[REFUSES];
+    return kind == TERMINATED ? OK : DISCARD;
+}
+EXPORT Status fmi2GetRealStatus(Component c, int kind, double *value) {
+    *value = ((Mass *)c)->last;
+    return kind == LAST_SUCCESSFUL_TIME ? OK : DISCARD;
 }
 EXPORT Status fmi2GetFMUstate(Component c, void **state) {
     if (!*state) *state = malloc(sizeof(Mass));
@@ -84,5 +99,4 @@ ABSENT(Reset) ABSENT(GetInteger) ABSENT(GetBoolean) ABSENT(GetString)
 ABSENT(SetInteger) ABSENT(SetBoolean) ABSENT(SetString)
 ABSENT(SerializedFMUstateSize) ABSENT(SerializeFMUstate) ABSENT(DeSerializeFMUstate)
 ABSENT(GetDirectionalDerivative) ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
-ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetRealStatus) ABSENT(GetIntegerStatus)
-ABSENT(GetBooleanStatus) ABSENT(GetStringStatus)
+ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetIntegerStatus) ABSENT(GetStringStatus)

@@ -19,12 +19,16 @@ class OtherSignals:
 
     Args:
         network: parts and connections.
+
+    Attributes:
+        asked: name of the part that was called last.
     """
 
     def __init__(self, network: Network) -> None:
         self._parts, self._connections = network.parts, network.others
         self._recorded = [_outputs(part) for part in network.parts]
         self._rows: list[list[Value]] = []
+        self.asked = ""
         self._given: dict[int, dict[str, Value]] = {}
 
     @property
@@ -70,6 +74,7 @@ class OtherSignals:
                 found.setdefault(c.target, {})[c.input] = c.converted(value)
         changed, self._given = found != self._given, found
         for p, given in found.items():
+            self.asked = self._parts[p].name
             self._parts[p].put_values(given)
         return changed
 
@@ -80,6 +85,7 @@ class OtherSignals:
         return found
 
     def _values(self, p: int, names: Sequence[str]) -> list[Value]:
+        self.asked = self._parts[p].name
         return self._parts[p].get_values(names)
 
     def sample(self, rows: int) -> None:
@@ -88,6 +94,11 @@ class OtherSignals:
             return
         row = [v for p, names in enumerate(self._recorded) if names for v in self._values(p, names)]
         self._rows += [row] * (rows - len(self._rows))
+
+    @property
+    def rows(self) -> int:
+        """Rows that were read."""
+        return len(self._rows)
 
     def columns(self, rows: int) -> dict[str, np.ndarray]:
         """Recorded outputs (rows,) by name, of their own types; bytes as hexadecimal digits."""

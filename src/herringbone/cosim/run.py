@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.core import FmuError, HerringboneError, Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -36,6 +36,8 @@ _PROBLEMS = {
     COUPLING_FAILED: OutcomeKind.COUPLING_FAILED,
     STEP_LIMIT: OutcomeKind.STEP_LIMIT,
 }
+_REFUSED = -1
+"""Status of a run in which a part refuses a value of another type than real."""
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
 
@@ -63,6 +65,7 @@ class Run:
     ) -> None:
         self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
         self.others = others
+        self._refusal = ""
         self.grid = grid = prepared.grid(grid)
         names = record_names(network)
         self.names = tuple(
@@ -84,7 +87,7 @@ class Run:
         if growth < 1.0:
             self.loop_notes = (what,)
             return self.go(progress)
-        get_all(self.prepared.layout, self.history, self.record.values, 0)
+        self._first_row()
         instead = "" if loop.gain >= 1.0 else "use li, fixed_point or jacobi:order=0; or "
         message = (
             f"{what}: with {algorithm} the forces grow {growth:.3g} times per macro step, and no "
@@ -95,10 +98,9 @@ class Run:
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
-        get_all(self.prepared.layout, self.history, self.record.values, 0)
+        self._first_row()
         self._correct_start()
         self.history[1:] = self.history[0]
-        self.others.sample(1)
         done, status, culprit, chunk = 0, DONE, -1, 1
         self._advance(0, 0)  # compiles the loop, or loads it from the cache
         begin = time.perf_counter()
@@ -108,7 +110,7 @@ class Run:
                 count = self._until_others(done, min(chunk, self.grid.count - done))
                 status, done, culprit = self._advance(done, count)
                 if status == DONE and done > before:
-                    self._exchange_others(done)
+                    status = self._exchange_others(done)
                 rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
@@ -117,17 +119,27 @@ class Run:
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
 
+    def _first_row(self) -> None:
+        """Record the start."""
+        get_all(self.prepared.layout, self.history, self.record.values, 0)
+        self.others.sample(1)
+
     def _until_others(self, done: int, count: int) -> int:
         """Steps of the loop until signals of other types are wanted."""
         if self.others.connected:
             return 1
         return min(count, self.record.until_row(done)) if self.others.recorded else count
 
-    def _exchange_others(self, done: int) -> None:
-        """Record signals of other types, and bring them to their inputs."""
-        self.others.sample(self.record.complete(done))
-        if self.others.connected and done < self.grid.count:
-            self.others.exchange()
+    def _exchange_others(self, done: int) -> int:
+        """Record signals of other types, and bring them to their inputs; a status of the loop."""
+        try:
+            self.others.sample(self.record.complete(done))
+            if self.others.connected and done < self.grid.count:
+                self.others.exchange()
+        except FmuError as error:
+            self._refusal = str(error)
+            return _REFUSED
+        return DONE
 
     def _correct_start(self) -> None:
         """Add to the first values of connected outputs what they lack."""
@@ -153,10 +165,18 @@ class Run:
                 return self._outcome_at_end(reached)
             message = f"stopped at {reached:g} s; results so far are kept"
             return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
+        if status == _REFUSED:
+            message = f"{self._refusal}, at {reached:g} s"
+            return Outcome(OutcomeKind.PART_FAILED, reached, self.others.asked, message)
         if (end := self._ended(status, culprit)) is not None:
             return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
         if status in _PROBLEMS:
             return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
+        return self._failure(done, status, culprit)
+
+    def _failure(self, done: int, status: int, culprit: int) -> Outcome:
+        """A part refused its step, or its values have diverged."""
+        reached = done * self.grid.step
         part = self.network.parts[culprit]
         part.failed()
         said = "; ".join(part.messages())
@@ -220,6 +240,8 @@ class Run:
         elif not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
             rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
             times, values = times[:rows], values[:rows]
+        if self.others.recorded:
+            times, values = times[: self.others.rows], values[: self.others.rows]
         notes = wrapped_angles(self.names, self._recorded, times, values)
         return Recording(
             times,

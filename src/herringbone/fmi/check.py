@@ -60,6 +60,11 @@ def _step_size(description: ModelDescription) -> float:
     return float(experiment.stepSize) if experiment and experiment.stepSize else _STEP_SIZE
 
 
+def _end(description: ModelDescription) -> float:
+    """Time up to which an FMU is stepped here at the most [s]."""
+    return max(1.0, 2 * _STEPS * _step_size(description))
+
+
 def _outputs(description: ModelDescription) -> list[str]:
     variables = read_variables(description).values()
     return [v.name for v in variables if v.causality == "output" and v.is_real]
@@ -74,7 +79,7 @@ def _advance(host: Host | Host3, first: int) -> list[float]:
 
 def _default_run(path: Path, description: ModelDescription) -> list[str]:
     with open_host(path.stem, path) as host:
-        host.initialise()
+        host.initialise(stop_time=_end(description))
         values = _advance(host, 0)
     names = _outputs(description)
     bad = [f"{n} = {v}" for n, v in zip(names, values, strict=True) if not math.isfinite(v)]
@@ -85,7 +90,7 @@ def _state_round_trip(path: Path, description: ModelDescription) -> list[str]:
     if not description.coSimulation.canGetAndSetFMUstate:
         return []
     with open_host(path.stem, path) as host:
-        host.initialise()
+        host.initialise(stop_time=_end(description))
         _advance(host, 0)
         saved = host.save()
         before = _advance(host, _STEPS)
@@ -98,10 +103,10 @@ def _state_round_trip(path: Path, description: ModelDescription) -> list[str]:
 
 def _reset(path: Path, description: ModelDescription) -> list[str]:
     with open_host(path.stem, path) as host:
-        host.initialise()
+        host.initialise(stop_time=_end(description))
         before = _advance(host, 0)
         host.slave.reset()
-        host.initialise()
+        host.initialise(stop_time=_end(description))
         after = _advance(host, 0)
     return _differences(description, before, after, "a run after reset")
 

@@ -39,14 +39,20 @@ class _SteppedPart(FmuPart):
         """Real variables by name; raises FmuError."""
         return self.get(names)
 
-    def initialise(self, values: Mapping[str, float | str] | None = None) -> None:
+    def initialise(
+        self, values: Mapping[str, float | str] | None = None, stop_time: float = 1.0
+    ) -> None:
         """Set start values, enter and leave initialisation mode at time 0.
+
+        Args:
+            values: to set, by name.
+            stop_time: that the FMU is told; some refuse to go beyond [s].
 
         Raises:
             ParameterError, FmuError: the FMU refused; the message holds what it logged.
         """
         self.set_values(values or {})
-        self.enter_initialization(0.0, 1.0)
+        self.enter_initialization(0.0, stop_time)
         self.exit_initialization()
 
 

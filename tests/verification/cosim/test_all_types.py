@@ -208,6 +208,16 @@ def test_integers_reach_wider_types_and_reals(files):
     assert result.data["b.Float32_out"].iloc[-1] == np.float32(-7.0)
 
 
+@pytest.mark.parametrize("name", ["plain", "events"])
+def test_value_that_is_refused_ends_the_run_with_its_results(files, name):
+    system = two(files[name], ("a.UInt64_out", "b.UInt64_in"), ("a.y", "b.u"))
+    values = {"a.UInt64_in": 13, "a.u": [1.0, 2.0]}
+    result = run(system, values, t_end=1.0, step=0.1, algorithm="li")
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.PART_FAILED, "b")
+    assert result.outcome.message == "b.UInt64_in = 13: 13 is refused, at 0.1 s"
+    assert result.data["a.y[2]"].tolist() == pytest.approx([0.0, 0.2], rel=1e-12)
+
+
 def test_adaptive_step_exchanges_at_its_own_points(files):
     system = two(files["plain"], ("a.y", "b.u"), ("b.y", "a.u"), ("a.events", "b.Int32_in"))
     options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-4}
@@ -244,13 +254,6 @@ def test_types_of_fmi2(selector):
     assert [str(result.data[f"a.{n}"].dtype) for n in ("steps", "engaged_shown")] == [
         "int32", "bool"
     ]  # fmt: skip
-
-
-def test_fmi2_part_that_ends_the_simulation(selector):
-    result = run(alone(selector), {"last_step": 4})
-    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.ENDED, "p")
-    assert result.data["p.steps"].tolist() == [0, 1, 2, 3, 4]
-    assert result.outcome.time == pytest.approx(0.4, rel=1e-12)
 
 
 # -- the end, and events --------------------------------------------------------------------------
@@ -299,7 +302,7 @@ def test_events_inside_a_step_do_not_change_what_is_integrated(files):
     assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
 
 
-def test_clocks_and_other_kinds_are_refused(files, tmp_path):
+def test_descriptions_that_are_refused(files, tmp_path):
     def edited(old, new):
         file = tmp_path / "x.fmu"
         with zipfile.ZipFile(files["plain"]) as whole, zipfile.ZipFile(file, "w") as copy:
@@ -312,6 +315,14 @@ def test_clocks_and_other_kinds_are_refused(files, tmp_path):
     clock += b' intervalVariability="triggered"/></ModelVariables>'
     refused("has Clock variables, which are not supported: tick",
             edited(b"</ModelVariables>", clock), {})  # fmt: skip
+    refused("array 'm' has 10000000000 elements; 100000 are possible at the most",
+            edited(b'<Dimension start="2"/><Dimension start="2"/>',
+                   b'<Dimension start="100000"/><Dimension start="100000"/>'), {})  # fmt: skip
+    refused("variable 'Enumeration_in': an item of 'Gear' has no whole number",
+            edited(b'name="second" value="2"', b'name="second" value="two"'), {})  # fmt: skip
+    start = b'valueReference="10" causality="input" variability="discrete" start="0"'
+    refused("variable 'Int8_in': its start value 'x' is no Int8",
+            edited(start, start.replace(b'"0"', b'"x"')), {"Int8_in": 1})  # fmt: skip
     refused("is for scheduled execution only; co-simulation is needed",
             edited(b"<CoSimulation", b"<ScheduledExecution"), {})  # fmt: skip
 

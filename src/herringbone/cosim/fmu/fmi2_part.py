@@ -22,6 +22,9 @@ from herringbone.core.part import Addresses
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.part import FmuPart
 
+_DISCARD = 2
+_PYTHONFMU = "finalizePythonInterpreter"
+"""A function that only pythonfmu's libraries have."""
 _keys = itertools.count(1)
 _logs: dict[int, FmuLog] = {}
 """Logs of the open parts; fmpy's logger proxy keeps one logger for the process."""
@@ -86,16 +89,21 @@ class Fmu2Part(FmuPart):
     def ended(self) -> float | None:
         """Time at which the FMU asked to end the simulation [s]; None if it did not.
 
-        It tells only after a step that it discarded, and not after fmi2Fatal.
+        It tells after a step that it discarded, and not after fmi2Fatal. What pythonfmu tells is
+        no answer: it calls every step the end for which `do_step` returns False.
         """
-        if self._log.fatal:
+        if self._log.fatal or hasattr(self.slave.dll, _PYTHONFMU):
             return None
         try:
-            if not self.slave.getBooleanStatus(fmi2Terminated):
-                return None
-            return float(self.slave.getRealStatus(fmi2LastSuccessfulTime))
+            ended = self.slave.getBooleanStatus(fmi2Terminated)
+            last = float(self.slave.getRealStatus(fmi2LastSuccessfulTime))
         except FMICallException:
             return None
+        if ended:
+            return last
+        said = f"the step was discarded; the part came to {last:g} s; use a smaller step"
+        self._log.add(_DISCARD, said.encode())
+        return None
 
     def close(self) -> None:
         """Terminate and free the instance; see `FmuPart.close`."""
@@ -111,6 +119,6 @@ def _finalize_at_exit(dll: ctypes.CDLL) -> None:
 
     Otherwise it is released twice by static destructors, and the process may abort at exit.
     """
-    if hasattr(dll, "finalizePythonInterpreter") and not _finalizers:
+    if hasattr(dll, _PYTHONFMU) and not _finalizers:
         _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
         atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)

@@ -9,6 +9,8 @@ from typing import Any
 
 from fmpy.model_description import ModelDescription, ModelVariable
 
+from herringbone.core import FmuError, ParameterError
+from herringbone.core.names import shown
 from herringbone.core.part import Value
 from herringbone.cosim.fmu.file import is_fmi3
 from herringbone.cosim.fmu.values import INTEGERS, number
@@ -69,6 +71,8 @@ class OtherValues:
                 values = [bool(value) for value in values]
             elif function == "String":  # fmpy decodes those of FMI 3.0 only
                 values = [v.decode("utf-8") if isinstance(v, bytes) else v for v in values]
+            elif function == "Binary":
+                values = [v or b"" for v in values]
             found.update(zip(elements, values, strict=True))
         return [found[name] for name in wanted]
 
@@ -101,6 +105,18 @@ class OtherValues:
 
 
 def _start(element: Element) -> list[Value]:
+    """Declared start values of a variable; raises FmuError."""
+    try:
+        return _declared(element)
+    except (ValueError, OverflowError, ParameterError) as error:
+        variable = element.variable
+        raise FmuError(
+            f"variable '{variable.name}': its start value {shown(str(variable.start))} is no "
+            f"{variable.type}"
+        ) from error
+
+
+def _declared(element: Element) -> list[Value]:
     """Declared start values of a variable; one value stands for all, 0 if there is none."""
     kind, given = element.variable.type, element.variable.start
     if kind in {"String", "Binary"}:

@@ -46,8 +46,11 @@ class FmuPart(ABC):
         self.signature: Signature | None = None
         self._running = False
         self.model = model or read_fmu(file)
-        self.variables: Mapping[str, PartVariable] = read_variables(self.model)
-        self._others = OtherValues(self.model)
+        try:
+            self.variables: Mapping[str, PartVariable] = read_variables(self.model)
+            self._others = OtherValues(self.model)
+        except FmuError as error:
+            raise FmuError(f"{file}: {error}") from error
         abilities = self.model.coSimulation
         self.once = bool(abilities.canBeInstantiatedOnlyOncePerProcess)
         self.one_step = not abilities.canHandleVariableCommunicationStepSize

@@ -1,12 +1,15 @@
 """Variables of an FMU as a master sees them: scalars, and the elements of arrays."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
 from fmpy.model_description import ModelDescription, ModelVariable
 
+from herringbone.core import FmuError
 from herringbone.core.declaration import node_name
+from herringbone.core.names import shown
 from herringbone.core.part import PartVariable
 from herringbone.core.variable import NODES
 from herringbone.cosim.fmu.file import is_fmi3
@@ -14,6 +17,8 @@ from herringbone.cosim.fmu.file import is_fmi3
 _NODES = ".node"
 """Ending of the array that holds the nodes of a signal inside the step, see `node_name`."""
 _REALS = {"Real", "Float64"}
+_MOST_ELEMENTS = 100_000
+"""Of an array: each is a variable here."""
 _EXPONENTS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -61,6 +66,10 @@ def _element_names(variable: ModelVariable) -> list[str]:
     if variable.type == "Float64" and shape == (NODES,) and name.endswith(_NODES):
         signal = name.removesuffix(_NODES)
         return [node_name(signal, node) for node in range(1, NODES + 1)]
+    if (size := math.prod(shape)) > _MOST_ELEMENTS:
+        raise FmuError(
+            f"array '{name}' has {size} elements; {_MOST_ELEMENTS} are possible at the most"
+        )
     return [element_name(name, place) for place in product(*(range(1, n + 1) for n in shape))]
 
 
@@ -121,7 +130,13 @@ def _items(variable: ModelVariable) -> tuple[tuple[str, int], ...]:
     declared = variable.declaredType
     if variable.type != "Enumeration" or declared is None:
         return ()
-    return tuple((item.name, int(item.value)) for item in declared.items)
+    try:
+        return tuple((item.name, int(item.value)) for item in declared.items)
+    except (TypeError, ValueError):
+        raise FmuError(
+            f"variable '{variable.name}': an item of {shown(str(declared.name))} has no whole "
+            "number"
+        ) from None
 
 
 def _dimension(model: ModelDescription) -> dict[str, tuple]:

@@ -1,4 +1,6 @@
-"""Parts in units of their own: the same run as in SI units, recorded in their units; or refused."""
+"""Parts in units of their own: the same run as in SI units, recorded in their units; or refused.
+
+And what parts of FMI 2.0 say of their end, and of angles."""
 
 import math
 import os
@@ -10,7 +12,7 @@ import pytest
 from support.c_fmu import compiled_fmu
 
 import herringbone as hb
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, OutcomeKind
 
 SOURCE = Path(__file__).parents[2] / "fmus" / "turning_mass.c"
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
@@ -49,6 +51,10 @@ def description(units):
 <Real unit="{phi}"/></ScalarVariable>
 <ScalarVariable name="flange.w" valueReference="8" causality="output">
 <Real unit="{w}"/></ScalarVariable>
+<ScalarVariable name="end" valueReference="9" causality="parameter" variability="fixed">
+<Real start="0"/></ScalarVariable>
+<ScalarVariable name="refuses" valueReference="10" causality="parameter" variability="fixed">
+<Real start="0"/></ScalarVariable>
 </ModelVariables>
 <ModelStructure><Outputs><Unknown index="8" dependencies=""/><Unknown index="9" dependencies=""/>
 </Outputs></ModelStructure>
@@ -136,3 +142,19 @@ def test_wrapped_angle_is_noticed(tmp_path, mass, unit):
         notes = [note for note in result.info.notes if "wraps its angle" in note]
         assert len(notes) == wrap
     assert notes[0].startswith("one.flange.phi jumps by a turn at 0.063 s: ")
+
+
+@pytest.mark.parametrize("end", [0.05, 0.0525])
+def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
+    """By fmi2Discard, fmi2Terminated and fmi2LastSuccessfulTime; alone it is recorded there."""
+    file, _ = mass(*named("N.m", "rad", "rad/s"))
+    (tmp_path / "system.toml").write_text(f'[parts]\none = {{ fmu = "{file}" }}\n')
+    values = {"one.start": 100.0, "one.end": end}
+    result = hb.run(tmp_path, values=values, t_end=0.1, record_step=0.01)
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.ENDED, "one")
+    assert result.outcome.message == f"one ended the simulation at {end:g} s"
+    assert result.data["time"].iloc[-1] == pytest.approx(end, rel=1e-12)
+    assert result.data["one.flange.phi"].iloc[-1] == pytest.approx(100.0 * end, rel=1e-12)
+    found = hb.run(tmp_path, values={**values, "one.refuses": 1.0}, t_end=0.1, record_step=0.02)
+    assert found.outcome.kind is OutcomeKind.PART_FAILED
+    assert f"the step was discarded; the part came to {end:g} s" in found.outcome.message
