@@ -1,7 +1,8 @@
 r"""What a part makes of an input and its rate inside a step: the rotation test.
 
 An angle that rises evenly, phi = w t, with its speed w, a little faster than at the start, is given
-to the part in steps of H, H/2 and H/4, by three rules; in each of them outputs at the end are y + D (u_end - u_seen):
+to the part in steps of H, H/2 and H/4, by three rules; in each of them outputs at the end are
+y + D (u_end - u_seen):
 
     held    the mean of the step is given, and seen to its end
     start   the value at the start is given; the part turns it on by w H, and sees that at the end
