@@ -14,6 +14,7 @@ from herringbone.cosim.algorithms import (
     Algorithm,
     Jacobi,
     choose_algorithm,
+    start_step,
     with_tolerance,
 )
 from herringbone.cosim.exit_guard import exit_guard
@@ -106,7 +107,7 @@ def coupled(
         if algorithm is None:
             algorithm, why = _chosen_for(parts, asked)
             lines.append(why)
-        step = algorithm.start_step if asked.step is None else asked.step
+        step = start_step(algorithm, parts) if asked.step is None else asked.step
         lines += _stability_notes(system, algorithm, step, asked.slow)
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
