@@ -24,19 +24,26 @@ JOINED = {
 }  # fmt: skip
 """The three cuts of the benchmark: which part has the spring between the masses."""
 OWNERS = {"force and motion": ["one"], "motion and motion": ["one", "two"], "force and force": []}
-SOURCES = {"one": "mass", "two": "mass", "spring": "spring"}
 
 
 class Oscillator:
-    """A cut of the oscillator."""
+    """A cut of the oscillator.
 
-    def __init__(self, folder, cut, damping, plain=False):
+    Args:
+        folder: with the FMUs.
+        cut: of `JOINED`.
+        damping: of all dampers [N s/m].
+        plain: FMUs that do not save their states.
+        mass: kind of the masses' FMUs.
+    """
+
+    def __init__(self, folder, cut, damping, *, plain=False, mass="mass"):
         self.damping = damping
-        used = ["one", "two"] if OWNERS[cut] else list(SOURCES)
-        files = {part: folder / f"oscillator_{SOURCES[part]}.fmu" for part in used}
+        kinds = {"one": mass, "two": mass} | ({} if OWNERS[cut] else {"spring": "spring"})
+        files = {part: folder / f"oscillator_{kind}.fmu" for part, kind in kinds.items()}
         if plain:
             files = {part: without_states(file) for part, file in files.items()}
-        name = "".join(word[0] for word in cut.split()) + ("p" if plain else "")
+        name = "".join(word[0] for word in cut.split()) + mass + ("p" if plain else "")
         self.system = write_system(folder, name, JOINED[cut], files)
         self.values = {"one.k": 10.0, "two.k": 1000.0, "one.v0": 100.0, "two.v0": -100.0}
         self.values |= {"one.c": damping, "two.c": damping}

@@ -77,8 +77,8 @@ def changed(file: Path, to: Path, script: dict[str, str], *, plain: bool, declar
     """
     with zipfile.ZipFile(file) as whole, zipfile.ZipFile(to, "w") as copy:
         module = whole.read("resources/slavemodule.txt").decode().strip()
-        for name in whole.namelist():
-            data = whole.read(name)
+        for entry in whole.namelist():
+            name, data = entry, whole.read(entry)
             if name == f"resources/{module}.py":
                 text = data.decode()
                 for old, new in script.items():

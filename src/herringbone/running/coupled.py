@@ -14,6 +14,7 @@ from herringbone.cosim.algorithms import (
     Algorithm,
     Jacobi,
     choose_algorithm,
+    start_step,
     with_tolerance,
 )
 from herringbone.cosim.exit_guard import exit_guard
@@ -116,8 +117,9 @@ def coupled(
             algorithm, why = _chosen_for(parts, asked)
             lines.append(why)
         bond = fastest_bond(system)
-        step = asked.step or suited_step(system, scene, algorithm, bond, asked.record_step)
-        if asked.step is None and step > algorithm.start_step:
+        own = start_step(algorithm, parts)
+        step = asked.step or suited_step(system, scene, algorithm, own, bond, asked.record_step)
+        if asked.step is None and step > own:
             lines.append(
                 f"auto: steps of {step:.3g} s, because no bond is faster than {bond:.3g} rad/s"
             )

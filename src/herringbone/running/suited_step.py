@@ -15,6 +15,7 @@ def suited_step(
     system: System,
     scene: Scene,
     algorithm: Algorithm,
+    own: float,
     bond: float | None,
     record_step: float | None,
 ) -> float:
@@ -26,10 +27,11 @@ def suited_step(
     Args:
         system, scene: of the run.
         algorithm: of the coupling.
+        own: its step for these parts, see `start_step` [s].
         bond: highest frequency of all bonds together [rad/s]; None if it is not known.
         record_step: that the caller gave [s].
     """
-    own, rule = algorithm.start_step, algorithm.accurate_step
+    rule = algorithm.accurate_step
     geared = any(Role.GEAR_PAIR in part.roles for part in anatomy(system).parts.values())
     if not bond or rule is None or geared or algorithm.adaptive:
         return own

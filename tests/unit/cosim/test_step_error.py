@@ -18,7 +18,7 @@ ONE = np.array([0], dtype=np.int64)
 def found_force(force, degree, scale=1.0):
     """Node layout and buffers after a step from 0 to 1 that found force(t), without residual."""
     nothing = np.zeros(0, dtype=np.int64)
-    nodes = NodeLayout(degree, ONE, *[nothing] * 10)
+    nodes = NodeLayout(degree, ONE, *[nothing] * 11)
     past = [0.0, -SPACING[0], -sum(SPACING)]
     history = np.array([[0.0], *([force(t)] for t in past)])
     values = np.array([[force(j / degree)] for j in range(degree + 1)])

@@ -6,7 +6,7 @@ from typing import Any
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.base import Algorithm
-from herringbone.cosim.algorithms.choice import AUTO, choose_algorithm
+from herringbone.cosim.algorithms.choice import AUTO, choose_algorithm, start_step
 from herringbone.cosim.algorithms.fixed_point import FixedPoint
 from herringbone.cosim.algorithms.gauss_seidel import GaussSeidel
 from herringbone.cosim.algorithms.jacobi import Jacobi
@@ -27,6 +27,7 @@ __all__ = [
     "choose_algorithm",
     "parse_algorithm",
     "refuse_adaptive",
+    "start_step",
     "with_tolerance",
 ]
 

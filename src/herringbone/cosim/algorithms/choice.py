@@ -57,6 +57,15 @@ def choose_algorithm(
     return chosen, f"{AUTO}: {chosen}, because {why}"
 
 
+def start_step(algorithm: Algorithm, parts: Sequence[Part]) -> float:
+    """Macro step [s] if none is given: jacobi's at the most where parts cannot repeat a step.
+
+    What they missed acts a step late, so that they are coupled about as explicitly as by jacobi.
+    """
+    step = algorithm.start_step
+    return min(step, Jacobi.default_step) if _answering(parts) else step
+
+
 def _answering(parts: Sequence[Part]) -> list[str]:
     """Names of the parts that step once, and answer corrections by a surrogate."""
     return [part.name for part in parts if answers_again(part)]

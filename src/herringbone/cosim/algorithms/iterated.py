@@ -138,6 +138,7 @@ class PreparedNodes(PreparedRun):
             state[:, 2].copy(),
             self._groups(unknown),
             self._rates(unknown),
+            self._settled(unknown),
         )
 
     def _groups(self, unknown: np.ndarray) -> np.ndarray:
@@ -151,23 +152,24 @@ class PreparedNodes(PreparedRun):
 
     def _rates(self, unknown: np.ndarray) -> np.ndarray:
         """Rates among the outputs of unknowns that parts step on once, as numbers; else -1."""
-        network, parts = self.network, self.network.parts
-        place = {
-            key: k
-            for k, key in enumerate((p, n) for p, names in enumerate(self._outputs) for n in names)
-        }
+        parts = self.network.parts
+        keys = [(p, name) for p, names in enumerate(self._outputs) for name in names]
         wanted = {
             (c.source, c.output)
-            for c in network.connections
+            for c in self.network.connections
             if answers_again(parts[c.target]) or c.target in self._first
         }
         found = np.full(unknown.size, -1, dtype=np.int64)
-        keys = list(place)
-        for i, k in enumerate(unknown):
-            p, name = keys[k]
-            if (p, name) in wanted:
-                found[i] = place.get((p, rate_of(parts[p], name) or ""), -1)
+        for i, (p, name) in enumerate(keys[k] for k in unknown):
+            rate = (p, rate_of(parts[p], name) or "")
+            if (p, name) in wanted and rate in keys:
+                found[i] = keys.index(rate)
         return found
+
+    def _settled(self, unknown: np.ndarray) -> np.ndarray:
+        """1 for unknowns of parts that step before the passes: no correction reaches them."""
+        owners = [p for p, names in enumerate(self._outputs) for _ in names]
+        return np.array([owners[k] in self._first for k in unknown], dtype=np.int64)
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run

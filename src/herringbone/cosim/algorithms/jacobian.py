@@ -71,6 +71,7 @@ class InterfaceJacobian:
                 "use a smaller step"
             )
         self._check_repetition(buffers, off, t)
+        jacobian[np.tile(self.nodes.settled != 0, self.nodes.degree)] = 0.0
         return jacobian
 
     def _check_repetition(self, buffers: Buffers, off: np.ndarray, t: float) -> None:

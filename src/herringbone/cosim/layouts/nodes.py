@@ -18,6 +18,7 @@ class NodeLayout(NamedTuple):
         get_state, set_state, free_state: addresses.
         group: of each unknown; those of the same unit are one.
         rate: of each unknown that a part steps on once: the output that is its rate, or -1.
+        settled: 1 for unknowns of parts that have stepped before the passes.
     """
 
     degree: int
@@ -32,6 +33,7 @@ class NodeLayout(NamedTuple):
     free_state: np.ndarray
     group: np.ndarray
     rate: np.ndarray
+    settled: np.ndarray
 
 
 class Control(NamedTuple):

@@ -187,6 +187,14 @@ def _integrated(buffers: Buffers, i: int, rate: int, order: int, c: float, h: fl
 
 
 @inlined
+def _settle(nodes: NodeLayout, buffers: Buffers) -> None:
+    """Unknowns of parts that have stepped already are what these gave."""
+    for i in range(nodes.unknown.size):
+        for k in range(nodes.degree if nodes.settled[i] else 0):
+            buffers.trial[k, i] = buffers.nodes[k + 1, nodes.unknown[i]]
+
+
+@inlined
 def begin(
     layout: Layout,
     nodes: NodeLayout,
@@ -228,4 +236,5 @@ def begin(
         failed = _step_group(layout, nodes, buffers, nodes.sources[s : s + 1], t, h)
         if failed >= 0:
             return failed
+    _settle(nodes, buffers)
     return -1
