@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.analysis.stability.surrogate import Surrogate
 from herringbone.analysis.stability.surrogate_part import Stranger
-from herringbone.core import EquilibriumError, FmuError
+from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.nodal import NodalPart
@@ -96,7 +96,7 @@ def under_load(system: System) -> System:
         steady = steady.with_values(values)
     try:
         return steady.with_values(loaded_start(own)[0])
-    except EquilibriumError:
+    except HerringboneError:
         return system
 
 

@@ -96,6 +96,8 @@ class Surrogate:
                 self._identify()
         except Refused as error:
             self.why = f"trials are not possible: {error}"
+        except np.linalg.LinAlgError as error:
+            self.why = f"its answers make no linear system: {error}"
 
     @property
     def order(self) -> int:
@@ -229,10 +231,12 @@ class Surrogate:
         return _relative(step.answers(inputs * self.amplitudes) / self._sizes, truth)
 
     def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
-        """(steps, m) outputs on changes (steps, n), in amplitudes."""
+        """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
         begun = perf_counter()
         found = self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
         self._rate = (perf_counter() - begun) / (len(inputs) * h)
+        if not np.isfinite(found).all():
+            raise Refused("its outputs are not finite")
         return found
 
 
