@@ -152,13 +152,15 @@ class StandIn:
 
     def __init__(self, stranger: Stranger) -> None:
         real = stranger.part
-        nodal = isinstance(real, NodalPart)
         self.surrogate = stranger.surrogate
-        self._inner = SurrogatePart(real.part if nodal else real, stranger.surrogate)
-        self.part: Part = real.in_front_of(self._inner) if nodal else self._inner
+        self._nodal = isinstance(real, NodalPart)
+        inside = real.part if isinstance(real, NodalPart) else real
+        self._inner = SurrogatePart(inside, stranger.surrogate)
+        self.part: Part = self._inner
+        if isinstance(real, NodalPart):
+            self.part = real.in_front_of(self._inner)
         self.name, self.values = real.name, self._inner.values
         self.state_changes = [1.0] * self._inner.state_count
-        self._nodal = nodal
 
     def prepare(self, step: float, degree: int) -> None:
         """Make ready for macro steps at an interface degree; lengths are learnt as they come."""
