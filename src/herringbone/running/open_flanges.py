@@ -41,6 +41,16 @@ def balanced(system: System) -> System:
     return system
 
 
+def loaded(system: System, torque: float) -> System:
+    """The system, with a torque [N m] at each open pinion if neither gear is given one."""
+    for pair in _open_pairs(system):
+        if not any(pair.given):
+            system = system.with_values({pair.torques[0]: torque})
+            pair.given[:] = torque, None
+            system = system.with_values({pair.torques[1]: pair.balance(1)})
+    return system
+
+
 def unbalanced(system: System) -> tuple[str, ...]:
     """Lines on open gear pairs of which both torques are given and do not balance."""
     lines = []

@@ -66,8 +66,14 @@ def ramp_times(system: System) -> Values:
 
 def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
+    with activity(f"looking for the steady rotation of {system.name}"):
+        return loaded_start(known_parts(system))
+
+
+def known_parts(system: System) -> System:
+    """The system without its foreign parts and what they are connected to."""
     foreign = set(system.foreign_parts)
-    known = replace(
+    return replace(
         system,
         parts=tuple(part for part in system.parts if part.name not in foreign),
         connections=tuple(
@@ -76,8 +82,6 @@ def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
             if not foreign & {system.split(path)[0] for path in pair}
         ),
     )
-    with activity(f"looking for the steady rotation of {system.name}"):
-        return loaded_start(known)
 
 
 def _offsets(system: System, offsets: Values) -> Values:

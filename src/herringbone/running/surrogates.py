@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.analysis.stability.surrogate import Surrogate
 from herringbone.analysis.stability.surrogate_part import Stranger
-from herringbone.core import EquilibriumError, FmuError
+from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.nodal import NodalPart
@@ -16,9 +16,14 @@ from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.carrying_flank import loaded_start
 from herringbone.running.foreign_parts import alike, signature_of, start_inputs, understood
 from herringbone.running.loading import instances, open_parts
-from herringbone.running.start import equilibrium_values, ramp_times
+from herringbone.running.open_flanges import loaded
+from herringbone.running.start import known_parts, ramp_times
+
+_TORQUE = 200.0
+"""At pinions that only foreign parts load [N m]; limits hardly depend on it."""
 
 
 @dataclass
@@ -74,14 +79,24 @@ def opened_surrogates(system: System, step: float) -> Iterator[Surrogates]:
 def under_load(system: System) -> System:
     """The system with its own parts in steady rotation under load, as they are after a ramp.
 
-    What foreign parts would feed is taken as zero. As it is where there is no such rotation.
+    What foreign parts would feed is taken as zero; but gears that only these load have 200 N m at
+    the pinion, so that their meshes are closed. As it is where there is no such rotation.
     """
     if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
         return system
-    loaded = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
+    steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
+    known = known_parts(steady)
+    own = loaded(known, _TORQUE)
+    if own is not known:
+        values = {
+            f"{part.name}.{name}": value
+            for part in own.parts
+            for name, value in part.values.items()
+        }
+        steady = steady.with_values(values)
     try:
-        return loaded.with_values(equilibrium_values(loaded)[0])
-    except EquilibriumError:
+        return steady.with_values(loaded_start(own)[0])
+    except HerringboneError:
         return system
 
 

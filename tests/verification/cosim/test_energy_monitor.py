@@ -386,9 +386,9 @@ def test_why_takes_few_matrices(monkeypatch):
             matrices.append(step)
             return super().growth(step)
 
-    def linearised(system):
+    def linearised(system, **more):
         systems.append(system)
-        return linear_network(system)
+        return linear_network(system, **more)
 
     monkeypatch.setattr("herringbone.analysis.stability.diagnosis.Amplification", Counted)
     monkeypatch.setattr("herringbone.analysis.stability.diagnosis.linear_network", linearised)

@@ -17,7 +17,7 @@ import numpy as np
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.bonds import highest_frequency
-from herringbone.analysis.stability.linear_parts import linear_network
+from herringbone.analysis.stability.linear_parts import linear_instances, linear_network
 from herringbone.analysis.stability.perturbed_run import perturbation_growth
 from herringbone.analysis.stability.simulated_limit import Bands, first_unstable, run_steps
 from herringbone.analysis.stability.step_scan import unstable_bands
@@ -198,7 +198,7 @@ def simulated_limit(system: System, algorithm: Algorithm, bands: Bands) -> float
 
     def unstable(step: float) -> bool:
         growth = perturbation_growth(
-            system, lambda: linear_network(system)[1], algorithm, step, steps=steps, at_rest=True
+            system, lambda: linear_instances(system), algorithm, step, steps=steps, at_rest=True
         )
         return growth > 0.0
 

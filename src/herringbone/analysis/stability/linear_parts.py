@@ -73,6 +73,11 @@ def linear_network(
     return network, members
 
 
+def linear_instances(system: System) -> list[Instance]:
+    """Parts of a system without foreign ones, as `linear_network` has them."""
+    return [member for member in linear_network(system)[1] if isinstance(member, Instance)]
+
+
 def real_parts(system: System, strangers: Strangers = NO_STRANGERS) -> list[Instance | Part]:
     """Parts of a system at its start values, for a run: instances, and fresh foreign parts.
 

@@ -8,6 +8,7 @@ of those that have died out or have turned by more than half a circle.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -43,6 +44,10 @@ _ALIKE = 1e-7
 _QUIET = 1e-9
 """Answers below this share of an output are rounding."""
 _SEED = 12
+_SECONDS = 1.0
+"""That trials with steps of one length may take, about; longer steps are left out if these do."""
+_WORTH = 2.0
+_FEWEST_FRESH = 6
 
 
 @dataclass(frozen=True)
@@ -82,6 +87,7 @@ class Surrogate:
         pairs = zip(lab.inputs, lab.start, strict=True)
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
         self._loud = 1.0
+        self._rate = 0.0  # seconds that a simulated second takes
         self._residuals, self._steps = dict[float, float](), dict[float, Step]()
         self.model: LinearModel | None = None
         self.base, self.why = lab.step, ""
@@ -90,6 +96,8 @@ class Surrogate:
                 self._identify()
         except Refused as error:
             self.why = f"trials are not possible: {error}"
+        except np.linalg.LinAlgError as error:
+            self.why = f"its answers make no linear system: {error}"
 
     @property
     def order(self) -> int:
@@ -129,13 +137,22 @@ class Surrogate:
             fit, next_step = self._fitted(h)
             if fit is not None and (best is None or fit.residual < best.residual):
                 best = fit
-            if next_step == h:
+            h, before = self._affordable(h, next_step), h
+            if h == before:
                 break
-            h = next_step
         if best is None:
             self.why = "its answers to pulses are those of no linear system in continuous time"
             return
         self.model, self.base = best.model, best.base
+
+    def _affordable(self, h: float, wanted: float) -> float:
+        """A longer step as far as its trials may take, the same one if that is not far."""
+        if wanted <= h:
+            return wanted
+        count = len(self._lab.inputs)
+        steps = (1 + count) * (1 + sum(blocks(count, len(self._lab.outputs))))
+        longest = _SECONDS / max(steps * self._rate, 1e-300)
+        return min(wanted, longest) if longest > _WORTH * h else h
 
     def _loudest(self, h: float) -> float:
         """How much larger changes may be that are answered alike."""
@@ -202,7 +219,10 @@ class Surrogate:
 
     def _fresh(self, h: float) -> tuple[np.ndarray, np.ndarray]:
         """Inputs (steps, n) in amplitudes that are fitted nowhere, and outputs over their sizes."""
-        inputs = _stirring(len(self._lab.inputs))
+        steps = int(
+            np.clip(_SECONDS / max(2.0 * h * self._rate, 1e-300), _FEWEST_FRESH, _FRESH_STEPS)
+        )
+        inputs = _stirring(len(self._lab.inputs))[:steps]
         rest = self._run(np.zeros_like(inputs), h)
         return inputs, (self._run(self._loud * inputs, h) - rest) / self._loud / self._sizes
 
@@ -211,8 +231,13 @@ class Surrogate:
         return _relative(step.answers(inputs * self.amplitudes) / self._sizes, truth)
 
     def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
-        """(steps, m) outputs on changes (steps, n), in amplitudes."""
-        return self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
+        """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
+        begun = perf_counter()
+        found = self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
+        self._rate = (perf_counter() - begun) / (len(inputs) * h)
+        if not np.isfinite(found).all():
+            raise Refused("its outputs are not finite")
+        return found
 
 
 def _rules(

@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.analysis.stability.surrogate import Surrogate
 from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.part import Addresses, Part, PartVariable, Value
+from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.cosim.nodal import NodalPart
 from herringbone.kernels import fmi_calls
 from herringbone.kernels.linear_step import HEADER, KNOWN, linear_step, map_length
@@ -115,9 +115,9 @@ class SurrogatePart:
         self._states[-1][0] = count
         return self._states[-1].ctypes.data
 
-    def set(self, name: str, value: float | str) -> None:
+    def set(self, name: str, value: Given) -> None:
         """Set a variable."""
-        self._memory[self.variables[name].reference] = float(value)
+        self._memory[self.variables[name].reference] = value
 
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables."""
@@ -164,13 +164,15 @@ class StandIn:
 
     def __init__(self, stranger: Stranger) -> None:
         real = stranger.part
-        nodal = isinstance(real, NodalPart)
         self.surrogate = stranger.surrogate
-        self._inner = SurrogatePart(real.part if nodal else real, stranger.surrogate)
-        self.part: Part = real.in_front_of(self._inner, linear=True) if nodal else self._inner
+        self._nodal = isinstance(real, NodalPart)
+        inside = real.part if isinstance(real, NodalPart) else real
+        self._inner = SurrogatePart(inside, stranger.surrogate)
+        self.part: Part = self._inner
+        if isinstance(real, NodalPart):
+            self.part = real.in_front_of(self._inner, linear=True)
         self.name, self.values = real.name, self._inner.values
         self.state_changes = [1.0] * self._inner.state_count
-        self._nodal = nodal
 
     def prepare(self, step: float, degree: int) -> None:
         """Make ready for macro steps at an interface degree; lengths are learnt as they come."""
