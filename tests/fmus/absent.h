@@ -4,7 +4,9 @@
     EXPORT Status fmi2##name(void) { return ERROR; }
 ABSENT(GetInteger) ABSENT(GetBoolean) ABSENT(GetString)
 ABSENT(SetInteger) ABSENT(SetBoolean) ABSENT(SetString)
+#ifndef WITH_STATES
 ABSENT(GetFMUstate) ABSENT(SetFMUstate) ABSENT(FreeFMUstate)
+#endif
 ABSENT(SerializedFMUstateSize) ABSENT(SerializeFMUstate) ABSENT(DeSerializeFMUstate)
 ABSENT(GetDirectionalDerivative) ABSENT(SetRealInputDerivatives) ABSENT(GetRealOutputDerivatives)
 ABSENT(CancelStep) ABSENT(GetStatus) ABSENT(GetRealStatus) ABSENT(GetIntegerStatus)

@@ -43,8 +43,11 @@ enum { DOFS = 12, OK = 0, ERROR = 3 };
 #ifndef SPEED /* factor of the velocities shown */
 #define SPEED 1.0
 #endif
+#ifndef LONGEST /* s, inner step */
+#define LONGEST 1e-6
+#endif
 
-static const double MASS = 40.0, DAMPING_TIME = 5e-6, LONGEST = 1e-6;
+static const double MASS = 40.0, DAMPING_TIME = 5e-6;
 /* Toward the wheel, up, along the shafts. */
 static const double STIFFNESS[3] = {7e8, 7e8, 1.5e8}, COUPLING[3] = {1e8, 1e8, 8e7};
 
@@ -131,4 +134,21 @@ EXPORT Status fmi2EnterInitializationMode(Component c) { return OK; }
 EXPORT Status fmi2ExitInitializationMode(Component c) { return OK; }
 EXPORT Status fmi2Terminate(Component c) { return OK; }
 
+#ifdef SAVES /* its states */
+EXPORT Status fmi2GetFMUstate(Component c, void **state) {
+    if (*state == NULL) *state = malloc(sizeof(Housing));
+    memcpy(*state, c, sizeof(Housing));
+    return OK;
+}
+EXPORT Status fmi2SetFMUstate(Component c, void *state) {
+    memcpy(c, state, sizeof(Housing));
+    return OK;
+}
+EXPORT Status fmi2FreeFMUstate(Component c, void **state) {
+    free(*state);
+    *state = NULL;
+    return OK;
+}
+#define WITH_STATES
+#endif
 #include "absent.h"

@@ -10,8 +10,9 @@ SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"
 DOFS = list(product(HALVES, "xyz"))
 
 
-def description(*, units=None, without=()) -> str:
+def description(*, units=None, without=(), saves=False) -> str:
     """The modelDescription.xml; `units` replaces some by name, `without` leaves variables out."""
+    states = ' canGetAndSetFMUstate="true"' if saves else ""
     kinds = (("f", "N", "input"), ("s", "m", "output"), ("v", "m/s", "output"))
     variables, outputs = [], []
     for group, (quantity, unit, causality) in enumerate(kinds):
@@ -29,7 +30,7 @@ def description(*, units=None, without=()) -> str:
                 outputs.append(f'<Unknown index="{len(variables)}" dependencies=""/>')
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="c_housing" guid="c" numberOfEventIndicators="0">
-<CoSimulation modelIdentifier="c_housing" canHandleVariableCommunicationStepSize="true"/>
+<CoSimulation modelIdentifier="c_housing" canHandleVariableCommunicationStepSize="true"{states}/>
 <UnitDefinitions>
 <Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
 <Unit name="m"><BaseUnit m="1"/></Unit>

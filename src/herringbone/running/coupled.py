@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
 from herringbone.core.activity import activity
+from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
@@ -74,6 +75,7 @@ class Coupled(NamedTuple):
         algorithm: that was chosen.
         once: a part can be instantiated once only.
         exchanged: outputs of foreign parts that other parts take.
+        holds: a foreign part holds its inputs over a step, which leaves the first order.
     """
 
     result: Result
@@ -82,6 +84,7 @@ class Coupled(NamedTuple):
     algorithm: Algorithm
     once: bool
     exchanged: tuple[str, ...]
+    holds: bool
 
 
 def coupled(
@@ -139,7 +142,14 @@ def coupled(
         if recorded:
             recorded(result)
         once, exchanged = any(part.once for part in opened), _exchanged(system, parts)
-    return Coupled(result, every, recording, algorithm, once, exchanged)
+        holds = any(s.foreign and _holds(part) for s, part in zip(system.parts, parts, strict=True))
+    return Coupled(result, every, recording, algorithm, once, exchanged, holds)
+
+
+def _holds(part: Part) -> bool:
+    """True if a part takes no signals inside a step, and has inputs."""
+    takes = INTERFACE_DEGREE in part.variables or bool(part.addresses.set_derivatives)
+    return not takes and any(v.causality == "input" for v in part.variables.values())
 
 
 def _exchanged(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
