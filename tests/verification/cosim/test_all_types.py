@@ -84,6 +84,7 @@ def test_all_types_are_recorded_without_loss(files, name, tmp_path):
         expected = np.float32(value) if kind == "Float32" else value
         assert (column == expected).all()
         assert str(column.dtype) == TYPES.get(kind, str(column.dtype))
+    assert (result.units["p.Float32_out"], result.units["p.Int8_out"]) == ("mm", "")
     result.to_csv(tmp_path / "r.csv")
     kinds = {f"p.{kind}_out": found for kind, found in TYPES.items()}
     again = pd.read_csv(tmp_path / "r.csv", comment="#", dtype={**kinds, "p.Binary_out": str})

@@ -222,7 +222,7 @@ class PreparedNodes(PreparedRun):
             self._buffers.scale[:] = SMALLEST
             grow_scale(self.nodes, self._buffers)
         done, end = chunk.start, chunk.start + chunk.count
-        if self._correction.size == 0 and (status := self._refresh(self._buffers, chunk)) != DONE:
+        if not self.jacobians and (status := self._refresh(self._buffers, chunk)) != DONE:
             return status, done, -1
         while True:
             patient = self.newton and done < self._next_refresh
