@@ -12,7 +12,7 @@
    handled in event mode if it is used, else in the step. Parameter 212: time of the end, 0 never;
    213: the discrete states never settle, if not 0. 214: discrete Float64 input, 215 its output.
    While event mode is used, discrete inputs are refused outside; after initialisation the value 13
-   of the input of UInt64. */
+   of the input of UInt64. With the token "no events" it does not instantiate with event mode. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -60,6 +60,10 @@ EXPORT void *fmi3InstantiateCoSimulation(
     const char *name, const char *token, const char *resources, bool visible, bool logging,
     bool events_used, bool early_allowed, const Reference *needed, size_t count, void *environment,
     Log log, void *update) {
+    if (events_used && !strcmp(token, "no events")) {
+        if (log) log(environment, ERROR, "error", "event mode is not supported");
+        return NULL;
+    }
     Part *part = calloc(1, sizeof(Part));
     part->events_used = events_used;
     part->early_allowed = early_allowed;

@@ -14,7 +14,7 @@ EVENTS = 'hasEventMode="true" mightReturnEarlyFromDoStep="true"'
 
 def _pair(place: int, kind: str) -> str:
     """Input and output of a type."""
-    more = ' declaredType="Gear"' if kind == "Enumeration" else ""
+    more = {"Enumeration": ' declaredType="Gear"', "Float32": ' unit="mm"'}.get(kind, "")
     variability = "continuous" if kind == "Float32" else "discrete"
     start = {"Boolean": "false", "Enumeration": "1"}.get(kind, "0")
     given = f'start="{start}"/>'
@@ -40,6 +40,7 @@ def description(abilities: str = "") -> str:
 <fmiModelDescription fmiVersion="3.0" modelName="all_types" instantiationToken="t">
 <CoSimulation modelIdentifier="all_types" canHandleVariableCommunicationStepSize="true"
  canGetAndSetFMUState="true" {abilities}/>
+<UnitDefinitions><Unit name="mm"><BaseUnit m="1" factor="1e-3"/></Unit></UnitDefinitions>
 <TypeDefinitions><EnumerationType name="Gear"><Item name="first" value="1"/>
 <Item name="second" value="2"/></EnumerationType></TypeDefinitions>
 <ModelVariables>

@@ -48,7 +48,7 @@ ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
     "llvmlite": {
         "cosim/loops/calls.py",
-        "cosim/fmu/fmi3_calls.py",
+        "cosim/fmu/fmi3_steps.py",
         "fmi/native/objects.py",
         "kernels/linking.py",
     },

@@ -52,6 +52,13 @@ class OtherSignals:
         return [f"{part.name}.{name}" for part, names in pairs for name in names]
 
     @property
+    def units(self) -> dict[str, str]:
+        """Units of recorded outputs, "" where none is declared."""
+        pairs = zip(self._parts, self._recorded, strict=True)
+        units = [part.variables[name].unit or "" for part, names in pairs for name in names]
+        return dict(zip(self.names, units, strict=True))
+
+    @property
     def connected(self) -> bool:
         """True if there is something to exchange after every macro step."""
         return bool(self._connections)

@@ -46,6 +46,7 @@ class Recording:
         energy: what the coupling added; None where no element has dampers.
         slow: bodies that step once in several macro steps, and in how many.
         others: recorded outputs of other types than real, (n,) of their own types by name.
+        other_units: units of these, "" if not declared.
     """
 
     time: np.ndarray
@@ -64,3 +65,4 @@ class Recording:
     energy: EnergyReport | None = None
     slow: Mapping[str, int] = field(default_factory=dict)
     others: Mapping[str, np.ndarray] = field(default_factory=dict)
+    other_units: Mapping[str, str] = field(default_factory=dict)

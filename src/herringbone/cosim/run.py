@@ -262,6 +262,7 @@ class Run:
             self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
             self.others.columns(times.size),
+            self.others.units,
         )
 
     def _with_end(

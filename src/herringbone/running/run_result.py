@@ -77,7 +77,7 @@ def make_result(
         anatomy=known,
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
-    units |= dict.fromkeys(recording.others, "")
+    units |= recording.other_units
     return Result(data, units, recording.outcome, info, system.channels)
 
 

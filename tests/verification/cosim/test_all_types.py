@@ -84,6 +84,7 @@ def test_all_types_are_recorded_without_loss(files, name, tmp_path):
         expected = np.float32(value) if kind == "Float32" else value
         assert (column == expected).all()
         assert str(column.dtype) == TYPES.get(kind, str(column.dtype))
+    assert (result.units["p.Float32_out"], result.units["p.Int8_out"]) == ("mm", "")
     result.to_csv(tmp_path / "r.csv")
     kinds = {f"p.{kind}_out": found for kind, found in TYPES.items()}
     again = pd.read_csv(tmp_path / "r.csv", comment="#", dtype={**kinds, "p.Binary_out": str})
@@ -302,14 +303,33 @@ def test_events_inside_a_step_do_not_change_what_is_integrated(files):
     assert result.data["p.y[2]"].iloc[-1] == pytest.approx(2.0, rel=1e-12)
 
 
+def edited_copy(file, folder, old, new):
+    """The FMU alone, with another description."""
+    with zipfile.ZipFile(file) as whole, zipfile.ZipFile(folder / "x.fmu", "w") as copy:
+        for name in whole.namelist():
+            data = whole.read(name)
+            copy.writestr(name, data.replace(old, new) if name.endswith(".xml") else data)
+    return alone(folder / "x.fmu")
+
+
+def test_event_mode_that_is_declared_and_refused_is_not_used(files, tmp_path):
+    system = edited_copy(files["events"], tmp_path, b'Token="t"', b'Token="no events"')
+    result = run(system, {"every": 0.13})
+    assert result.outcome.completed
+    assert result.data["p.events"].iloc[-1] == 7
+
+
+def test_adaptive_run_ends_where_a_part_ends(files):
+    system = two(files["plain"], ("a.y", "b.u"), ("b.y", "a.u"))
+    options = {"algorithm": "li", "tolerance": 1e-3, "step": 0.01, "record_step": 1e-3}
+    result = run(system, {"b.end": 0.1}, t_end=0.2, **options)
+    assert (result.outcome.kind, result.outcome.culprit) == (OutcomeKind.ENDED, "b")
+    assert result.outcome.time == pytest.approx(0.1, rel=1e-9)
+
+
 def test_descriptions_that_are_refused(files, tmp_path):
     def edited(old, new):
-        file = tmp_path / "x.fmu"
-        with zipfile.ZipFile(files["plain"]) as whole, zipfile.ZipFile(file, "w") as copy:
-            for name in whole.namelist():
-                data = whole.read(name)
-                copy.writestr(name, data.replace(old, new) if name.endswith(".xml") else data)
-        return alone(file)
+        return edited_copy(files["plain"], tmp_path, old, new)
 
     clock = b'<Clock name="tick" valueReference="300" causality="input"'
     clock += b' intervalVariability="triggered"/></ModelVariables>'

@@ -119,6 +119,7 @@ class PreparedNodes(PreparedRun):
         self._correction = np.empty((0, 0))
         self._next_refresh = 0
         self.jacobians = 0
+        self._corrected = False
         self.problem = ""
 
     def _node_layout(self, degree: int) -> NodeLayout:
@@ -256,7 +257,7 @@ class PreparedNodes(PreparedRun):
             self._buffers.scale[:] = SMALLEST
             grow_scale(self.nodes, self._buffers)
         done, end = chunk.start, chunk.start + chunk.count
-        if self._correction.size == 0 and (status := self._refresh(self._buffers, chunk)) != DONE:
+        if not self._corrected and (status := self._refresh(self._buffers, chunk)) != DONE:
             return status, done, -1
         while True:
             patient = self.newton and done < self._next_refresh
@@ -283,6 +284,7 @@ class PreparedNodes(PreparedRun):
         self.jacobians += 1
         if not self.newton:
             self._correction = np.eye(self.nodes.degree * self.nodes.unknown.size)
+            self._corrected = True
             return DONE
         try:
             found = self.jacobian.measure(buffers, buffers.scale, t, h, done + 1)
@@ -290,4 +292,5 @@ class PreparedNodes(PreparedRun):
         except CouplingError as error:
             self.problem = str(error)
             return COUPLING_FAILED
+        self._corrected = True
         return DONE

@@ -10,7 +10,7 @@ from fmpy.fmi3 import FMU3Slave
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import STRUCTURE, Addresses, Given, Value
-from herringbone.cosim.fmu import fmi3_calls
+from herringbone.cosim.fmu import fmi3_calls, fmi3_memory, fmi3_steps
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.variables import Element, read_elements, read_variables
@@ -32,10 +32,10 @@ _FUNCTIONS = {
     "enter_steps": "fmi3EnterStepMode",
 }
 _ENDS = {
-    fmi3_calls.ENDED: "it asks to end the simulation",
-    fmi3_calls.EARLY: "it ended its step early, which it may not without event mode, or again and "
+    fmi3_memory.ENDED: "it asks to end the simulation",
+    fmi3_memory.EARLY: "it ended its step early, which it may not without event mode, or again and "
     "again",
-    fmi3_calls.STUCK: "its discrete states do not settle: fmi3UpdateDiscreteStates wants one more "
+    fmi3_memory.STUCK: "its discrete states do not settle: fmi3UpdateDiscreteStates wants one more "
     "call again and again",
 }
 """Why no step follows."""
@@ -75,14 +75,14 @@ class Fmu3Part(FmuPart):
                 )
                 for e in elements
             ],
-            fmi3_calls.ELEMENT,
+            fmi3_memory.ELEMENT,
         )
         self._values = np.array([_start(e) for e in elements], np.float64)
         self._references = np.zeros(count, np.uint32)
         self._packed = np.zeros(count)
         arrays = {e.first for e in elements if e.size > 1 and e.variable.causality == "input"}
         self._arrays = np.array(sorted(arrays), np.uint32)
-        self._memory = np.zeros(1, fmi3_calls.MEMORY)
+        self._memory = np.zeros(1, fmi3_memory.MEMORY)
         self._memory["count"] = count
         self._memory["elements"] = self._elements.ctypes.data
         self._memory["values"] = self._values.ctypes.data
@@ -127,7 +127,7 @@ class Fmu3Part(FmuPart):
 
         FMI 3.0 has no input derivatives.
         """
-        functions = [fmi3_calls.set_real, fmi3_calls.get_real, fmi3_calls.do_step]
+        functions = [fmi3_calls.set_real, fmi3_calls.get_real, fmi3_steps.do_step]
         if self.model.coSimulation.canGetAndSetFMUstate:
             functions += [fmi3_calls.get_state, fmi3_calls.set_state, fmi3_calls.free_state]
         found = Addresses(self._memory.ctypes.data, *(f.address for f in functions))
@@ -186,12 +186,12 @@ class Fmu3Part(FmuPart):
         for _ in range(_MOST_EVENTS):
             more, ends, *_ = self.slave.updateDiscreteStates()
             if ends:
-                self._memory["ended"] = fmi3_calls.ENDED
+                self._memory["ended"] = fmi3_memory.ENDED
             if ends or not more:
                 self.slave.enterStepMode()
                 self._memory["events"] = 1
                 return
-        raise FmuError(f"{self.name}: {_ENDS[fmi3_calls.STUCK]}")
+        raise FmuError(f"{self.name}: {_ENDS[fmi3_memory.STUCK]}")
 
     def _write(self, references: list[int], values: list[float]) -> None:
         numbers = (c_uint32 * len(references))(*references)
@@ -235,7 +235,7 @@ class Fmu3Part(FmuPart):
 
     def ended(self) -> float | None:
         """Time at which the FMU asked to end the simulation [s]; None if it did not."""
-        return float(self._reached[0]) if self._memory["ended"][0] == fmi3_calls.ENDED else None
+        return float(self._reached[0]) if self._memory["ended"][0] == fmi3_memory.ENDED else None
 
     def messages(self) -> list[str]:
         """Warnings and errors logged since the last call, and why no step follows."""

@@ -9,7 +9,7 @@ from ctypes import CFUNCTYPE, POINTER, c_bool, c_double, c_int, c_size_t, c_uint
 import numpy as np
 import pytest
 
-from herringbone.cosim.fmu import fmi3_calls
+from herringbone.cosim.fmu import fmi3_calls, fmi3_memory, fmi3_steps
 
 A, B1, B3, C = 0, 1, 3, 4
 SIZES = {7: 1, 9: 3, 4: 1}
@@ -41,11 +41,11 @@ class Fmi3:
         )  # fmt: skip
         rows = [(7, 0, 1, 0, 0), *[(9, 1, 3, 0, 0)] * 3, (4, 4, 1, 0, 1)]
         self.arrays = (
-            np.array(rows, fmi3_calls.ELEMENT), np.array([1.0, 2.0, 3.0, 4.0, 5.0]),
+            np.array(rows, fmi3_memory.ELEMENT), np.array([1.0, 2.0, 3.0, 4.0, 5.0]),
             np.zeros(5, np.uint32), np.zeros(5), np.array([B1], np.uint32),
             np.zeros(1), np.zeros(2),
         )  # fmt: skip
-        self.memory = np.zeros(1, fmi3_calls.MEMORY)
+        self.memory = np.zeros(1, fmi3_memory.MEMORY)
         self.memory["count"], self.memory["instance"], self.memory["array_count"] = 5, 42, 1
         for place, function in zip(
             ("set_float64", "get_float64", "do_step", "set_state", "enter_events", "enter_steps",
@@ -133,7 +133,7 @@ def test_array_of_a_restored_state_is_kept_but_for_what_is_set():
 
 
 def step(part):
-    return STEP_2(fmi3_calls.do_step.address)(part.memory.ctypes.data, 0.5, 0.25, 1)
+    return STEP_2(fmi3_steps.do_step.address)(part.memory.ctypes.data, 0.5, 0.25, 1)
 
 
 EVENT, TERMINATE, EARLY = (True, False, False), (False, True, False), (False, False, True)
@@ -143,12 +143,12 @@ ONWARDS = (OK, False, False, False)
 @pytest.mark.parametrize(
     ("result", "status", "ended"),
     [
-        (ONWARDS, OK, fmi3_calls.RUNS),
-        ((OK, *TERMINATE), OK, fmi3_calls.ENDED),
-        ((OK, *EARLY), DISCARD, fmi3_calls.EARLY),
-        ((OK, False, True, True), DISCARD, fmi3_calls.ENDED),
-        ((ERROR, *EARLY), ERROR, fmi3_calls.RUNS),
-        ((DISCARD, False, False, False), DISCARD, fmi3_calls.RUNS),
+        (ONWARDS, OK, fmi3_memory.RUNS),
+        ((OK, *TERMINATE), OK, fmi3_memory.ENDED),
+        ((OK, *EARLY), DISCARD, fmi3_memory.EARLY),
+        ((OK, False, True, True), DISCARD, fmi3_memory.ENDED),
+        ((ERROR, *EARLY), ERROR, fmi3_memory.RUNS),
+        ((DISCARD, False, False, False), DISCARD, fmi3_memory.RUNS),
     ],
 )
 def test_step_without_event_mode(result, status, ended):
@@ -187,7 +187,7 @@ def test_event_at_the_end_of_a_step():
     part.updates = [(False, True)]
     assert step(part) == OK
     assert part.modes == ["events", "update", "steps"]
-    assert part.memory["ended"][0] == fmi3_calls.ENDED
+    assert part.memory["ended"][0] == fmi3_memory.ENDED
     assert len(part.steps) == 1
 
 
@@ -198,7 +198,7 @@ def test_endless_events_end(endless):
     part.step_results = [(OK, True, False, endless == "step")]
     part.share, part.updates = 0.0, [(endless == "update", False)]
     assert step(part) == (ERROR if endless == "update" else DISCARD)
-    why = fmi3_calls.STUCK if endless == "update" else fmi3_calls.EARLY
+    why = fmi3_memory.STUCK if endless == "update" else fmi3_memory.EARLY
     assert part.memory["ended"][0] == why
 
 
