@@ -15,6 +15,7 @@ from herringbone.core import FmuError
 from herringbone.core.activity import activity
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
 from herringbone.cosim.structure.rates import motion_of_force
@@ -121,7 +122,8 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
-        part.signature = signature
+        if isinstance(part, FmuPart):
+            part.signature = signature
         return part, lines
     nodal = NodalPart(part, signature)
     lines.append(_coupled_as(signature, repeats=not nodal.answers_again))
