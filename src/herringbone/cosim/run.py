@@ -225,8 +225,9 @@ class Run:
         try:
             found = zip(names, part.get(names), strict=True)
             bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
+            fed = bad.partition(".node")[0]
             for c in self.network.inputs(culprit):
-                if c.input == bad and not abs(parts[c.source].get([c.output])[0]) < BOUND:
+                if c.input == fed and not abs(parts[c.source].get([c.output])[0]) < BOUND:
                     return f"{parts[c.source].name}.{c.output}", value
         except HerringboneError:
             return "", 0.0
