@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import matrix_balance
 from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
@@ -31,8 +32,10 @@ _BLAS = ThreadpoolController()
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
-RIGID_STRANGERS = 3e-5
-"""The same with foreign parts, whose models are known to about 1e-9 of their answers."""
+NOISE = 1e-8
+"""Error of a matrix with foreign parts in it, over its size: of models, and of differences."""
+_SAMPLES, _MARGIN = 2, 3.0
+_TURNED = 0.02
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
 _SLOW = 0.3
@@ -62,17 +65,21 @@ class Growth:
     mirror_radius: float = 0.0
 
 
-def growth_of(matrix: np.ndarray, step: float, rigid: float = RIGID) -> Growth:
+def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
 
     Args:
         matrix: of the step.
         step: its length [s].
-        rigid: distance from 1 of eigenvalues that are left out.
+        noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
+            out like 1 itself.
     """
     with _BLAS.limit(limits=1, user_api="blas"):
-        eigenvalues = np.linalg.eigvals(matrix)
-    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > rigid]
+        if noise > 0.0:
+            eigenvalues, known = _with_errors(matrix, noise)
+        else:
+            eigenvalues, known = np.linalg.eigvals(matrix), np.zeros(1)
+    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)]
     sizes = np.abs(eigenvalues)
     if sizes.size == 0:
         return Growth(0.0, 0.0, 0.0)
@@ -82,6 +89,22 @@ def growth_of(matrix: np.ndarray, step: float, rigid: float = RIGID) -> Growth:
     fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
     mirror = float(sizes[angles == np.pi].max(initial=0.0))
     return Growth(float(sizes[largest]), frequency, fast, mirror)
+
+
+def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, and how far errors of the matrix move each: as far as random ones of the size.
+
+    Double eigenvalues go by the square root of an error, which no condition number tells.
+    """
+    scaled, _ = matrix_balance(matrix)
+    values = np.linalg.eigvals(scaled)
+    random = np.random.default_rng(0)
+    moved = np.zeros(len(values))
+    size = noise * np.linalg.norm(scaled, 2) / np.sqrt(len(values))
+    for _ in range(_SAMPLES):
+        other = np.linalg.eigvals(scaled + size * random.standard_normal(scaled.shape))
+        moved = np.maximum(moved, np.abs(values[:, None] - other).min(axis=1))
+    return values, _MARGIN * moved
 
 
 class Amplification:
@@ -102,7 +125,7 @@ class Amplification:
     ) -> None:
         self._parts = [linear_part(member) for member in members]
         foreign = any(isinstance(member, StandIn) for member in members)
-        self._rigid = RIGID_STRANGERS if foreign else RIGID
+        self._noise = NOISE if foreign else 0.0
         self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
@@ -136,7 +159,13 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        return growth_of(self.matrix(step), step, self._rigid)
+        matrix = self.matrix(step)
+        found = growth_of(matrix, step, self._noise)
+        turned = 2.0 * np.pi * found.frequency * step
+        if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
+            # Slow growth may be free rotation that the models of foreign parts know too little of.
+            return growth_of(matrix, step, max(self._noise, min(self.residual, 1.0)))
+        return found
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -165,7 +194,7 @@ class Amplification:
         matrix = self.matrix(step)
         with _BLAS.limit(limits=1, user_api="blas"):
             eigenvalues, vectors = np.linalg.eig(matrix)
-        sizes = np.where(np.abs(eigenvalues - 1.0) > self._rigid, np.abs(eigenvalues), 0.0)
+        sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
         used = np.empty(0, int) if self._used is None else self._used
         vector = vector / np.abs(vector / self._change[used]).max()

@@ -221,8 +221,13 @@ def step_limits(
     algorithm: Algorithm,
     progress: Progress | None = None,
     strangers: Strangers = NO_STRANGERS,
+    *,
+    again: bool = True,
 ) -> StepLimits:
-    """Unstable steps of an algorithm at mean mesh stiffness, and its limit at all stiffnesses."""
+    """Unstable steps of an algorithm at mean mesh stiffness, and its limit at all stiffnesses.
+
+    Foreign parts are identified once more, at the limit, if what stands for them misses them there.
+    """
     alone = len(strangers) == len(system.parts)
     largest = _LARGEST_OF_STRANGERS if alone else LARGEST_STEP
 
@@ -253,6 +258,10 @@ def step_limits(
         if has_mesh and bands:
             found[extreme.value] = first_unstable_near(growth_of(amplification_at(extreme)), first)
     residual = _residual(amplification, strangers, min(found.values()))
+    if residual > PROMISED and again and np.isfinite(first):
+        for stranger in strangers.values():
+            stranger.surrogate.look_at(first)
+        return step_limits(system, algorithm, progress, strangers, again=False)
     return StepLimits(str(algorithm), bands, found, frequency, residual=residual, largest=largest)
 
 

@@ -7,7 +7,7 @@ of those that have died out or have turned by more than half a circle.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -52,7 +52,7 @@ _FEWEST_FRESH = 6
 
 @dataclass(frozen=True)
 class _Fit:
-    """A model, and how well the step that it was made at answers to other inputs."""
+    """A model, and how far its steps are from answers to other inputs."""
 
     model: LinearModel
     residual: float
@@ -90,10 +90,16 @@ class Surrogate:
         self._rate = 0.0  # seconds that a simulated second takes
         self._residuals, self._steps = dict[float, float](), dict[float, Step]()
         self.model: LinearModel | None = None
-        self.base, self.why = lab.step, ""
+        self.base = lab.step
+        self.look_at(lab.step)
+
+    def look_at(self, h: float) -> None:
+        """Identify the part for steps of about h [s]; a former model stays if there is none."""
+        self._residuals, self._steps = {}, {}
+        self.why = ""
         try:
             with _BLAS.limit(limits=1, user_api="blas"):
-                self._identify()
+                self._identify(h)
         except Refused as error:
             self.why = f"trials are not possible: {error}"
         except np.linalg.LinAlgError as error:
@@ -126,22 +132,26 @@ class Surrogate:
                 self._residuals[h] = np.inf
         return self._residuals[h]
 
-    def _identify(self) -> None:
-        """Look for the base step that resolves the motions."""
-        h, best, tried = self._lab.step, None, set[float]()
+    def _identify(self, asked: float) -> None:
+        """Look for the base step that resolves the motions, and meets steps of a length [s]."""
+        h, best, tried = asked, None, set[float]()
         self._loud = self._loudest(h)
         for _ in range(_TRIED_STEPS):
             if h in tried or not _SHORTEST <= h <= _LONGEST:
                 break
             tried.add(h)
             fit, next_step = self._fitted(h)
+            if fit is not None and h != asked:
+                missed = self._missed(fit.model.over(asked), asked)
+                fit = replace(fit, residual=max(fit.residual, missed))
             if fit is not None and (best is None or fit.residual < best.residual):
                 best = fit
             h, before = self._affordable(h, next_step), h
             if h == before:
                 break
         if best is None:
-            self.why = "its answers to pulses are those of no linear system in continuous time"
+            if self.model is None:
+                self.why = "its answers to pulses are those of no linear system in continuous time"
             return
         self.model, self.base = best.model, best.base
 
