@@ -25,7 +25,7 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
-from herringbone.running.foreign_parts import understood
+from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.prepared import Wishes, prepared
 

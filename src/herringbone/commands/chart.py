@@ -27,9 +27,9 @@ from herringbone.cosim.record import Grid
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
-from herringbone.running.foreign_parts import alike, understood
-from herringbone.running.gears import Gear
+from herringbone.running.foreign.foreign_parts import alike, understood
 from herringbone.running.loading import instances, open_parts
+from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 
 LEVELS = (1e-2, 1e-3)

@@ -78,7 +78,7 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     from herringbone.commands.contract import own_step  # noqa: PLC0415 (numba)
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign_parts import signature_of  # noqa: PLC0415
+    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415
 
     try:
         with many_of(fmu.stem, fmu) as make:

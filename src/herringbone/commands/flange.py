@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
-    from herringbone.running.hosted_flange import HostedFlange
+    from herringbone.running.foreign.hosted_flange import HostedFlange
 
 _WIDTH = 100
 _NAMES = {
@@ -68,7 +68,7 @@ def flange_limits(options: argparse.Namespace) -> str:
         HerringboneError: something about the input is wrong, or trials tell nothing of the FMU.
     """
     from herringbone.analysis.stability.hosted_flange import Host  # noqa: PLC0415 (numba)
-    from herringbone.running.hosted_flange import hosted_flange  # noqa: PLC0415
+    from herringbone.running.foreign.hosted_flange import hosted_flange  # noqa: PLC0415
 
     host = Host(options.inertia, options.stiffness or 0.0, options.damping or 0.0)
     found = hosted_flange(Path(options.system), options.flange, host)

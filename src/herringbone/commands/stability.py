@@ -41,8 +41,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
+    from herringbone.running.foreign.surrogates import opened_surrogates, under_load  # noqa: PLC0415
     from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
-    from herringbone.running.surrogates import opened_surrogates, under_load  # noqa: PLC0415
     from herringbone.scenes import Start  # noqa: PLC0415
 
     if flange.is_asked(options):

@@ -17,12 +17,12 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, coupled
-from herringbone.running.gears import Gear
+from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress
 from herringbone.running.run_result import compared
-from herringbone.running.step_search import searched, searched_tolerance
-from herringbone.running.verification import (
+from herringbone.running.steps.step_search import searched, searched_tolerance
+from herringbone.running.steps.verification import (
     can_be_verified,
     check_fixed_step,
     verified,
@@ -65,7 +65,7 @@ def run(
             adaptive step goes down to 1/200 of it.
         tolerance: relative error (see `analysis.accuracy.error`) for which `li` adapts its step, as
             in "li:tolerance=1e-3"; with foreign parts the step is fixed, and found by several runs
-            with any algorithm, see `running.step_search`.
+            with any algorithm, see `running.steps.step_search`.
         slow: heavy bodies that step once in several macro steps, and in how many, such as
             {"motor": 5}; the others see their predicted motion.
         t_end: duration [s]; the scene's if not given.
@@ -80,11 +80,11 @@ def run(
             belong to it; of several pairs: by path.
         housing: folder of modal data, dimensions of a welded housing (TOML) or FMU; of several
             housings: by path.
-        probe: find out by trial steps what foreign FMUs are, see `running.foreign_parts`; False:
+        probe: find out by trial steps what foreign FMUs are, see `running.foreign`; False:
             they are taken by what they declare.
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
-            apart both are, see `running.verification`; for systems that have no twin.
+            apart both are, see `running.steps.verification`; for systems that have no twin.
         progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and

@@ -25,12 +25,12 @@ from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
-from herringbone.running.foreign_parts import understood
+from herringbone.running.foreign.foreign_parts import understood
+from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
 from herringbone.running.run_result import decimated, judged, make_result
-from herringbone.running.suited_step import suited_step
-from herringbone.running.surrogates import surrogates_of, under_load
+from herringbone.running.steps.suited_step import suited_step
 from herringbone.scenes import Scene
 
 _log = logging.getLogger(__name__)

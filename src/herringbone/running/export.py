@@ -14,7 +14,7 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
-from herringbone.running.gears import Gear
+from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
 

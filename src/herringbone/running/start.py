@@ -7,7 +7,7 @@ from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
 from herringbone.core.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
-from herringbone.running.carrying_flank import loaded_start
+from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.scenes import Scene, Start
 
 LOAD_RAMP_TIME = 0.02

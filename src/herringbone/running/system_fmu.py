@@ -10,7 +10,7 @@ from herringbone.core import ParameterError
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.running.export import ready, written
-from herringbone.running.gears import Gear
+from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named
 from herringbone.scenes import Scene
 

@@ -9,7 +9,7 @@ from herringbone.analysis.stability.hosted_flange import Host
 from herringbone.commands import main as cli
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature.trial import Trial
-from herringbone.running.hosted_flange import hosted_flange
+from herringbone.running.foreign.hosted_flange import hosted_flange
 
 HOST = Host(2.0, 500.0, 1.0)
 WITHIN = 0.02

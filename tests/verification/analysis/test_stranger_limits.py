@@ -19,8 +19,8 @@ from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.commands import main as cli
 from herringbone.cosim.algorithms import Jacobi, parse_algorithm
 from herringbone.cosim.structure.system_file import read_system
+from herringbone.running.foreign.surrogates import opened_surrogates, under_load
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.surrogates import opened_surrogates, under_load
 
 WITHIN = 0.02
 RATE = 0.03

@@ -12,7 +12,7 @@ from herringbone.commands.main import main
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Answer, Kind
 from herringbone.cosim.signature.rotation import Given
-from herringbone.running.foreign_parts import signature_of
+from herringbone.running.foreign.foreign_parts import signature_of
 
 ANSWERS = tomllib.loads((KINDS / "answers.toml").read_text(encoding="utf-8"))
 NAMES = {

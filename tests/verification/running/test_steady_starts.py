@@ -8,7 +8,7 @@ import pytest
 import herringbone as hb
 from herringbone.core import EquilibriumError
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.open_flanges import balanced, unbalanced
+from herringbone.running.pairs.open_flanges import balanced, unbalanced
 from herringbone.running.prepared import Wishes, prepared
 
 RUN = {"t_end": 2e-3, "fmu": "in-process"}

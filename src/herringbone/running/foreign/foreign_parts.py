@@ -22,7 +22,7 @@ from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, fin
 from herringbone.cosim.signature.untrusted import without_states
 from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.known_signatures import known_signature
+from herringbone.running.foreign.known_signatures import known_signature
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
 _NODE = re.compile(r"\.node\d+$")

@@ -16,10 +16,10 @@ from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.carrying_flank import loaded_start
-from herringbone.running.foreign_parts import alike, signature_of, start_inputs, understood
+from herringbone.running.foreign.foreign_parts import alike, signature_of, start_inputs, understood
 from herringbone.running.loading import instances, open_parts
-from herringbone.running.open_flanges import loaded
+from herringbone.running.pairs.carrying_flank import loaded_start
+from herringbone.running.pairs.open_flanges import loaded
 from herringbone.running.start import known_parts, ramp_times
 
 _TORQUE = 200.0

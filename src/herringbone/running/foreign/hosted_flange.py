@@ -15,7 +15,7 @@ from herringbone.core.part_path import PartPath
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import Given
-from herringbone.running.foreign_parts import signature_of, start_inputs
+from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
 
 STEP = 1e-4
 """Step of the first trials [s], unless the FMU has one."""

@@ -24,7 +24,7 @@ from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.progress import Progress
 from herringbone.running.run_result import with_coupling_row
-from herringbone.running.verification import scaled
+from herringbone.running.steps.verification import scaled
 from herringbone.scenes import Scene
 
 _DEFAULT = 1e-3

@@ -16,7 +16,7 @@ from herringbone.cosim.signature.rotation import Given
 from herringbone.cosim.signature.signature import Rate
 from herringbone.cosim.structure.system import PartSpec
 
-_TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign_parts"
+_TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign.foreign_parts"
 
 
 def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) -> Signature:

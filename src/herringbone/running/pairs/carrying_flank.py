@@ -12,7 +12,7 @@ from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
-from herringbone.running.mesh_phases import steady_values
+from herringbone.running.pairs.mesh_phases import steady_values
 
 _COAST = -1.0
 

@@ -1,0 +1,1 @@
+"""Foreign FMUs of a system that is run: what they are, and what stands for them."""
