@@ -4,11 +4,12 @@ from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.result.result import TIME, Result
 
+_FEWEST = 2
+"""Records of which anything can be said."""
 _CONSTANT = 1e-9
 """Alternating part over the size of a channel below which it is rounding."""
 
@@ -34,19 +35,23 @@ def apart(first: Result, second: Result, exchanged: Collection[str] = ()) -> Apa
         first, second: runs of the same system; the second is the better one.
         exchanged: outputs that make groups beside the system's channels, see `groups_of`.
     """
-    ours, theirs = _common(first.data, second.data)
-    groups = {
-        name: relative_error(ours[names].to_numpy(float), theirs[names].to_numpy(float))
-        for name, names in groups_of(second, exchanged).items()
-        if len(ours) > 1 and any(_varies(theirs[n]) for n in names)
-    }
-    worst, value = "", 0.0
-    for column in second.signals:
-        if len(ours) > 1 and _varies(theirs[column]):
-            found = relative_error(ours[[column]].to_numpy(float), theirs[[column]].to_numpy(float))
-            if found > value:
-                worst, value = column, found
-    return Apart(groups, worst, value)
+    ours, theirs = _common(first, second)
+    if len(ours) < _FEWEST:
+        return Apart({}, "", 0.0)
+    place = {name: number for number, name in enumerate(second.signals)}
+    spread = np.std(theirs, axis=0)
+    varies = spread > _CONSTANT * np.abs(theirs).max(axis=0, initial=0.0)
+    groups = {}
+    for name, columns in groups_of(second, exchanged).items():
+        own = [place[column] for column in columns]
+        if varies[own].any():
+            groups[name] = relative_error(ours[:, own], theirs[:, own])
+    off = np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
+    single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)
+    if not single.any():
+        return Apart(groups, "", 0.0)
+    worst = int(single.argmax())
+    return Apart(groups, second.signals[worst], float(single[worst]))
 
 
 def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list[str]]:
@@ -67,15 +72,11 @@ def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list
     return {name: columns for name, columns in groups.items() if columns}
 
 
-def _varies(column: pd.Series) -> bool:
-    values = column.to_numpy(float)
-    return bool(np.std(values) > _CONSTANT * np.abs(values).max(initial=0.0))
-
-
-def _common(ours: pd.DataFrame, theirs: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Rows of both at the times that both have."""
-    first, second = ours[TIME].to_numpy(), theirs[TIME].to_numpy()
-    near = np.clip(np.searchsorted(second, first), 1, max(1, second.size - 1))
-    near = np.where(np.abs(second[near - 1] - first) < np.abs(second[near] - first), near - 1, near)
-    same = np.abs(second[near] - first) <= 1e-9 * max(1.0, float(first[-1]))
-    return ours[same].reset_index(drop=True), theirs.iloc[near[same]].reset_index(drop=True)
+def _common(first: Result, second: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Signals of both (n, m) at the times that both have, in the second one's order."""
+    names = second.signals
+    ours, theirs = first.data[TIME].to_numpy(), second.data[TIME].to_numpy()
+    near = np.clip(np.searchsorted(theirs, ours), 1, max(1, theirs.size - 1))
+    near = np.where(np.abs(theirs[near - 1] - ours) < np.abs(theirs[near] - ours), near - 1, near)
+    same = np.abs(theirs[near] - ours) <= 1e-9 * max(1.0, float(ours[-1]))
+    return first.data[names].to_numpy(float)[same], second.data[names].to_numpy(float)[near[same]]
