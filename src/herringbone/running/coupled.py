@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
 from herringbone.core.activity import activity
-from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.algorithms import (
@@ -22,10 +21,10 @@ from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
+from herringbone.running.foreign.interfaces import exchanged_outputs, holds_inputs
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
@@ -141,23 +140,9 @@ def coupled(
         result = decimated(every, scene.record_step) if asked.all_points else every
         if recorded:
             recorded(result)
-        once, exchanged = any(part.once for part in opened), _exchanged(system, parts)
-        holds = any(s.foreign and _holds(part) for s, part in zip(system.parts, parts, strict=True))
+        once = any(part.once for part in opened)
+        exchanged, holds = exchanged_outputs(system, parts), holds_inputs(system, parts)
     return Coupled(result, every, recording, algorithm, once, exchanged, holds)
-
-
-def _holds(part: Part) -> bool:
-    """True if a part takes no signals inside a step, and has inputs."""
-    takes = INTERFACE_DEGREE in part.variables or bool(part.addresses.set_derivatives)
-    return not takes and any(v.causality == "input" for v in part.variables.values())
-
-
-def _exchanged(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
-    """Outputs of foreign parts that other parts take."""
-    if not system.foreign_parts:
-        return ()
-    taken = {(parts[c.source].name, c.output) for c in build_network(system, parts).connections}
-    return tuple(f"{part}.{name}" for part, name in sorted(taken) if part in system.foreign_parts)
 
 
 def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:

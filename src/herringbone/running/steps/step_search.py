@@ -11,42 +11,21 @@ first step is a 47th of the run, or five times li's own where parts of this proj
 prime, so that signals with a whole number of periods in the run do not look constant.
 """
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from herringbone.analysis.accuracy.apart import Apart, apart
-from herringbone.analysis.accuracy.step_power import left_of, step_power
-from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.progress import Progress
-from herringbone.running.run_result import with_coupling_row
-from herringbone.running.steps.verification import scaled
+from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
 
 _DEFAULT = 1e-3
 _PIECES = 47
 _COARSE = 5.0
-_RUNS, _FAILURES = 20, 2
-"""Runs in all; runs in which a part or the coupling fails, for whatever reason."""
-_AT_ONCE = 8
-"""A step is divided by this whole number at the most, so that the next run has all its points."""
-_AIM = 0.5
-"""Share of the tolerance that the next step is to err."""
-_LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
-"""Powers that count: least; most of two runs that are far apart, and near; of three near ones."""
-_FAR = 0.3
-"""Difference of two runs above which the longer step follows no power."""
-_BLIND = 2.0
-"""What the step is divided by as long as nothing is known."""
-_FALLS = 0.3
-"""Power below which the difference of two runs does not fall with their steps. Two such runs near
-each other tell, or three that are far apart, as those are where long steps are nearly unstable."""
-_PATIENCE, _TIMES = 60.0, 30.0
-"""A run is not begun if it takes longer [s], and so many times as long as all before."""
 
 
 def searched_tolerance(system: System, asked: Asked) -> float | None:
@@ -86,7 +65,7 @@ def searched(
     Raises:
         HerringboneError: see `coupled`, for the first run.
     """
-    search = _Search(tolerance)
+    search = Search(tolerance)
     step = asked.step or first_step(system, scene)
     wanted = replace(asked, tolerance=None, warn=False, all_points=True)
     while not search.why:
@@ -108,154 +87,3 @@ def first_step(system: System, scene: Scene) -> float:
     own = len(system.foreign_parts) < len(system.parts)
     longest = scene.t_end / _PIECES
     return min(longest, _COARSE * LI().default_step) if own else longest
-
-
-@dataclass(frozen=True)
-class _Tried:
-    """A run that ended well, and what is known of its error.
-
-    Attributes:
-        found: the run.
-        differences: from the run before; None for the first.
-        power: with which the differences fall.
-        counted: power that counts for the error.
-        share: the run's error over these differences.
-    """
-
-    found: Coupled
-    differences: Apart | None = None
-    power: float = 1.0
-    counted: float = 1.0
-    share: float = 0.0
-
-    @property
-    def step(self) -> float:
-        """Macro step [s]."""
-        return self.found.recording.step
-
-    @property
-    def apart(self) -> float:
-        """Difference from the run before, of the group that differs most."""
-        return max(self.differences.groups.values(), default=0.0) if self.differences else math.inf
-
-    @property
-    def error(self) -> float:
-        """Of the group that errs most."""
-        return self.share * self.apart if self.differences else math.inf
-
-
-class _Search:
-    """Runs that were tried, and why the search ends.
-
-    Args:
-        tolerance: relative error.
-
-    Attributes:
-        tried: runs that ended well.
-        failed: steps of others [s].
-        why: the search is over; "" while it is not.
-    """
-
-    def __init__(self, tolerance: float) -> None:
-        self._tolerance = tolerance
-        self.tried: list[_Tried] = []
-        self.failed: list[float] = []
-        self.why = ""
-        self._seconds = 0.0
-
-    def take(self, found: Coupled) -> None:
-        """Add a run."""
-        outcome = found.result.outcome
-        self._seconds += found.recording.wall_seconds
-        if outcome.completed:
-            self.tried.append(self._judged(found))
-        else:
-            self.failed.append(found.recording.step)
-        self.why = self._over(outcome, found)
-
-    def pieces(self) -> int:
-        """In how many the last step is to be divided to err half the tolerance."""
-        return int(min(max(math.ceil(self._shorter()), 2), _AT_ONCE))
-
-    def _shorter(self) -> float:
-        if not self.tried or self.tried[-1].differences is None:
-            return 2.0
-        last = self.tried[-1]
-        if last.apart > _FAR:
-            return _BLIND
-        power = last.counted if len(self.tried) > 2 else _HIGHEST
-        return (last.error / (_AIM * self._tolerance)) ** (1.0 / power)
-
-    def _judged(self, found: Coupled) -> _Tried:
-        """A run beside those before."""
-        if not self.tried:
-            return _Tried(found)
-        before, step = self.tried[-1], found.recording.step
-        new = _Tried(found, apart(before.found.every, found.every, found.exchanged))
-        power = 1.0
-        if before.differences is not None:
-            steps = (self.tried[-2].step, before.step, step)
-            power = step_power(before.apart, new.apart, steps)
-        most = _HIGHEST if before.apart < _FAR else _MOST
-        counted = min(max(power, _LEAST), _ROUGH if new.apart > _FAR else most)
-        share = left_of(before.step, step, counted)
-        return replace(new, power=power, counted=counted, share=share)
-
-    def _over(self, outcome: Outcome, found: Coupled) -> str:
-        """Why no other step is tried; "" if one is."""
-        patience = 2 if self.tried and self.tried[-1].apart < _FAR else 3
-        flat = len(self.tried) > 1 + patience and all(
-            t.power < _FALLS for t in self.tried[-patience:]
-        )
-        lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
-        reasons = {
-            "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
-            "an FMU can be instantiated once only": found.once,
-            outcome.message: lost,
-            "met": outcome.completed and self.tried[-1].error <= self._tolerance,
-            "the differences do not fall with the step, as with noise or jumps": flat,
-            f"{_RUNS} runs were made": len(self.tried) + len(self.failed) >= _RUNS,
-        }
-        why = next((reason for reason, holds in reasons.items() if holds), "")
-        return why or self._too_dear(found)
-
-    def _too_dear(self, found: Coupled) -> str:
-        """Why the step that is needed is not begun; "" if it is."""
-        if len(self.tried) < 3 or self.tried[-1].apart > _FAR:
-            return ""
-        times = self._shorter()
-        seconds = times * found.recording.wall_seconds
-        if seconds < max(_PATIENCE, _TIMES * self._seconds):
-            return ""
-        return (
-            f"the error falls with the power {self.tried[-1].power:.2g} of the step, as where an "
-            f"FMU's own integration changes with it; steps of {found.recording.step / times:.2g} s "
-            f"would take {seconds:.2g} s; --step begins there"
-        )
-
-    def told(self) -> Coupled:
-        """The last run that ended well, with its verification and a note."""
-        last, runs = self.tried[-1], len(self.tried) + len(self.failed)
-        result, found = last.found.result, last.differences
-        size = f"error {last.error:.2g}, " if found else ""
-        note = f"tolerance = {self._tolerance:g}: steps of {last.step:g} s, {size}runs: {runs}"
-        notes = (*result.info.notes, note + self._limit())
-        result = replace(result, info=replace(result.info, notes=notes))
-        if found:
-            verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
-            result = with_coupling_row(replace(result, verification=verification))
-        return last.found._replace(result=result)
-
-    def _limit(self) -> str:
-        """What kept the search from the tolerance, if anything did."""
-        last = self.tried[-1]
-        if last.differences is None:
-            return f"; its error is not known: {self.why}"
-        if last.error > self._tolerance:
-            return f"; not met: {self.why}"
-        if len(self.tried) > 2:
-            return ""
-        longer = (
-            f"{max(self.failed):g} s is not stable" if self.failed else "no longer one is tried"
-        )
-        return f"; a step longer than {self.tried[0].step:g} s is of no use here: {longer}"
