@@ -1,13 +1,14 @@
 """A part that holds its inputs, as one that takes and gives polynomial signals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
+from herringbone.core.part import Addresses, Given, Part, PartVariable
 from herringbone.core.variable import NODES
+from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.nodal import calls
 from herringbone.cosim.nodal.memory import MEMORY
 from herringbone.cosim.signature.amplitudes import amplitude
@@ -17,7 +18,7 @@ from herringbone.kernels.signals import STRIDE
 _ADDRESSES = Addresses._fields[:7]
 
 
-class NodalPart:
+class NodalPart(PartAdapter):
     """An adapter in front of a part; see `nodal.calls`. The part belongs to it.
 
     Args:
@@ -27,12 +28,12 @@ class NodalPart:
     """
 
     def __init__(self, part: Part, signature: Signature, pieces: int = 2) -> None:
-        self.name, self.part, self.signature = part.name, part, signature
+        super().__init__(part)
+        self.signature: Signature = signature
         self._inputs, self._outputs = signature.inputs, signature.outputs
         self._pieces = pieces
-        self.has_states: bool | None = signature.kind is not Kind.ELEMENT
-        self.once, self.one_step = part.once, part.one_step
-        self.variables: Mapping[str, PartVariable] = self._variables()
+        self.has_states = signature.kind is not Kind.ELEMENT
+        self.variables = self._variables()
         self._memory = self._make_memory(pieces)
 
     def _variables(self) -> dict[str, PartVariable]:
@@ -123,10 +124,6 @@ class NodalPart:
             functions += [calls.get_state, calls.set_state, calls.free_state]
         return Addresses(self._memory.ctypes.data, *(f.address for f in functions))
 
-    def new_state(self) -> int:
-        """See `Part`."""
-        return self.part.new_state()
-
     def set(self, name: str, value: Given) -> None:
         """Set a variable of the part, or the degree of the signals."""
         if name == INTERFACE_DEGREE:
@@ -148,38 +145,6 @@ class NodalPart:
         if number < inputs:
             return float(self._arrays["given"][number, node])
         return float(self._arrays["values"][number - inputs, node])
-
-    def put_values(self, values: Mapping[str, Value]) -> None:
-        """See `Part`."""
-        self.part.put_values(values)
-
-    def get_values(self, names: Sequence[str]) -> list[Value]:
-        """See `Part`."""
-        return self.part.get_values(names)
-
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
-        """See `Part`."""
-        self.part.enter_initialization(start_time, stop_time)
-
-    def exit_initialization(self) -> None:
-        """See `Part`."""
-        self.part.exit_initialization()
-
-    def failed(self) -> None:
-        """See `Part`."""
-        self.part.failed()
-
-    def ended(self) -> float | None:
-        """See `Part`."""
-        return self.part.ended()
-
-    def messages(self) -> list[str]:
-        """See `Part`."""
-        return self.part.messages()
-
-    def close(self) -> None:
-        """See `Part`."""
-        self.part.close()
 
 
 def _rates_first(rate: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from herringbone.core import FmuError
 from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.core.units import si_name
+from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.units import calls
 
 _SIGNALS = {"input", "output"}
@@ -30,15 +31,14 @@ def _foreign(v: PartVariable) -> bool:
     return v.dimension[:2] != (1.0, 0.0)
 
 
-class SiPart:
+class SiPart(PartAdapter):
     """An adapter in front of a part, whose start values have been set; the part belongs to it."""
 
     def __init__(self, part: Part) -> None:
-        self.name, self.part = part.name, part
-        self.has_states, self.once, self.one_step = part.has_states, part.once, part.one_step
+        super().__init__(part)
         signals = [v for v in part.variables.values() if v.is_real and v.causality in _SIGNALS]
         self._rules = {v.name: self._rule(v) for v in signals}
-        self.variables: Mapping[str, PartVariable] = {
+        self.variables = {
             **part.variables,
             **{v.name: self._in_si(v, k) for k, v in enumerate(signals)},
         }
@@ -91,10 +91,6 @@ class SiPart:
         }
         return Addresses(self._memory.ctypes.data, **found)
 
-    def new_state(self) -> int:
-        """See `Part`."""
-        return self.part.new_state()
-
     def set(self, name: str, value: Given) -> None:
         """Set a variable; signals in SI units."""
         if isinstance(value, float | int) and name in self._rules:
@@ -119,31 +115,3 @@ class SiPart:
         self.part.put_values(
             {n: self._own(n, float(v)) if n in self._rules else v for n, v in values.items()}
         )
-
-    def get_values(self, names: Sequence[str]) -> list[Value]:
-        """See `Part`."""
-        return self.part.get_values(names)
-
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
-        """See `Part`."""
-        self.part.enter_initialization(start_time, stop_time)
-
-    def exit_initialization(self) -> None:
-        """See `Part`."""
-        self.part.exit_initialization()
-
-    def failed(self) -> None:
-        """See `Part`."""
-        self.part.failed()
-
-    def ended(self) -> float | None:
-        """See `Part`."""
-        return self.part.ended()
-
-    def messages(self) -> list[str]:
-        """See `Part`."""
-        return self.part.messages()
-
-    def close(self) -> None:
-        """See `Part`."""
-        self.part.close()

@@ -16,10 +16,10 @@ from herringbone.core import FmuError
 from herringbone.core.activity import activity
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.adapter import PartAdapter, WithoutStates
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
-from herringbone.cosim.signature.untrusted import without_states
 from herringbone.cosim.structure.rates import motion_of_force
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.known_signatures import known_signature
@@ -133,12 +133,12 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
         repeats = signature.repeats and signature.restores is not False
-        return (part if repeats else without_states(part)), lines
+        return (part if repeats else WithoutStates(part)), lines
     lines += _contradictions(part.variables, signature)
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
-        if isinstance(part, FmuPart):
+        if isinstance(part, FmuPart | PartAdapter):
             part.signature = signature
         return part, lines
     nodal = NodalPart(part, signature)
