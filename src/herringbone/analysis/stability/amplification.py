@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import matrix_balance
+from scipy.linalg.lapack import dgebal
 from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
@@ -96,7 +96,7 @@ def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarr
 
     Double eigenvalues go by the square root of an error, which no condition number tells.
     """
-    scaled, _ = matrix_balance(matrix)
+    scaled = dgebal(matrix, scale=1)[0]
     values = np.linalg.eigvals(scaled)
     random = np.random.default_rng(0)
     moved = np.zeros(len(values))
