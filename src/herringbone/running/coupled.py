@@ -169,7 +169,7 @@ def _stability_notes(
     what = f"predicting whether {system.name} is stable"
     with activity(what), surrogates_of(system, parts, step) as found:
         if found.missing:
-            return []
+            return [f"whether the step is stable is not known: {found.why}"]
         warning = warn_if_unstable(
             under_load(system), algorithm, step, t_end, strangers=found.strangers
         )

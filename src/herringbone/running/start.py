@@ -27,12 +27,15 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
         notes += ("all parts are foreign; the run starts with the values that they declare",)
         start = Start.REST
     elif start is Start.EQUILIBRIUM and system.foreign_parts:
-        names = ", ".join(system.foreign_parts)
-        notes += (
-            f"{names}: foreign, so the equilibrium is not known; the load rises from zero over "
-            f"{LOAD_RAMP_TIME:g} s instead",
+        ramped = bool(ramp_times(system))
+        instead = (
+            f"the load rises from zero over {LOAD_RAMP_TIME:g} s instead"
+            if ramped
+            else "the run starts with the values that the parts declare"
         )
-        start = Start.RAMP
+        names = ", ".join(system.foreign_parts)
+        notes += (f"{names}: foreign, so the equilibrium is not known; {instead}",)
+        start = Start.RAMP if ramped else Start.REST
     if start is Start.RAMP:
         system = system.with_values(_ramps(system))
     if start is not Start.REST:

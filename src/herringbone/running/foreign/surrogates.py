@@ -39,6 +39,11 @@ class Surrogates:
     missing: dict[str, str] = field(default_factory=dict)
 
     @property
+    def why(self) -> str:
+        """Why nothing stands for some parts, in one line."""
+        return "; ".join(f"{name}: {why}" for name, why in self.missing.items())
+
+    @property
     def lines(self) -> list[str]:
         """Why nothing is promised, for each part for which nothing stands."""
         return [f"nothing is promised: {name}: {why}" for name, why in self.missing.items()]
