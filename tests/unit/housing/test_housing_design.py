@@ -57,7 +57,7 @@ BAD = [
     ("mesh_size = 16.0", "mesh_size = 0.016", "mesh size 1.6e-05 m: it must be from 0.005"),
     ("cover = 10.0", "cover = 0.01", "cover = 1e-05 m: it must be from 0.0005 to 5 m; is length"),
     ("floor = 17.0", "floor = -17.0", "floor = -0.017 m: it must be from"),
-    ("end_wall = 12.0", "end_wall = nan", "end_wall = nan: it takes a finite number"),
+    ("end_wall = 12.0", "end_wall = nan", "dimensions.end_wall = nan is not a finite number"),
     ("end_wall = 12.0", 'end_wall = "12"', "end_wall = '12': it takes a finite number"),
     ("per_side = 3", "per_side = 3.0", "bolts_per_side = 3.0: it takes an integer"),
     ("per_side = 3", "per_side = 1", "bolts_per_side = 1: it must be 2 or more"),

@@ -6,9 +6,10 @@ Shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
 
 import numpy as np
 
-from herringbone.components.resources.flat_csv import TablePath, check_units, read_flat_csv
+from herringbone.components.resources.flat_csv import check_units, read_flat_csv
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column, ResourceError
+from herringbone.core.reading.texts import AnyPath
 from herringbone.kernels.jit import kernel
 
 Dofs = tuple[tuple[str, str], ...]
@@ -132,7 +133,7 @@ def collect(
     return _MISSING + first_missing if missing else 0
 
 
-def read_mode_table(modes: TablePath) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+def read_mode_table(modes: AnyPath) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Read and check the table of modes.
 
     Returns:
@@ -149,7 +150,7 @@ def read_mode_table(modes: TablePath) -> tuple[tuple[str, ...], np.ndarray, np.n
     return tuple(_KINDS[int(kind)] for kind in kinds), frequency_hz, damping_ratio
 
 
-def read_shape_table(shapes: TablePath) -> tuple[Dofs, np.ndarray]:
+def read_shape_table(shapes: AnyPath) -> tuple[Dofs, np.ndarray]:
     """Read and check the table of shapes.
 
     Returns:

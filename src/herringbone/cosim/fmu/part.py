@@ -3,7 +3,6 @@
 import contextlib
 import ctypes
 import math
-import shutil
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, PartVariable
+from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.variables import read_variables
@@ -170,4 +170,4 @@ class FmuPart(ABC):
 
     def _remove_files(self) -> None:
         if self._owned:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            remove_temporary_folder(self._folder)

@@ -3,7 +3,6 @@
 A sample with all keys is `seats.toml` in the folder of the shipped housing.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.structured import read_toml
 from herringbone.core.roles import HALVES
 from herringbone.housing.modal_model import AXES
 
@@ -94,12 +94,7 @@ def read_seats(path: str | Path) -> SeatFile:
             kind.
     """
     path = Path(path)
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ResourceError(f"{path} is no valid TOML: {error}") from error
+    data = read_toml(path)
     try:
         return _seat_file(path, data)
     except ResourceError as error:
@@ -114,7 +109,7 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
     factors = {}
     for quantity, known in _UNITS.items():
         unit = sections["units"].get(quantity, next(iter(known)))
-        if unit not in known:
+        if not isinstance(unit, str) or unit not in known:
             raise ResourceError(f"unit of {quantity} '{unit}' is none of {', '.join(known)}")
         factors[quantity] = known[unit]
     damping, rows = sections["damping"], sections["matrix"].get("rows")
@@ -157,6 +152,9 @@ def _numbers(value: object, shape: tuple[int, ...], what: str) -> np.ndarray:
 
 def _selections(data: Mapping[str, Any]) -> tuple[Selection, ...]:
     seats, sensors = data.get("seats", {}), data.get("sensors", {})
+    for section, what in ((seats, "seats"), (sensors, "sensors")):
+        if not isinstance(section, dict):
+            raise ResourceError(f"[{what}] must be a table")
     if missing := [name for name in HALVES if name not in seats]:
         raise ResourceError(f"seat {', '.join(missing)} is missing; give [seats.{missing[0]}]")
     if unknown := sorted(set(seats) - set(HALVES)):
@@ -179,7 +177,10 @@ def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
     position = item.get("position")
     if position is not None:
         position = tuple(_numbers(position, (3,), f"{role} {name}: position").tolist())
-    dofs = tuple(map(str, item.get("dofs", AXES)))
+    given = item.get("dofs", AXES)
+    if not isinstance(given, list | tuple):
+        raise ResourceError(f"{role} {name}: 'dofs' must be a list of {', '.join(AXES)}")
+    dofs = tuple(map(str, given))
     if unknown := [dof for dof in dofs if dof not in AXES]:
         raise ResourceError(f"{role} {name}: dof '{unknown[0]}' is none of {', '.join(AXES)}")
     coupling = str(item.get("coupling", "node" if len(nodes) == 1 else "rbe3"))
