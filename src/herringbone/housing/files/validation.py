@@ -109,7 +109,9 @@ def _check_points(points: tuple[Point, ...]) -> None:
 
 
 def _check_frame(frame: Frame) -> None:
-    rotation, origin = np.array(frame.rotation, dtype=float), np.array(frame.origin, dtype=float)
+    origin = np.array(frame.origin, dtype=float)
+    whole = len(frame.rotation) == 3 and all(len(row) == 3 for row in frame.rotation)
+    rotation = np.array(frame.rotation if whole else [], dtype=float)
     if origin.shape != (3,) or not np.isfinite(origin).all():
         raise ResourceError(f"frame: origin {list(frame.origin)} must be 3 numbers, m")
     if (
