@@ -49,7 +49,7 @@ def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
     """What `collect` may return."""
     return (
         Refusal(", mode %g: frequency %g Hz must be positive (0 only if rigid)"),
-        Refusal(", mode %g: damping ratio %g must not be negative"),
+        Refusal(", mode %g: damping ratio %g must lie between 0 and 1"),
         Refusal(f": %g modes; at most {most}"),
         Refusal(" has %g modes, the file of frequencies has %g", 1),
         Refusal(": a point and dof stand twice", 1),
@@ -69,7 +69,7 @@ def _check_modes(values: np.ndarray, modes: int, report: np.ndarray) -> int:
         if frequency_hz < 0.0 or (frequency_hz == 0.0 and kind != _RIGID):
             report[1] = frequency_hz
             return _FREQUENCY
-        if damping_ratio < 0.0:
+        if damping_ratio < 0.0 or damping_ratio > 1.0:
             report[1] = damping_ratio
             return _DAMPING
     return 0

@@ -4,6 +4,7 @@ import numpy as np
 
 from herringbone.core import ResourceError
 from herringbone.core.roles import HALVES
+from herringbone.housing.files.plausibility import implausible
 from herringbone.housing.modal_model import AXES, SEAT_DOFS, Frame, ModalHousing, Point
 
 KINDS = ("normal", "residual", "rigid")
@@ -142,7 +143,7 @@ def _check_matrix(matrix: np.ndarray | None, name: str) -> None:
 
 def housing_warnings(housing: ModalHousing) -> list[str]:
     """What is doubtful about a model that `check_housing` accepts; one line each."""
-    found = []
+    found = [*implausible(housing)]
     normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
     highest, needed = float(normal.max(initial=0.0)), BAND_OF_MODES * housing.valid_to_hz
     following = float(housing.certificate.get("next_frequency_hz") or 0.0)

@@ -1,5 +1,6 @@
 """Mass and stiffness matrices of a foreign program, and how they become a housing."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +22,8 @@ from herringbone.housing.reduction.reduced_housing import RESIDUAL_DAMPING
 Row = tuple[int, int]
 """Node and component (1, 2, 3: translations) of a matrix row."""
 _DAMPING = 0.01
+_SLOWEST = 1e-2
+"""Hz at which no node of a housing shakes on the springs around it."""
 _MOST_ROWS = 10**7
 """More rows than any model that can be reduced here."""
 
@@ -94,6 +97,7 @@ def housing_from_matrices(
     Raises:
         HerringboneError: a node or the labels of the rows are missing, or see `reduce_model`.
     """
+    _check_order(model)
     if seats is None:
         return _without_seat_file(model, band_hz, tolerance, most_modes, progress)
     rows = _labels(model, seats)
@@ -127,6 +131,20 @@ def housing_from_matrices(
         frame=make_frame(seats),
         source={**housing.source, **description},
     )
+
+
+def _check_order(model: MatrixModel) -> None:
+    """Refuse mass and stiffness of each other; in any units, nodes shake at more than 0.01 Hz."""
+    stiffness, mass = model.stiffness.diagonal(), model.mass.diagonal()
+    both = (stiffness > 0.0) & (mass > 0.0)
+    if not both.any():
+        return
+    slow = math.sqrt(float(np.median(stiffness[both] / mass[both]))) / (2.0 * math.pi)
+    if slow < _SLOWEST:
+        raise ResourceError(
+            f"{model.source.get('file', 'the matrices')}: stiffness over mass is that of "
+            f"{slow:.2g} Hz; are they in the wrong order? Stiffness comes first"
+        )
 
 
 def _without_seat_file(

@@ -3,6 +3,8 @@
 A sample with all keys is `seats.toml` in the folder of the shipped housing.
 """
 
+import itertools
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +22,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = {
     "mass": {"kg": 1.0, "t": 1e3, "g": 1e-3},
     "time": {"s": 1.0, "ms": 1e-3},
 }
+_LOG = logging.getLogger("herringbone")
 _KEYS = {
     "": {
         "valid_to_hz", "boundary", "source", "units", "frame", "damping", "seats", "sensors",
@@ -121,7 +124,7 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
         rotation=_numbers(
             sections["frame"].get("rotation", np.eye(3).tolist()), (3, 3), "frame rotation"
         ),
-        damping_ratio=float(_numbers(damping.get("ratio", 0.01), (), "damping ratio")),
+        damping_ratio=_damping_ratio(damping),
         damping_source=str(damping.get("source", "assumed")),
         valid_to_hz=float(_numbers(data.get("valid_to_hz", 0.0), (), "valid_to_hz")),
         boundary=str(data.get("boundary", "")),
@@ -129,6 +132,13 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
         rows=path.parent / str(rows) if rows else None,
         static=path.parent / str(data["static"]) if "static" in data else None,
     )
+
+
+def _damping_ratio(damping: Mapping[str, Any]) -> float:
+    ratio = float(_numbers(damping.get("ratio", 0.01), (), "damping ratio"))
+    if not 0.0 < ratio < 1.0:
+        raise ResourceError(f"damping ratio {ratio:g} must lie between 0 and 1")
+    return ratio
 
 
 def _known(section: object, name: str, where: str) -> None:
@@ -159,9 +169,14 @@ def _selections(data: Mapping[str, Any]) -> tuple[Selection, ...]:
         raise ResourceError(f"seat {', '.join(missing)} is missing; give [seats.{missing[0]}]")
     if unknown := sorted(set(seats) - set(HALVES)):
         raise ResourceError(f"seat '{unknown[0]}' is none of {', '.join(HALVES)}")
-    return tuple(_selection(name, "seat", seats[name]) for name in HALVES) + tuple(
-        _selection(name, "sensor", item) for name, item in sensors.items()
-    )
+    found = tuple(_selection(name, "seat", seats[name]) for name in HALVES)
+    for one, other in itertools.combinations(found, 2):
+        if shared := sorted(set(one.nodes) & set(other.nodes)):
+            _LOG.warning(
+                "seats %s and %s share the node %d: they are not independent",
+                one.name, other.name, shared[0],
+            )  # fmt: skip
+    return found + tuple(_selection(name, "sensor", item) for name, item in sensors.items())
 
 
 def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
@@ -172,6 +187,12 @@ def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
     weights = _numbers(
         item.get("weights", [1.0] * len(nodes)), (len(nodes),), f"{role} {name}: weights"
     )
+    if (weights < 0.0).any():
+        node = nodes[int(np.argmax(weights < 0.0))]
+        _LOG.warning(
+            "%s %s: node %d has the weight %g; weights are shares of a mean, and not negative",
+            role, name, node, weights.min(),
+        )  # fmt: skip
     if weights.sum() <= 0.0:
         raise ResourceError(f"{role} {name}: the weights must have a positive sum")
     position = item.get("position")
