@@ -27,11 +27,12 @@ TABLE, RUN = "gear_mesh.stiffness_table", {"t_end": 3e-3, "fmu": "in-process"}
 
 
 def jumping_table(file):
-    """The shipped table with one stiffness of the left side twenty times as large."""
+    """The shipped table with the stiffness of the left side ten times as large at phase 1/2."""
     lines = SHIPPED_TABLE.read_text(encoding="utf-8").splitlines()
-    at = max(n for n, line in enumerate(lines) if line.startswith("left,"))
-    head, _, stiffness = lines[at].rpartition(",")
-    lines[at] = f"{head},{20.0 * float(stiffness)!r}"
+    for n, line in enumerate(lines):
+        head, _, stiffness = line.rpartition(",")
+        if line.startswith("left,") and float(head.rpartition(",")[2]) == 0.5:
+            lines[n] = f"{head},{10.0 * float(stiffness)!r}"
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -62,7 +63,7 @@ def files(tmp_path_factory):
     write_housing(small_housing(valid_to_hz=1000.0), folder / "low")
     write_housing(turned_housing(), folder / "turned")
     write_housing(
-        replace(small_housing(static=None), shapes=1e3 * small_housing().shapes), folder / "soft"
+        replace(small_housing(static=None), shapes=1e-3 * small_housing().shapes), folder / "stiff"
     )
     jumping_table(folder / "jumping.csv")
     return folder
@@ -154,7 +155,7 @@ NOTED = {
         "modal_housing has its modes of {f}/low/modes.csv and its shapes of {f}/box/shapes.csv: of",
     ),
     "housing of another unit": (
-        lambda f: {"housing": f / "soft"},
+        lambda f: {"housing": f / "stiff"},
         "modal_housing: the static stiffness at the seats is ",
     ),
     "table with a slip of the pen": (
