@@ -60,7 +60,7 @@ BAD = [
     ("end_wall = 12.0", "end_wall = nan", "dimensions.end_wall = nan is not a finite number"),
     ("end_wall = 12.0", 'end_wall = "12"', "end_wall = '12': it takes a finite number"),
     ("per_side = 3", "per_side = 3.0", "bolts_per_side = 3.0: it takes an integer"),
-    ("per_side = 3", "per_side = 1", "bolts_per_side = 1: it must be 2 or more"),
+    ("per_side = 3", "per_side = 1", "bolts_per_side = 1: it must be from 2 to 1000"),
     ("per_side = 3", "per_side = 40", "bolt_diameter = 0.022 m must be less than the bolts' pitch"),
     ("pinion_bore = 90.0", "pinion_bore = 191.0",
      "pinion_bore / 2 = 0.0955 m must be less than pinion_end_clearance = 0.095 m"),

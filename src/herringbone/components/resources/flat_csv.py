@@ -76,11 +76,12 @@ def read_flat_csv(
     missing = [name for name in (*texts, *numbers) if name not in header]
     if missing:
         raise ResourceError(
-            f"{file}: column {', '.join(missing)} is missing; it has {', '.join(header)}"
+            f"{file}: column {', '.join(missing)} is missing; it has "
+            f"{', '.join(filter(None, header))}"
         )
     extra = [name for name in header if name not in texts and name not in numbers]
     if extra and not more:
-        raise ResourceError(f"{file}: column {', '.join(extra)} is unknown")
+        raise ResourceError(f"{file}: column {', '.join(filter(None, extra))} is unknown")
     columns: dict[str, list] = {name: [] for name in header}
     for line, row in rows[1:]:
         if len(row) != len(header):

@@ -125,6 +125,6 @@ def _numbered(column: Column, found: np.ndarray, file: AnyPath) -> np.ndarray:
     numbers = {word: float(i) for i, word in enumerate(column.words)}
     if not column.other_words and (unknown := [w for w in found if w not in numbers]):
         raise ResourceError(
-            f"{file}: {column.name} '{unknown[0]}' is none of {', '.join(column.words)}"
+            f"{file}: {column.name} '{unknown[0][:64]}' is none of {', '.join(column.words)}"
         )
     return np.array([numbers.get(word, -1.0) for word in found])

@@ -13,6 +13,8 @@ _COUPLINGS = ("rbe3", "rbe2", "node")
 _DOFS = (*AXES, *(f"r{axis}" for axis in AXES))
 _SYMMETRY = 1e-6
 """Largest asymmetry of a compliance or Gram matrix, over its largest entry."""
+_LARGEST = 1e100
+"""Above the largest entry of a compliance or Gram matrix in any unit; its square is finite."""
 _NEGATIVE = -1e-9
 """Smallest eigenvalue of a positive semidefinite matrix, over its largest: rounding of files."""
 BAND_OF_MODES = 1.5
@@ -134,6 +136,8 @@ def _check_matrix(matrix: np.ndarray | None, name: str) -> None:
     largest = np.abs(matrix).max()
     if np.abs(matrix - matrix.T).max() > _SYMMETRY * largest:
         raise ResourceError(f"matrix '{name}' is not symmetric, against reciprocity")
+    if not largest < _LARGEST:
+        raise ResourceError(f"matrix '{name}' has the value {largest:g}; at most {_LARGEST:g}")
     lowest = float(np.linalg.eigvalsh((matrix + matrix.T) / 2.0)[0])
     if lowest < _NEGATIVE * largest:
         raise ResourceError(
