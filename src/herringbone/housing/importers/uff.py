@@ -6,6 +6,8 @@ checked here.
 Source: Universal File Formats for Modal Analysis Testing, University of Cincinnati, SDRL.
 """
 
+import contextlib
+import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -79,10 +81,11 @@ def _read_sets(path: Path) -> list[dict[str, Any]]:
     n, kind = 0, "none"
     found = []
     try:
-        file = pyuff.UFF(str(path))
-        for n, kind in enumerate(file.get_set_types(), 1):
-            if kind in {15, 55, 164, 2411, 2414}:
-                found.append(file.read_sets(n - 1))
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does not know
+            file = pyuff.UFF(str(path))
+            for n, kind in enumerate(file.get_set_types(), 1):
+                if kind in {15, 55, 164, 2411, 2414}:
+                    found.append(file.read_sets(n - 1))
     except Exception as error:  # pyuff raises bare Exception for every defect
         raise ResourceError(f"{path}: data set {n} ({kind}) is malformed") from error
     return found
