@@ -110,10 +110,11 @@ def _nodes(sets: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray]:
                 raise ResourceError(
                     "nodes have several displacement coordinate systems; export global directions"
                 )
-            return (
-                np.asarray(item["node_nums"]).astype(int),
-                np.column_stack([item["x"], item["y"], item["z"]]),
-            )
+            labels = np.asarray(item["node_nums"]).astype(int)
+            places = np.column_stack([item["x"], item["y"], item["z"]])
+            if len(labels) != len(places):
+                raise ResourceError(f"{len(labels)} nodes have {len(places)} coordinates")
+            return labels, places
     raise ResourceError("no data set 15 or 2411 holds nodes")
 
 
