@@ -1,6 +1,7 @@
 """Native and Python FMUs take the same resource files, and refuse others with the same words."""
 
 import random
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -13,10 +14,14 @@ from herringbone.core.paths import component_folder
 from herringbone.fmi.host import Host
 
 FILES = [(c.name, t.name, t.start) for c in COMPONENTS.values() for t in c.declaration.texts]
-CASES = 200
-LENGTH = 200  # lists of columns end sooner in native messages
-PIECES = (",", "-", "e999", "nan", ".", "left", " ", "#", "0", "e300", "# units:", "\n", '"a"', "ü")
-"""No unclosed quotes, which Python lets run over line ends."""
+CASES = 400
+ESCAPED = re.compile(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}")
+LENGTH = 150  # lists of columns end sooner in native messages
+PIECES = (
+    ",", "-", "e999", "nan", ".", "left", " ", "#", "0", "e300", "# units:", "\n", '"a"', "ü", '"',
+    '""', "_", "1_0", "0x1", "inf", "\uff11", "\u0663", "\v", "\f", "\x1c", "\x85", "\u2028", "\r",
+    "1" * 400, "1" * 401, "\ufeff",
+)  # fmt: skip
 
 
 def mutate(lines: list[str], chance: random.Random) -> str:
@@ -103,6 +108,8 @@ def test_same_refusals(
         file.write_text(mutate(lines, chance))
         wanted = python_refusal(component, text, file)
         told = native_refusal(component, text, file)
+        wanted = ESCAPED.sub(" ", wanted)  # the log of an FMU breaks lines there
+        told = ESCAPED.sub(" ", told)
         assert told[:LENGTH].rstrip() == wanted[:LENGTH].rstrip()  # a last name may be empty
         refused += bool(wanted)
     assert CASES // 5 < refused < CASES

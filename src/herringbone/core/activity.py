@@ -4,10 +4,7 @@ The lines go to the logger `herringbone.activity`. A program that has set up log
 there; otherwise they stand on stderr, in a terminal as in a notebook, above progress bars.
 """
 
-import contextlib
-import json
 import logging
-import math
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -15,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
-from herringbone.core.caching.files import write_file
+from herringbone.core.caching.files import keep, kept
 from herringbone.core.paths import cache_root
 
 _PATIENCE = 2.0
@@ -55,20 +52,14 @@ def _memory() -> Path:
 
 def _durations() -> dict[str, float]:
     """How long things took [s]; what cannot be read is not known."""
-    try:
-        found = json.loads(_memory().read_text(encoding="utf-8"))
-        known = {what: float(seconds) for what, seconds in found.items()}
-    except (OSError, ValueError, TypeError, AttributeError):
-        return {}
-    return {what: seconds for what, seconds in known.items() if 0.0 < seconds < math.inf}
+    return kept(_memory()) or {}
 
 
 def _remember(what: str, seconds: float) -> None:
     known = _durations()
     if max(seconds, known.get(what, 0.0)) < _PATIENCE:
         return
-    with contextlib.suppress(OSError):  # it is only said
-        write_file(_memory(), json.dumps({**known, what: round(seconds, 2)}).encode())
+    keep(_memory(), {**known, what: round(seconds, 2)})
 
 
 class _Alarm:

@@ -1,6 +1,7 @@
 """Where things lie: component folders, system folders, generated artefacts."""
 
 import os
+import stat
 from pathlib import Path
 
 from herringbone.core.errors import ResourceError
@@ -53,14 +54,46 @@ def cache_folder(kind: str) -> Path:
     """Folder for generated artefacts of a kind, made if needed; see `core.caching.keys`.
 
     Raises:
-        ResourceError: the folder cannot be made.
+        ResourceError: the folder cannot be made, or others can change what is in it.
     """
-    folder = cache_root() / kind
+    root = cache_root()
+    folder = root / kind
     try:
+        root.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder.mkdir(parents=True, exist_ok=True)
+        unsafe = next((place for place in (root, folder) if not is_trusted(place)), None)
     except OSError as error:
         raise ResourceError(
             f"cannot write to {folder} ({error.strerror}); "
             f"set {CACHE_VARIABLE} to a folder that can be written"
         ) from error
+    if unsafe:
+        raise ResourceError(
+            f"{unsafe} holds code that is run, but is of another user, or others can write to it; "
+            f"'chmod go-w' it, or set {CACHE_VARIABLE} to a folder of your own"
+        )
     return folder
+
+
+def is_trusted(place: Path) -> bool:
+    """True if nobody but this user, and the administrator, can write a file or to a folder.
+
+    A group that has the user's name counts as the user. Raises OSError if there is no such place.
+    """
+    if not hasattr(os, "getuid"):  # on Windows, user folders are not for others
+        return True
+    status = place.stat()
+    others = status.st_mode & stat.S_IWOTH
+    group = status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
+    return status.st_uid in {os.getuid(), 0} and not others and not group
+
+
+def _is_private(group: int) -> bool:
+    """True for the administrator's group, and a group that is named as this user."""
+    import grp  # noqa: PLC0415 (not on Windows)
+    import pwd  # noqa: PLC0415
+
+    try:
+        return group == 0 or grp.getgrgid(group).gr_name == pwd.getpwuid(os.getuid()).pw_name
+    except KeyError:  # without names
+        return False

@@ -9,7 +9,7 @@ from numbers import Integral, Real
 
 import numpy as np
 
-from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.files import read_stored, store
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.paths import cache_folder
 
@@ -67,9 +67,11 @@ def stored_arrays(kind: str, key: str, make: Callable[[], Mapping[str, np.ndarra
         ResourceError: the cache folder cannot be made.
     """
     file = cache_folder(kind) / f"{key}.npz"
-    if not is_stored(file):
+    content = read_stored(file)
+    if content is None:
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **make())
-        store(file, buffer.getvalue())
-    with np.load(file, allow_pickle=False) as found:
+        content = buffer.getvalue()
+        store(file, content)
+    with np.load(io.BytesIO(content), allow_pickle=False) as found:
         return dict(found)

@@ -8,6 +8,7 @@ Files that cannot be read, being cut off or empty, are made anew.
 What it leans on inside of numba is tested for every minor version that is admitted.
 """
 
+import contextlib
 import hashlib
 import inspect
 import logging
@@ -28,7 +29,7 @@ from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
 
 from herringbone.core.caching.keys import digest_of, module_key
-from herringbone.core.paths import cache_folder
+from herringbone.core.paths import cache_folder, is_trusted
 
 D = TypeVar("D")
 _LOG = logging.getLogger("herringbone")
@@ -79,18 +80,42 @@ class _CheckedData(IndexDataCacheFile):
         number, and the index could name the code of another signature.
         """
         name = self._data_name(int(digest_of(repr(key)), 16))
-        overloads = self._load_index()
+        try:
+            overloads = self._load_index()
+        except ValueError:  # it is damaged
+            overloads = {}
         overloads[key] = name
         self._save_data(name, data)
         self._save_index(overloads)
 
+    def _load_index(self) -> dict:
+        try:
+            version, stamp, overloads = self._read(self._index_path)
+        except FileNotFoundError:
+            return {}
+        known = (version, stamp) == (self._version, self._source_stamp)
+        return pickle.loads(overloads) if known else {}
+
+    def _save_index(self, overloads: dict) -> None:
+        packed = self._dump(overloads)  # which another numba might not understand
+        self._write(self._index_path, (self._version, self._source_stamp, packed))
+
     def _save_data(self, name: str, data: tuple) -> None:
-        content = self._dump(data)
-        with self._open_for_write(self._data_path(name)) as file:
-            file.write(hashlib.sha256(content).digest() + content)
+        self._write(self._data_path(name), data)
 
     def _load_data(self, name: str) -> tuple:
-        read = Path(self._data_path(name)).read_bytes()
+        return self._read(self._data_path(name))
+
+    def _write(self, path: str, data: tuple) -> None:
+        content = self._dump(data)
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+    def _read(self, path: str) -> tuple:
+        """Content of a file; raises OSError, or ValueError if it is not what was written."""
+        if not is_trusted(Path(path)):
+            raise ValueError("it is of another user, or others can write it")
+        read = Path(path).read_bytes()
         digest, content = read[:_DIGEST], read[_DIGEST:]
         if hashlib.sha256(content).digest() != digest:
             raise ValueError("it is damaged")
@@ -129,7 +154,8 @@ class KernelCache(FunctionCache):
             "cached kernel %s cannot be read (%s); it is compiled again",
             self._impl.filename_base, error or type(error).__name__,
         )  # fmt: skip
-        self.flush()
+        with contextlib.suppress(OSError):
+            self.flush()
 
 
 def cached(compiled: D, function: Callable) -> D:

@@ -1,11 +1,11 @@
 """Testing a housing FMU against the contract of housings before it runs."""
 
 import hashlib
-import json
 from pathlib import Path
 
 from herringbone.analysis.housing.contract import check_housing
 from herringbone.core import HerringboneError
+from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.paths import cache_folder
 from herringbone.cosim.fmu.opening import open_fmu
@@ -21,8 +21,8 @@ def replacement_notes(fmu: Path) -> list[str]:
     except OSError:
         return []
     known = cache_folder(f"housing-checks/{sources_key()}") / f"{digest}.json"
-    if known.is_file():
-        return json.loads(known.read_text(encoding="utf-8"))
+    if (notes := kept(known)) is not None:
+        return notes
     try:
         findings = check_housing(lambda: open_fmu("housing", fmu))
     except HerringboneError as error:
@@ -33,5 +33,5 @@ def replacement_notes(fmu: Path) -> list[str]:
         for f in findings
         if not f.holds
     ]
-    known.write_text(json.dumps(notes), encoding="utf-8")
+    keep(known, notes)
     return notes

@@ -6,7 +6,7 @@ from pathlib import Path
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core import ParameterError, ResourceError
 from herringbone.core.activity import activity
-from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.files import is_file, is_folder
 from herringbone.core.paths import cache_folder
@@ -71,8 +71,11 @@ def _built(file: Path) -> Path:
     design = read_design(file)
     key = digest_of(file.read_bytes(), kernels_key("herringbone.housing.welded.build"))
     folder = cache_folder("welded-housings") / f"{file.stem}-{key}"
-    if not is_stored(folder / HEAD):
+    files = stored_files(folder, "*")
+    if folder / HEAD not in files or not all([is_stored(name) for name in files]):
         with activity(f"making the housing of {file.name}", "once for these dimensions"):
             write_housing(build_housing(design).model, folder)
-        store(folder / HEAD, (folder / HEAD).read_bytes())
+        for name in sorted(folder.iterdir()):
+            if name not in stored_files(folder, "*"):
+                store(name, name.read_bytes())
     return folder

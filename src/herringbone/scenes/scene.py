@@ -7,11 +7,12 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import ParameterError
+from herringbone.core import ParameterError, StructureError
 from herringbone.core.facts import Facts
 from herringbone.core.files import beside, is_file
 from herringbone.core.names import shown
-from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files, read_toml
+from herringbone.core.reading.structured import read_toml
+from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -93,7 +94,7 @@ def read_scene(file: str | Path) -> Scene:
         StructureError: the file cannot be read.
     """
     file = Path(file)
-    data = read_toml(file)
+    data = read_toml(file, StructureError)
     known = {"description", "start", *_NUMBERS, *_TABLES, *_FILES}
     if unknown := set(data) - known:
         raise ParameterError(

@@ -1,6 +1,5 @@
 """What takes long says so once, on stderr, and remembers how long it took."""
 
-import json
 import logging
 import time
 
@@ -8,6 +7,7 @@ import pytest
 
 from herringbone.core import activity as module
 from herringbone.core.activity import Pieces, activity
+from herringbone.core.caching.files import keep, kept
 
 PATIENCE = 0.05
 
@@ -40,7 +40,7 @@ def test_what_takes_long_says_so_once_and_on_stderr_only(capsys, impatient):
     after = capsys.readouterr()
     assert said == "digging a hole ... (this may take a while; once)\n"
     assert (after.out, after.err) == ("", "")
-    assert json.loads(impatient.read_text())["digging a hole"] >= 4.0 * PATIENCE - 0.01
+    assert kept(impatient)["digging a hole"] >= 4.0 * PATIENCE - 0.01
 
 
 def test_what_is_short_says_and_remembers_nothing(capsys, monkeypatch, impatient):
@@ -54,10 +54,10 @@ def test_what_is_short_says_and_remembers_nothing(capsys, monkeypatch, impatient
 
 def test_what_took_long_says_so_at_once_and_how_long(capsys, monkeypatch, impatient):
     monkeypatch.setattr(module, "_PATIENCE", 30.0)
-    impatient.write_text('{"digging a hole": 71.8}')
+    keep(impatient, {"digging a hole": 71.8})
     with activity("digging a hole"):
         assert wait_for_line(capsys) == "digging a hole ... (usually 72 s)\n"
-    assert json.loads(impatient.read_text())["digging a hole"] < 10.0
+    assert kept(impatient)["digging a hole"] < 10.0
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_a_damaged_memory_is_as_none(content, capsys, impatient):
     impatient.write_bytes(content)
     with activity("work"):
         assert wait_for_line(capsys) == "work ... (this may take a while)\n"
-    assert json.loads(impatient.read_text())["work"] >= PATIENCE
+    assert kept(impatient)["work"] >= PATIENCE
 
 
 def test_parts_of_what_was_said_say_nothing(capsys):
@@ -79,7 +79,7 @@ def test_parts_of_what_was_said_say_nothing(capsys):
 
 
 def test_many_pieces_say_how_many_there_were(capsys, impatient):
-    impatient.write_text('{"carving": 1000.0}')
+    keep(impatient, {"carving": 1000.0})
     pieces = Pieces("carving", "once")
     for _ in range(3):
         with pieces.piece(), pieces.piece():
@@ -88,7 +88,7 @@ def test_many_pieces_say_how_many_there_were(capsys, impatient):
     with pieces.piece():
         said = wait_for_line(capsys)
     assert said == "carving: 3 in 0 s so far (up to 1000 s in all; once)\n"
-    assert json.loads(impatient.read_text()) == {"carving": 1000.0}
+    assert kept(impatient) == {"carving": 1000.0}
 
 
 def test_the_time_of_compilations_is_not_that_of_what_needs_them(capsys, monkeypatch, impatient):
@@ -98,7 +98,7 @@ def test_the_time_of_compilations_is_not_that_of_what_needs_them(capsys, monkeyp
         assert wait_for_line(capsys).startswith("compiling: 0 in")
         time.sleep(3.0 * PATIENCE)
     assert capsys.readouterr().err == ""
-    assert list(json.loads(impatient.read_text())) == ["compiling"]
+    assert list(kept(impatient)) == ["compiling"]
 
 
 def test_lines_go_to_the_programs_own_logging(capsys, caplog, monkeypatch):

@@ -183,11 +183,11 @@ def test_rexs_stage():
         ('"center_distance"', '"distance"', "center_distance is missing"),
         ('"addendum_modification_coefficient"', '"x"', "addendum_modification_coefficient is mis"),
         ('deg">-21', 'deg">21', "helix angles 21 and 21 deg of an external pair must be opposite"),
-        ('unit="">27', 'unit="">many', "number_of_teeth = 'many' is no number"),
+        ('unit="">27', 'unit="">many', "number_of_teeth: 'many' is not a finite number"),
         ('unit="">27', 'unit="">27.5', "number of teeth 27.5 must be an integer"),
         ('type="cylindrical_stage"', 'type="bevel_stage"', "it has no cylindrical_stage"),
         ('role="gear_2"', 'role="gear_3"', "has no relation to two cylindrical_gears"),
-        ("<model", "<models", "cannot read"),
+        ("<model", "<models", "is not well-formed"),
         ('mm">190', 'mm">18', "center distance 18.0000 mm is impossible"),
     ],
 )  # fmt: skip

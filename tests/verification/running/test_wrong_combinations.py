@@ -26,6 +26,16 @@ OWN = "z 23/57, base radii 0.04284645/0.1061847 m, base helix angle 0.4891167 ra
 TABLE, RUN = "gear_mesh.stiffness_table", {"t_end": 3e-3, "fmu": "in-process"}
 
 
+def jumping_table(file):
+    """The shipped table with the stiffness of the left side ten times as large at phase 1/2."""
+    lines = SHIPPED_TABLE.read_text(encoding="utf-8").splitlines()
+    for n, line in enumerate(lines):
+        head, _, stiffness = line.rpartition(",")
+        if line.startswith("left,") and float(head.rpartition(",")[2]) == 0.5:
+            lines[n] = f"{head},{10.0 * float(stiffness)!r}"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def turned_housing():
     """The wheel's seats 10 deg above x, at the same distance."""
     angle = np.radians(10.0)
@@ -52,6 +62,10 @@ def files(tmp_path_factory):
     write_housing(small_housing(), folder / "box")
     write_housing(small_housing(valid_to_hz=1000.0), folder / "low")
     write_housing(turned_housing(), folder / "turned")
+    write_housing(
+        replace(small_housing(static=None), shapes=1e-3 * small_housing().shapes), folder / "stiff"
+    )
+    jumping_table(folder / "jumping.csv")
     return folder
 
 
@@ -139,6 +153,14 @@ NOTED = {
         lambda f: {"values": {"modal_housing.modes": f / "low" / "modes.csv",
                               "modal_housing.shapes": f / "box" / "shapes.csv"}},
         "modal_housing has its modes of {f}/low/modes.csv and its shapes of {f}/box/shapes.csv: of",
+    ),
+    "housing of another unit": (
+        lambda f: {"housing": f / "stiff"},
+        "modal_housing: the static stiffness at the seats is ",
+    ),
+    "table with a slip of the pen": (
+        lambda f: {"values": {TABLE: f / "jumping.csv"}},
+        "gear_mesh: the stiffness of the left mesh jumps from ",
     ),
     "load above the table": (
         lambda f: {"values": {"gear_mesh.pinion.tau": 6000.0}},

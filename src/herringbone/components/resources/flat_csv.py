@@ -5,19 +5,21 @@ side,load,phase,stiffness
 left,56.306,0.0,8.22e8
 """
 
-import csv
-import zipfile
+import re
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number
+from herringbone.core.reading.texts import AnyPath, lines_of, read_text
 
-TablePath = Path | zipfile.Path
+_BLANK = " \t\v\f"
+_QUOTED = re.compile(r'"((?:[^"]++|"")*+)"([^,]*)')
+_PLAIN = re.compile(r"()([^,]*)")
 
 
-def _units(line: str, file: TablePath) -> dict[str, str]:
+def _units(line: str, file: AnyPath) -> dict[str, str]:
     before, _, text = line.partition("# units:")
     if before or not text:
         raise ResourceError(f"{file}: the first line must be '# units: <column> <unit>, ...'")
@@ -25,7 +27,7 @@ def _units(line: str, file: TablePath) -> dict[str, str]:
 
 
 def check_units(
-    found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: TablePath
+    found: Mapping[str, str], wanted: Mapping[str, tuple[str, ...]], file: AnyPath
 ) -> None:
     """Check the units of columns; raises ResourceError."""
     for column, units in wanted.items():
@@ -38,7 +40,7 @@ def check_units(
 
 
 def read_flat_csv(
-    file: TablePath,
+    file: AnyPath,
     texts: tuple[str, ...],
     numbers: Mapping[str, tuple[str, ...]],
     *,
@@ -58,36 +60,40 @@ def read_flat_csv(
     Raises:
         ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
-    try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
+    lines = lines_of(read_text(file))
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
-    rows = [(n, r) for n, r in enumerate(csv.reader(lines), 1) if r and not r[0].startswith("#")]
+    rows = [
+        (n, _fields(line, file, n))
+        for n, line in enumerate(lines, 1)
+        if line and not line.startswith("#")
+    ]
     if len(rows) < 2:
         raise ResourceError(f"{file}: it has no rows")
-    header = [name.strip() for name in rows[0][1]]
+    header = [name.strip(_BLANK) for name in rows[0][1]]
     if twice := sorted({name for name in header if header.count(name) > 1}):
         raise ResourceError(f"{file}: column {', '.join(twice)} stands twice")
     missing = [name for name in (*texts, *numbers) if name not in header]
     if missing:
         raise ResourceError(
-            f"{file}: column {', '.join(missing)} is missing; it has {', '.join(header)}"
+            f"{file}: column {', '.join(missing)} is missing; it has "
+            f"{', '.join(filter(None, header))}"
         )
     extra = [name for name in header if name not in texts and name not in numbers]
     if extra and not more:
-        raise ResourceError(f"{file}: column {', '.join(extra)} is unknown")
+        raise ResourceError(f"{file}: column {', '.join(filter(None, extra))} is unknown")
     columns: dict[str, list] = {name: [] for name in header}
     for line, row in rows[1:]:
         if len(row) != len(header):
             raise ResourceError(f"{file}, line {line}: {len(row)} fields, {len(header)} expected")
         for name, text in zip(header, row, strict=True):
-            columns[name].append(text.strip() if name in texts else _number(text, name, file, line))
+            columns[name].append(
+                text.strip(_BLANK) if name in texts else _number(text, name, file, line)
+            )
     return {name: np.array(values) for name, values in columns.items()}, units
 
 
-def read_header(file: TablePath, name: str, count: int) -> np.ndarray:
+def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
     """Numbers of the comment line `# name: ...` of a flat CSV file; the last such line counts.
 
     Returns:
@@ -97,25 +103,37 @@ def read_header(file: TablePath, name: str, count: int) -> np.ndarray:
         ResourceError: it has not that many finite numbers.
     """
     mark, last = f"# {name}:", 0
-    lines = file.read_text(encoding="utf-8-sig").splitlines() if count else []
+    lines = lines_of(read_text(file)) if count else []
     for line, text in enumerate(lines, 1):
         last = line if text.startswith(mark) else last
     if last == 0:
         return np.full(count, np.nan)
     try:
-        found = np.array([float(word) for word in lines[last - 1].removeprefix(mark).split()])
+        found = np.array([number(word) for word in lines[last - 1].removeprefix(mark).split()])
     except ValueError:
         found = np.empty(0)
-    if len(found) != count or not np.isfinite(found).all():
+    if len(found) != count:
         raise ResourceError(f"{file}, line {last}: '{mark}' takes {count} finite numbers")
     return found
 
 
-def _number(text: str, column: str, file: TablePath, line: int) -> float:
+def _number(text: str, column: str, file: AnyPath, line: int) -> float:
     try:
-        value = float(text)
+        return number(text)
     except ValueError:
-        value = np.nan
-    if not np.isfinite(value):
-        raise ResourceError(f"{file}, line {line}: {column} = '{text}' is not a finite number")
-    return value
+        said = f"{file}, line {line}: {column} = '{text[:64]}' is not a finite number"
+        raise ResourceError(said) from None
+
+
+def _fields(line: str, file: AnyPath, n: int) -> list[str]:
+    """Fields of line n; quotes around one are taken off, and two inside stand for one."""
+    if '"' not in line:
+        return line.split(",")
+    fields, at = [], 0
+    while at <= len(line):
+        found = (_QUOTED if line.startswith('"', at) else _PLAIN).match(line, at)
+        if found is None:
+            raise ResourceError(f"{file}, line {n}: a quote is not closed")
+        fields.append(found[1].replace('""', '"') + found[2])
+        at = found.end() + 1
+    return fields

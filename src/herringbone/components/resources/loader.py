@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.components.resources.flat_csv import (
-    TablePath,
     check_units,
     read_flat_csv,
     read_header,
 )
 from herringbone.core import Column, ResourceError, Text
+from herringbone.core.reading.texts import AnyPath
 
 REPORT = 12
 """Numbers that a refusal may show."""
@@ -40,7 +40,7 @@ class Refusal:
     format: str
     text: int = 0
 
-    def error(self, files: Sequence[TablePath], report: np.ndarray) -> ResourceError:
+    def error(self, files: Sequence[AnyPath], report: np.ndarray) -> ResourceError:
         """The refusal with its numbers."""
         numbers = self.format.replace("%%", "").count("%")
         file = "" if self.text == NO_FILE else files[self.text]
@@ -94,7 +94,7 @@ class ResourceLoader:
 
 
 def read_numbers(
-    file: TablePath, columns: tuple[Column, ...], header: str = "", header_count: int = 0
+    file: AnyPath, columns: tuple[Column, ...], header: str = "", header_count: int = 0
 ) -> tuple[np.ndarray, tuple[int, int]]:
     """Read a flat CSV file as numbers; see `Text` for its grammar.
 
@@ -121,10 +121,10 @@ def read_numbers(
     return np.concatenate([used, given, rows.ravel()]), rows.shape
 
 
-def _numbered(column: Column, found: np.ndarray, file: TablePath) -> np.ndarray:
+def _numbered(column: Column, found: np.ndarray, file: AnyPath) -> np.ndarray:
     numbers = {word: float(i) for i, word in enumerate(column.words)}
     if not column.other_words and (unknown := [w for w in found if w not in numbers]):
         raise ResourceError(
-            f"{file}: {column.name} '{unknown[0]}' is none of {', '.join(column.words)}"
+            f"{file}: {column.name} '{unknown[0][:64]}' is none of {', '.join(column.words)}"
         )
     return np.array([numbers.get(word, -1.0) for word in found])

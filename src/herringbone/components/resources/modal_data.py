@@ -6,9 +6,10 @@ Shapes: columns point, dof, then one column a mode [kg^-1/2], mass-normalised.
 
 import numpy as np
 
-from herringbone.components.resources.flat_csv import TablePath, check_units, read_flat_csv
+from herringbone.components.resources.flat_csv import check_units, read_flat_csv
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column, ResourceError
+from herringbone.core.reading.texts import AnyPath
 from herringbone.kernels.jit import kernel
 
 Dofs = tuple[tuple[str, str], ...]
@@ -48,7 +49,7 @@ def refusals(dofs: Dofs, most: int) -> tuple[Refusal, ...]:
     """What `collect` may return."""
     return (
         Refusal(", mode %g: frequency %g Hz must be positive (0 only if rigid)"),
-        Refusal(", mode %g: damping ratio %g must not be negative"),
+        Refusal(", mode %g: damping ratio %g must lie between 0 and 1"),
         Refusal(f": %g modes; at most {most}"),
         Refusal(" has %g modes, the file of frequencies has %g", 1),
         Refusal(": a point and dof stand twice", 1),
@@ -68,7 +69,7 @@ def _check_modes(values: np.ndarray, modes: int, report: np.ndarray) -> int:
         if frequency_hz < 0.0 or (frequency_hz == 0.0 and kind != _RIGID):
             report[1] = frequency_hz
             return _FREQUENCY
-        if damping_ratio < 0.0:
+        if damping_ratio < 0.0 or damping_ratio > 1.0:
             report[1] = damping_ratio
             return _DAMPING
     return 0
@@ -132,7 +133,7 @@ def collect(
     return _MISSING + first_missing if missing else 0
 
 
-def read_mode_table(modes: TablePath) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+def read_mode_table(modes: AnyPath) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Read and check the table of modes.
 
     Returns:
@@ -149,7 +150,7 @@ def read_mode_table(modes: TablePath) -> tuple[tuple[str, ...], np.ndarray, np.n
     return tuple(_KINDS[int(kind)] for kind in kinds), frequency_hz, damping_ratio
 
 
-def read_shape_table(shapes: TablePath) -> tuple[Dofs, np.ndarray]:
+def read_shape_table(shapes: AnyPath) -> tuple[Dofs, np.ndarray]:
     """Read and check the table of shapes.
 
     Returns:

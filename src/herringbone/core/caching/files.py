@@ -1,13 +1,22 @@
-"""Files in the cache: written whole, and known again by a digest that stands beside them."""
+"""Files in the cache: written whole, and known again by a digest that stands beside or in them."""
 
+import contextlib
 import hashlib
+import json
 import logging
 import os
 import tempfile
+import time
 from pathlib import Path
+from typing import Any
+
+from herringbone.core.paths import is_trusted
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"
+_PART = ".part"
+_STALE = 3600.0
+"""Seconds after which a file that was not written to its end is of a dead process."""
 
 
 def _stamp(file: Path) -> Path:
@@ -15,11 +24,25 @@ def _stamp(file: Path) -> Path:
 
 
 def write_file(file: Path, content: bytes) -> None:
-    """Write a file so that others see all of it or nothing."""
+    """Write a file so that others see all of it or nothing; raises OSError."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as part:
-        part.write(content)
-    os.replace(part.name, file)  # noqa: PTH105 (atomic on all platforms)
+    _sweep(file.parent)
+    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=_PART, delete=False) as part:
+        try:
+            part.write(content)
+            part.close()
+            os.replace(part.name, file)  # noqa: PTH105 (atomic on all platforms)
+        except OSError:
+            Path(part.name).unlink(missing_ok=True)
+            raise
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what dead processes did not write to its end."""
+    for part in folder.glob(f"*{_PART}"):
+        with contextlib.suppress(OSError):
+            if time.time() - part.stat().st_mtime > _STALE:
+                part.unlink()
 
 
 def store(file: Path, content: bytes) -> None:
@@ -28,14 +51,50 @@ def store(file: Path, content: bytes) -> None:
     write_file(_stamp(file), hashlib.sha256(content).hexdigest().encode())
 
 
-def is_stored(file: Path) -> bool:
-    """True if the cache has the file as it was stored; a line is logged if it is damaged."""
+def read_stored(file: Path) -> bytes | None:
+    """Content of a file in the cache, as it was stored; else None.
+
+    A line is logged if it is damaged, or of another user.
+    """
     try:
         content = file.read_bytes()
         stamp = _stamp(file).read_bytes()
     except OSError:
-        return False
+        return None
+    if not is_trusted(file):
+        _LOG.warning("%s is of another user, or others can write it; it is made anew", file)
+        return None
     if hashlib.sha256(content).hexdigest().encode() == stamp:
-        return True
+        return content
     _LOG.warning("%s is damaged; it is made anew", file)
-    return False
+    return None
+
+
+def is_stored(file: Path) -> bool:
+    """True if the cache has the file as it was stored; see `read_stored`."""
+    return read_stored(file) is not None
+
+
+def stored_files(folder: Path, pattern: str) -> list[Path]:
+    """Files of a folder that were stored, also those that are gone since."""
+    return sorted(s.with_suffix("") for s in folder.glob(pattern + _SUFFIX))
+
+
+def keep(file: Path, found: object) -> None:
+    """Keep what can be found again, as JSON behind its digest; not being able to does no harm."""
+    text = json.dumps(found)
+    with contextlib.suppress(OSError):
+        write_file(file, f"{_digest(text)}\n{text}".encode())
+
+
+def kept(file: Path) -> Any:  # noqa: ANN401 (what was kept)
+    """What was kept in a file; None if there is nothing, or it is damaged or of another user."""
+    try:
+        digest, _, text = file.read_text(encoding="utf-8").partition("\n")
+    except (OSError, ValueError):
+        return None
+    return json.loads(text) if digest == _digest(text) and is_trusted(file) else None
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -5,14 +5,16 @@ A file, not `exec`, so that numba can cache what such a module compiles.
 
 import importlib.util
 import logging
+import marshal
 import sys
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
-from herringbone.core.caching.files import write_file
+from herringbone.core.caching.files import read_stored, store, write_file
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.paths import cache_folder
 
+_PYTHON = f"{sys.implementation.cache_tag}-{importlib.util.MAGIC_NUMBER.hex()}"
 _LOG = logging.getLogger("herringbone")
 
 
@@ -33,8 +35,18 @@ def load_generated(kind: str, source: str) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, file)
     module = importlib.util.module_from_spec(spec)  # type: ignore[arg-type]  # a .py file has one
     sys.modules[name] = module
-    spec.loader.exec_module(module)  # type: ignore[union-attr]  # as above
+    exec(_code(file, source), module.__dict__)
     return module
+
+
+def _code(file: Path, source: str) -> CodeType:
+    """Byte code of a module; Python itself would not check what it keeps."""
+    kept = file.with_suffix(f".{_PYTHON}.code")
+    if (found := read_stored(kept)) is not None:
+        return marshal.loads(found)
+    code = compile(source, file, "exec")
+    store(kept, marshal.dumps(code))
+    return code
 
 
 def _is_written(file: Path, source: str) -> bool:

@@ -14,15 +14,13 @@ before the modules that they make are imported: what is edited later in this pro
 compiled code cached under its name.
 """
 
-import contextlib
 import hashlib
-import json
 import sys
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from herringbone.core.caching.files import write_file
+from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.syntax import Syntax, syntax_of
 from herringbone.core.paths import PACKAGE, cache_root, components_folder
 
@@ -119,7 +117,7 @@ def _known(imports: Iterable[str]) -> list[str]:
 def _read_modules() -> dict[str, Syntax]:
     """All modules of the package; files that have not changed are not parsed again."""
     memo = cache_root() / f"syntax-{sys.version_info[0]}.{sys.version_info[1]}.json"
-    known = _remembered(memo)
+    known = kept(memo) or {}
     modules, remembered = {}, {}
     for file in sorted(PACKAGE.rglob("*.py")):
         status = file.stat()
@@ -135,8 +133,7 @@ def _read_modules() -> dict[str, Syntax]:
             modules[name] = _syntax_of(file)
         remembered[name] = [*stamp, modules[name].digest, list(modules[name].imports)]
     if remembered != known:
-        with contextlib.suppress(OSError):  # it only saves time
-            write_file(memo, json.dumps(remembered).encode())
+        keep(memo, remembered)
     return modules
 
 
@@ -146,14 +143,6 @@ def _syntax_of(file: Path) -> Syntax:
         return syntax_of(source.decode())
     except SyntaxError:  # whoever imports it gets the message
         return Syntax(digest_of(source), ())
-
-
-def _remembered(memo: Path) -> dict[str, list]:
-    try:
-        found = json.loads(memo.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
 
 
 _MODULES = _read_modules()

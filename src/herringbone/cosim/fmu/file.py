@@ -1,21 +1,25 @@
 """Opening FMU files safely: what is checked before anything of a file is loaded."""
 
+import io
 import re
-import tempfile
 import zipfile
 from pathlib import Path
+from typing import Final
+from xml.etree.ElementTree import Element, tostring
 
 import fmpy
 from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
 from herringbone.core.files import is_file, is_folder
-from herringbone.cosim.fmu.archive import escaping_entry
+from herringbone.core.reading.archives import open_archive
+from herringbone.core.reading.numbers import number
+from herringbone.core.reading.xml import LARGEST_XML, parse_xml
+from herringbone.core.temporary import make_temporary_folder, remove_temporary_folder
 
 _DESCRIPTION = "modelDescription.xml"
-_FOREIGN_XML = re.compile(rb"<!(DOCTYPE|ENTITY)", re.IGNORECASE)
 _USABLE = re.compile(r"2\.0|3\.0(\.\d+)?")
-_VERSION = re.compile(rb'fmiVersion\s*=\s*["\']([^"\']*)["\']')
+_MOST_REFERENCE: Final = 2**32
 
 
 def require_file(file: Path) -> None:
@@ -35,23 +39,20 @@ def read_fmu(file: str | Path) -> ModelDescription:
     """
     file = Path(file)
     require_file(file)
+    with open_archive(file, "an FMU", FmuError) as archive:
+        names = archive.names
+        if _DESCRIPTION not in names:
+            raise FmuError(f"{file} is not an FMU: it contains no {_DESCRIPTION}")
+        description = archive.read(_DESCRIPTION, LARGEST_XML)
+    root = parse_xml(description, f"{file}: {_DESCRIPTION}", FmuError)
+    _check_version(root, file)
     try:
-        with zipfile.ZipFile(file) as archive:
-            names = archive.namelist()
-            if name := escaping_entry(names):
-                raise FmuError(
-                    f"{file}: entry '{name}' would be written outside its folder; refused"
-                )
-            description = archive.read(_DESCRIPTION)
-    except zipfile.BadZipFile as error:
-        raise FmuError(f"{file} is not an FMU: {error}") from error
-    except KeyError:
-        raise FmuError(f"{file} is not an FMU: it contains no {_DESCRIPTION}") from None
-    _check_description(description, file)
-    try:
-        model = read_model_description(str(file), validate=False)
+        model = read_model_description(_repacked(root), validate=False)
+        _check_numbers(model)
     except Exception as error:  # fmpy raises bare Exception for every defect of the XML
-        raise FmuError(f"{file}: {_DESCRIPTION} cannot be read: {error}") from error
+        raise FmuError(
+            f"{file}: {_DESCRIPTION} cannot be read: {error or type(error).__name__}"
+        ) from error
     if model.coSimulation is None:
         kinds = {"model exchange": model.modelExchange,
                  "scheduled execution": model.scheduledExecution}  # fmt: skip
@@ -63,7 +64,8 @@ def read_fmu(file: str | Path) -> ModelDescription:
     platform = fmpy.platform_tuple if is_fmi3(model) else fmpy.platform
     binary = f"binaries/{platform}/{library}"
     if binary not in names:
-        have = sorted({n.split("/")[1] for n in names if n.startswith("binaries/") and n[9:]})
+        parts = (name.split("/") for name in names)
+        have = sorted({part[1] for part in parts if part[0] == "binaries" and any(part[1:2])})
         raise FmuError(
             f"{file} has no binary for this platform ({binary}); "
             f"it has: {', '.join(have) or 'none'}"
@@ -71,15 +73,36 @@ def read_fmu(file: str | Path) -> ModelDescription:
     return model
 
 
-def _check_description(description: bytes, file: Path) -> None:
-    if _FOREIGN_XML.search(description):
-        raise FmuError(f"{file}: {_DESCRIPTION} declares a DOCTYPE or an entity; refused")
-    found = _VERSION.search(description)
-    version = found.group(1).decode("ascii", "replace") if found else "unknown"
+def _check_version(root: Element, file: Path) -> None:
+    version = root.get("fmiVersion", "unknown")
     if not _USABLE.fullmatch(version):
         raise FmuError(
             f"{file} is an FMI {version} unit; FMI 2.0 or 3.0 for co-simulation is needed"
         )
+
+
+def _repacked(root: Element) -> io.BytesIO:
+    """An archive of the description as it was parsed: fmpy reads with another parser."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr(_DESCRIPTION, tostring(root, encoding="utf-8"))
+    packed.seek(0)
+    return packed
+
+
+def _check_numbers(model: ModelDescription) -> None:
+    """Numbers of the description that are used here; raises ValueError."""
+    for variable in model.modelVariables:
+        if not 0 <= variable.valueReference < _MOST_REFERENCE:
+            raise ValueError(f"{variable.name} has the reference {variable.valueReference}")
+    for unit in model.unitDefinitions:
+        base = unit.baseUnit
+        for value in (base.factor, base.offset) if base else ():
+            number(str(value or 0))
+    experiment = model.defaultExperiment
+    times = (experiment.startTime, experiment.stopTime, experiment.stepSize) if experiment else ()
+    for text in times:
+        number(str(text or 0))
 
 
 def is_fmi3(model: ModelDescription) -> bool:
@@ -93,12 +116,17 @@ def extract_fmu(file: Path) -> Path:
     Raises:
         FmuError: the folder for temporary files has a path that pythonfmu cannot decode.
     """
-    folder = Path(tempfile.mkdtemp(prefix="herringbone_"))
+    folder = make_temporary_folder()
     if not str(folder).isascii() or "#" in str(folder) or "%" in str(folder):
-        folder.rmdir()
+        remove_temporary_folder(folder)
         raise FmuError(
             f"temporary folder {folder} has characters that Python FMUs cannot load from; "
             "set TMPDIR to a plain ASCII path"
         )
-    fmpy.extract(str(file), unzipdir=str(folder))
+    try:
+        with open_archive(file, "an FMU", FmuError) as archive:
+            archive.extract(folder)
+    except FmuError:
+        remove_temporary_folder(folder)
+        raise
     return folder

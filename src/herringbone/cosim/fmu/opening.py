@@ -1,10 +1,10 @@
 """Opening an FMU of any FMI version that the master knows."""
 
-import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, is_fmi3, read_fmu
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 from herringbone.cosim.fmu.fmi3_part import Fmu3Part
@@ -39,4 +39,4 @@ def many_of(name: str, file: str | Path) -> Iterator[Callable[[], FmuPart]]:
     try:
         yield lambda: kind(name, file, model, folder)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_temporary_folder(folder)

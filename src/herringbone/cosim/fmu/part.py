@@ -2,7 +2,6 @@
 
 import contextlib
 import ctypes
-import shutil
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
+from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.others import OtherValues
@@ -211,4 +211,4 @@ class FmuPart(ABC):
 
     def _remove_files(self) -> None:
         if self._owned:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            remove_temporary_folder(self._folder)

@@ -1,17 +1,16 @@
 """What writing and reading SSP 1.0 files share: names of the format, and opening a file safely."""
 
 import atexit
-import shutil
-import tempfile
-import zipfile
 from pathlib import Path
 from typing import Final
-from xml.etree.ElementTree import Element, ParseError, fromstring
-from xml.parsers import expat
+from xml.etree.ElementTree import Element
 
 from herringbone.core import StructureError
 from herringbone.core.files import is_file, is_folder
-from herringbone.cosim.fmu.archive import escaping_entry
+from herringbone.core.reading.archives import open_archive
+from herringbone.core.reading.texts import read_bytes
+from herringbone.core.reading.xml import LARGEST_XML, parse_xml
+from herringbone.core.temporary import make_temporary_folder, remove_temporary_folder
 
 STRUCTURE_FILE: Final = "SystemStructure.ssd"
 VERSION: Final = "1.0"
@@ -46,10 +45,10 @@ def unpack(file: Path) -> Path:
     """
     if is_folder(file):
         return file
-    with _archive(file) as archive:
-        folder = Path(tempfile.mkdtemp(prefix="herringbone_ssp_"))
-        atexit.register(shutil.rmtree, folder, ignore_errors=True)
-        archive.extractall(folder)
+    with open_archive(file, "an .ssp file", StructureError) as archive:
+        folder = make_temporary_folder()
+        atexit.register(remove_temporary_folder, folder)
+        archive.extract(folder)
     return folder
 
 
@@ -59,57 +58,18 @@ def read_structure(file: Path) -> Element:
     Raises:
         StructureError: it cannot be read, or is no system structure description of SSP 1.
     """
-    try:
-        if is_folder(file):
-            data = (file / STRUCTURE_FILE).read_bytes()
-        else:
-            with _archive(file) as archive:
-                data = archive.read(STRUCTURE_FILE)
-    except (OSError, KeyError):
-        raise StructureError(f"{file}: it contains no {STRUCTURE_FILE}") from None
-    root = parse_xml(data, f"{file}: {STRUCTURE_FILE}")
+    if is_folder(file):
+        data = read_bytes(file / STRUCTURE_FILE, LARGEST_XML, StructureError)
+    else:
+        with open_archive(file, "an .ssp file", StructureError) as archive:
+            data = archive.read(STRUCTURE_FILE, LARGEST_XML)
+    root = parse_xml(data, f"{file}: {STRUCTURE_FILE}", StructureError)
     if root.tag != qualified("ssd:SystemStructureDescription"):
         raise StructureError(f"{file}: {STRUCTURE_FILE} is no SSP 1.0 system structure description")
     version = root.get("version", "")
     if not version.startswith("1."):
         raise StructureError(f"{file}: SSP version '{version}'; version 1.0 is needed")
     return root
-
-
-def _archive(file: Path) -> zipfile.ZipFile:
-    if not is_file(file):
-        raise StructureError(f"there is no file {file}")
-    try:
-        archive = zipfile.ZipFile(file)
-    except zipfile.BadZipFile as error:
-        raise StructureError(f"{file} is not an .ssp file: {error}") from error
-    if name := escaping_entry(archive.namelist()):
-        archive.close()
-        raise StructureError(f"{file}: entry '{name}' would be written outside its folder; refused")
-    return archive
-
-
-def parse_xml(data: bytes, where: str) -> Element:
-    """Root of an XML text, in any encoding, without document type and entities.
-
-    Args:
-        data: the text.
-        where: file, for messages.
-
-    Raises:
-        StructureError: it is malformed, or declares a DOCTYPE.
-    """
-
-    def refuse(*_: object) -> None:
-        raise StructureError(f"{where} declares a DOCTYPE or an entity; refused")
-
-    checker = expat.ParserCreate()
-    checker.StartDoctypeDeclHandler = refuse
-    try:
-        checker.Parse(data, True)
-        return fromstring(data)
-    except (expat.ExpatError, ParseError, LookupError, ValueError) as error:
-        raise StructureError(f"{where} is not well-formed: {error}") from error
 
 
 def qualified(tag: str) -> str:

@@ -16,6 +16,9 @@ from herringbone.core.files import is_file
 from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
 from herringbone.core.part_path import PartPath
+from herringbone.core.reading.numbers import number, whole
+from herringbone.core.reading.texts import read_bytes
+from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.ssp.format import (
@@ -25,7 +28,6 @@ from herringbone.cosim.ssp.format import (
     PARAMETER_TYPE,
     PARTS_ANNOTATION,
     local_name,
-    parse_xml,
     qualified,
     read_structure,
     unpack,
@@ -33,15 +35,15 @@ from herringbone.cosim.ssp.format import (
 from herringbone.cosim.structure.system import PartSpec, System
 
 _TYPES: Mapping[str, Callable[[str], float | str]] = {
-    "Real": float,
-    "Integer": int,
+    "Real": number,
+    "Integer": whole,
     "Boolean": lambda text: int(text in {"true", "1"}),
     "String": str,
     "Enumeration": lambda text: int(text) if text.isdecimal() else text,
     "Binary": str,
-    "Float64": float,
-    "Float32": float,
-    **{f"{kind}{n}": int for kind in ("Int", "UInt") for n in (8, 16, 32, 64)},
+    "Float64": number,
+    "Float32": number,
+    **{f"{kind}{n}": whole for kind in ("Int", "UInt") for n in (8, 16, 32, 64)},
 }
 """Values of SSP 1.0, and those that 2.0 has besides."""
 
@@ -69,7 +71,7 @@ def read_stop_time(file: str | Path) -> float | None:
     experiment = read_structure(file).find("ssd:DefaultExperiment", NAMESPACES)
     text = None if experiment is None else experiment.get("stopTime")
     try:
-        return None if text is None else float(text)
+        return None if text is None else number(text)
     except ValueError:
         raise StructureError(f"{file}: stopTime = '{text}' is no number") from None
 
@@ -174,8 +176,11 @@ class _Reader:
 
     def path(self, source: str, where: str) -> Path:
         """File of a source, which must lie in the .ssp."""
-        parsed = urlparse(source)
-        path = (self.folder / unquote(parsed.path)).resolve()
+        try:
+            parsed = urlparse(source)
+            path = (self.folder / unquote(parsed.path)).resolve()
+        except (ValueError, OSError):  # no URL, or no path
+            raise self.refusal(f"{where}: source {shown(source)} is no name of a file") from None
         if parsed.scheme or parsed.netloc or not path.is_relative_to(self.folder.resolve()):
             raise self.refusal(f"{where}: source '{source}' lies outside the file; pack it")
         if not is_file(path):
@@ -227,7 +232,8 @@ class _Reader:
         if source is None and inline is not None:
             return inline
         file = self.path(source or "", where)
-        root = parse_xml(file.read_bytes(), f"{self.file}: {source}")
+        data = read_bytes(file, LARGEST_XML, StructureError)
+        root = parse_xml(data, f"{self.file}: {source}", StructureError)
         if root.tag != qualified("ssv:ParameterSet"):
             raise self.refusal(f"{where}: {source} is no SSP 1.0 parameter set")
         return root

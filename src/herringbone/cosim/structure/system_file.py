@@ -18,16 +18,16 @@ pinion = "gear_mesh.pinion"
 bearing_force = ["bearing_supports.shaft.*.f_?"]
 """
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import StructureError, reason
+from herringbone.core import StructureError
 from herringbone.core.files import beside, is_file
 from herringbone.core.names import check_name, identifier_for, shown
 from herringbone.core.part_path import PartPath
 from herringbone.core.paths import systems_folder
+from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system import PartSpec, System
 
 FILE_NAME = "system.toml"
@@ -72,18 +72,6 @@ def find_system(reference: str | Path) -> Path:
     )
 
 
-def read_toml(file: Path) -> dict[str, Any]:
-    """Read a TOML file.
-
-    Raises:
-        StructureError: it cannot be read.
-    """
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise StructureError(f"cannot read {file}: {reason(error)}") from error
-
-
 def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     """Read a system and everything nested in it.
 
@@ -94,7 +82,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     if folder in _outer:
         raise StructureError(f"system '{reference}' contains itself")
     file = folder / FILE_NAME
-    data = read_toml(file)
+    data = read_toml(file, StructureError)
     unknown = set(data) - {*_KEYS, *_FILES}
     if unknown:
         raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")

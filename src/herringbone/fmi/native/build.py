@@ -1,15 +1,15 @@
 """Build native FMUs into the cache of generated artefacts."""
 
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
-from herringbone.core.caching.files import is_stored, store
+from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.paths import cache_folder
+from herringbone.core.temporary import temporary_folder
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.native.model import Model, registered_model
@@ -81,9 +81,9 @@ def build_models(
 def _built(model: Model, platforms: list[Platform], fmi: int) -> bytes:
     """The FMU of a model for platforms."""
     _make_libraries(model, platforms, fmi)
-    with tempfile.TemporaryDirectory() as scratch:
+    with temporary_folder() as scratch:
         libraries = {platform: _library(model, platform, fmi) for platform in platforms}
-        packed = pack_native(model, libraries, fmi, Path(scratch) / f"{model.name}.fmu")
+        packed = pack_native(model, libraries, fmi, scratch / f"{model.name}.fmu")
         return packed.read_bytes()
 
 
@@ -128,12 +128,12 @@ def _wrapper(platform: Platform, fmi: int) -> list[Path]:
     key = digest_of(wrapper_key(), kernels_key(compile_wrapper.__module__))
     folder = cache_folder("native-objects") / f"wrapper-{key}"
     folder = folder / f"{platform.name}-{compiler.name}-fmi{fmi}"
-    files = sorted(folder.glob("*.o"))
+    files = stored_files(folder, "*.o")
     if files and all([is_stored(file) for file in files]):
         return files
-    with tempfile.TemporaryDirectory() as scratch:
-        compile_wrapper(compiler, platform, Path(scratch), fmi)
-        made = {folder / file.name: file.read_bytes() for file in Path(scratch).glob("*.o")}
+    with temporary_folder() as scratch:
+        compile_wrapper(compiler, platform, scratch, fmi)
+        made = {folder / file.name: file.read_bytes() for file in scratch.glob("*.o")}
     for file, code in made.items():
         store(file, code)
     return sorted(made)
@@ -145,12 +145,12 @@ def _make_libraries(model: Model, platforms: list[Platform], fmi: int) -> None:
     if not missing:
         return
     _make_kernels(model, missing)
-    with tempfile.TemporaryDirectory() as scratch:
-        description = Path(scratch) / f"{model.name}.c"
+    with temporary_folder() as scratch:
+        description = scratch / f"{model.name}.c"
         description.write_text(component_source(model.states), encoding="ascii")
         for platform in missing:
             target, compiler = _library(model, platform, fmi), require_compiler(platform)
-            library = Path(scratch) / target.name
+            library = scratch / target.name
             objects = [*_wrapper(platform, fmi), _kernels(model, platform)]
             compile_library(compiler, platform, description, objects, library)
             code = library.read_bytes()

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import packed_key
 from herringbone.core.paths import cache_folder
+from herringbone.core.temporary import temporary_folder
 
 
 def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
@@ -33,10 +33,10 @@ def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
     missing = [name for name, fmu in fmus.items() if not is_stored(fmu)]
     if missing:
         said = activity("building Python FMUs", "only when their code has changed")
-        with said, tempfile.TemporaryDirectory() as scratch:
-            _pack(missing, Path(scratch))
+        with said, temporary_folder() as scratch:
+            _pack(missing, scratch)
             for name in missing:
-                store(fmus[name], (Path(scratch) / f"{name}.fmu").read_bytes())
+                store(fmus[name], (scratch / f"{name}.fmu").read_bytes())
     return fmus
 
 

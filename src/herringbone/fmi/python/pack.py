@@ -6,7 +6,6 @@ process they would shadow the FMU's own ones.
 
 import shutil
 import sys
-import tempfile
 import zipfile
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from pythonfmu import FmuBuilder
 
 from herringbone.components.registry import component
 from herringbone.core.caching.keys import sources_key
+from herringbone.core.temporary import temporary_folder
 from herringbone.fmi.archive import write_archive
 
 
@@ -24,8 +24,8 @@ def pack(name: str, folder: Path) -> Path:
     the others; the module name therefore holds the component and the hash of the sources.
     """
     module = f"herringbone_{name}_{sources_key()}"
-    with tempfile.TemporaryDirectory() as scratch:
-        script = Path(scratch) / f"{module}.py"
+    with temporary_folder() as scratch:
+        script = scratch / f"{module}.py"
         shutil.copyfile(component(name).folder / f"{name}.py", script)
         resources = sorted(component(name).resources.glob("*.csv"))
         built = FmuBuilder.build_FMU(script, dest=scratch, project_files=resources)

@@ -8,7 +8,6 @@ What the columns mean: `deviations`. The single pitch deviation is the differenc
 double-helical pair has a file for each half.
 """
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import fields
@@ -16,7 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core import HerringboneError, ResourceError, reason
+from herringbone.core import HerringboneError, ResourceError
+from herringbone.core.reading.numbers import number
+from herringbone.core.reading.texts import lines_of, read_text
 from herringbone.gears.accuracy.deviations import ToothDeviations
 from herringbone.gears.geometry.checks import GEARS
 from herringbone.gears.geometry.gear_pair import GearPair
@@ -38,8 +39,7 @@ def write_deviations(deviations: Sequence[ToothDeviations], file: str | Path) ->
     for gear, teeth in zip(GEARS, deviations, strict=True):
         rows = np.column_stack([getattr(teeth, name) for name in _VALUES]).tolist()
         lines += [
-            f"{gear},{number},{','.join(map(repr, row))}"
-            for number, row in enumerate(rows, start=1)
+            f"{gear},{tooth},{','.join(map(repr, row))}" for tooth, row in enumerate(rows, start=1)
         ]
     try:
         Path(file).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
@@ -54,26 +54,22 @@ def read_deviations(file: str | Path, pair: GearPair) -> tuple[ToothDeviations, 
         ResourceError: not readable, another grammar, teeth missing or too many, or a value that is
             no number or no deviation.
     """
-    try:
-        text = Path(file).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
-    first, *lines = text.splitlines() or [""]
-    rows = list(csv.reader(lines))
+    first, *lines = lines_of(read_text(Path(file))) or [""]
+    rows = [line.split(",") for line in lines]
     if first.strip() != _HEADER or not rows or tuple(rows[0]) != _COLUMNS:
         raise ResourceError(
             f"{file}: a file of tooth deviations begins with '{_HEADER}' and {','.join(_COLUMNS)}"
         )
     found: dict[str, list[list[float]]] = {gear: [] for gear in GEARS}
-    for number, row in enumerate(rows[1:], start=3):
+    for line, row in enumerate(rows[1:], start=3):
         if len(row) != len(_COLUMNS) or row[0] not in found:
-            raise ResourceError(f"{file} line {number}: a row is {','.join(_COLUMNS)}")
+            raise ResourceError(f"{file} line {line}: a row is {','.join(_COLUMNS)}")
         if row[1] != str(len(found[row[0]]) + 1):
             raise ResourceError(
-                f"{file} line {number}: tooth {row[1]} of the {row[0]} where "
+                f"{file} line {line}: tooth {row[1]} of the {row[0]} where "
                 f"{len(found[row[0]]) + 1} must follow"
             )
-        found[row[0]].append([_value(item, f"{file} line {number}") for item in row[2:]])
+        found[row[0]].append([_value(item, f"{file} line {line}") for item in row[2:]])
     pinion, wheel = (
         _teeth(found[gear], teeth, f"{file}: {gear}")
         for gear, teeth in zip(GEARS, pair.number_of_teeth, strict=True)
@@ -83,7 +79,7 @@ def read_deviations(file: str | Path, pair: GearPair) -> tuple[ToothDeviations, 
 
 def _value(text: str, where: str) -> float:
     try:
-        value = float(text)
+        value = number(text)
     except ValueError:
         value = math.nan
     if not abs(value) <= _LARGEST:

@@ -25,12 +25,12 @@ seed = 1
 # or files of both halves, beside this one: left = "left.csv", right = "right.csv"
 """
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from herringbone.core import ParameterError, ResourceError, reason
+from herringbone.core import ParameterError, ResourceError
+from herringbone.core.reading.structured import read_toml
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.known_keys import SECTIONS, keys_of
 from herringbone.gears.files.quantity import quantity
@@ -67,10 +67,7 @@ def read_gear_file(file: str | Path) -> GearJob:
         ParameterError: a value that is not possible.
     """
     file = Path(file)
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
+    content = read_toml(file)
     known = {section: set(keys_of(section)) for section in SECTIONS}
     for section, keys in content.items():
         if section not in known or not isinstance(keys, dict):

@@ -5,6 +5,7 @@ from fractions import Fraction
 from numbers import Real
 
 from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number
 
 UNITS: Mapping[str, Mapping[str, str]] = {
     "length": {"m": "1", "mm": "1e-3", "um": "1e-6", "mum": "1e-6"},
@@ -30,7 +31,10 @@ def in_si(value: float, unit: str, kind: str, where: str) -> float:
     if factor is None:
         known = ", ".join(name for name in units if name) or "no unit"
         raise ResourceError(f"{where}: unit '{written or 'none'}' is no {kind}; it takes {known}")
-    return float(Fraction(repr(value)) * Fraction(factor))
+    try:
+        return float(Fraction(repr(value)) * Fraction(factor))
+    except OverflowError:
+        raise ResourceError(f"{where}: {value:g} {written} is too large") from None
 
 
 def quantity(value: object, kind: str, where: str) -> float:
@@ -41,9 +45,9 @@ def quantity(value: object, kind: str, where: str) -> float:
     """
     if isinstance(value, Real) and not isinstance(value, bool):
         return float(value)
-    number, _, unit = str(value).strip().partition(" ")
+    digits, _, unit = str(value).strip().partition(" ")
     try:
-        parsed = float(number)
+        parsed = number(digits)
     except ValueError:
         raise ResourceError(
             f"{where} = {value!r} is no {kind}; give a number in SI or text such as "

@@ -19,9 +19,11 @@ Both gears must have the same module, pressure angle and, but for the hand, heli
 import math
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree import ElementTree
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number
+from herringbone.core.reading.texts import read_bytes
+from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.gears.files.quantity import in_si
 from herringbone.gears.geometry.gear_pair import GearPair
 
@@ -93,10 +95,7 @@ def read_rexs(file: str | Path, *, stage: str | None = None, halves: int = 1) ->
 
 
 def _read(file: Path) -> _Model:
-    try:
-        root = ElementTree.parse(file).getroot()
-    except (OSError, ElementTree.ParseError) as error:
-        raise ResourceError(f"cannot read {file}: {reason(error)}") from error
+    root = parse_xml(read_bytes(file, LARGEST_XML), str(file))
     if root.tag != "model":
         raise ResourceError(f"{file}: root element '{root.tag}' is not the 'model' of a REXS file")
     components = {
@@ -164,9 +163,9 @@ def _number(model: _Model, component: str, name: str, kind: str) -> float:
         raise ResourceError(f"{where} is missing")
     text, unit = found.attributes[name]
     try:
-        value = float(text)
-    except ValueError:
-        raise ResourceError(f"{where} = '{text}' is no number") from None
+        value = number(text)
+    except ValueError as error:
+        raise ResourceError(f"{where}: {error}") from None
     return in_si(value, unit, kind, where)
 
 

@@ -1,7 +1,5 @@
 """Reader of the neutral format, see `file_format`."""
 
-import json
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,8 +8,11 @@ import numpy as np
 
 from herringbone.components.resources.flat_csv import read_flat_csv
 from herringbone.components.resources.modal_data import read_mode_table, read_shape_table
-from herringbone.core import ResourceError, reason
-from herringbone.core.files import is_file, is_folder
+from herringbone.core import ResourceError
+from herringbone.core.files import is_folder
+from herringbone.core.reading.archives import open_archive
+from herringbone.core.reading.structured import read_json
+from herringbone.core.reading.texts import AnyPath, read_bytes
 from herringbone.housing.files.file_format import (
     COMPLIANCES,
     FORMAT,
@@ -42,8 +43,15 @@ def read_housing(path: str | Path) -> ModalHousing:
             refused by `check_housing`.
     """
     path = Path(path)
-    root = _root(path)
-    head = _read_json(root / HEAD)
+    if is_folder(path):
+        return _read(path, path)
+    with open_archive(path, "a folder or a readable zip file") as archive:
+        return _read(archive.root, path)
+
+
+def _read(root: AnyPath, path: Path) -> ModalHousing:
+    """The model whose files lie in a folder, or in an archive."""
+    head = read_json(root / HEAD)
     try:
         _check_head(head)
         points = tuple(_point(item) for item in _field(head, "points", list))
@@ -75,38 +83,6 @@ def read_housing(path: str | Path) -> ModalHousing:
     )
     check_housing(housing, path)
     return housing
-
-
-def _root(path: Path) -> Path | zipfile.Path:
-    if is_folder(path):
-        return path
-    if not is_file(path):
-        raise ResourceError(f"there is no file or folder {path}")
-    try:
-        with zipfile.ZipFile(path) as archive:
-            bad = archive.testzip()
-    except (zipfile.BadZipFile, OSError, RuntimeError, NotImplementedError) as error:
-        raise ResourceError(
-            f"{path} is neither a folder nor a readable zip file: {error}"
-        ) from None
-    if bad:
-        raise ResourceError(f"{path}: '{bad}' is damaged")
-    return zipfile.Path(path)
-
-
-def _read_json(file: Path | zipfile.Path) -> dict[str, Any]:
-    def refuse(constant: str) -> None:
-        raise ValueError(f"{constant} is not a finite number")
-
-    try:
-        head = json.loads(file.read_text(encoding="utf-8-sig"), parse_constant=refuse)
-    except (OSError, KeyError) as error:
-        raise ResourceError(f"cannot read {file}: {reason(error)}") from None
-    except ValueError as error:
-        raise ResourceError(f"{file} is no valid JSON: {error}") from None
-    if not isinstance(head, dict):
-        raise ResourceError(f"{file}: it must be one JSON object")
-    return head
 
 
 def _field(head: Mapping[str, Any], name: str, kind: type | tuple[type, ...]) -> Any:  # noqa: ANN401
@@ -176,17 +152,14 @@ def _frame(item: Mapping[str, Any]) -> Frame:
         raise ResourceError("'frame' needs origin (3 numbers) and rotation (3 x 3)") from None
 
 
-def _check_hashes(root: Path | zipfile.Path, hashes: Mapping[str, str]) -> None:
+def _check_hashes(root: AnyPath, hashes: Mapping[str, str]) -> None:
     for name in (MODES, SHAPES):
         if name not in hashes:
             raise ResourceError(f"{root / HEAD}: 'sha256' lacks {name}")
     for name, expected in hashes.items():
         if name not in {MODES, SHAPES, *OPTIONAL}:
             raise ResourceError(f"{root / HEAD}: 'sha256' names the unknown file {name}")
-        try:
-            found = digest((root / name).read_bytes())
-        except (OSError, KeyError) as error:
-            raise ResourceError(f"cannot read {root / name}: {reason(error)}") from None
+        found = digest(read_bytes(root / name))
         if found != expected:
             raise ResourceError(
                 f"{root / name} is not the file that housing.json describes: its SHA-256 is "
@@ -198,7 +171,7 @@ def _in_order(
     rows: tuple[tuple[str, str], ...],
     values: np.ndarray,
     points: tuple[Point, ...],
-    root: Path | zipfile.Path,
+    root: AnyPath,
 ) -> np.ndarray:
     wanted = [(point.name, dof) for point in points for dof in point.dofs]
     where = {row: i for i, row in enumerate(rows)}
@@ -211,11 +184,11 @@ def _in_order(
     return values[[where[dof] for dof in wanted]]
 
 
-def _optional_compliance(file: Path | zipfile.Path, hashes: Mapping[str, str]) -> np.ndarray | None:
+def _optional_compliance(file: AnyPath, hashes: Mapping[str, str]) -> np.ndarray | None:
     return read_compliance(file) if file.name in hashes else None
 
 
-def read_compliance(file: Path | zipfile.Path) -> np.ndarray:
+def read_compliance(file: AnyPath) -> np.ndarray:
     """Read a matrix (12, 12) of static or residual compliance [m/N]; raises ResourceError."""
     table, units = read_flat_csv(file, ("point", "dof"), {}, more="compliance")
     if units.get("compliance") != "m/N":
@@ -226,7 +199,7 @@ def read_compliance(file: Path | zipfile.Path) -> np.ndarray:
     return np.column_stack([table[name] for name in SEAT_COLUMNS])
 
 
-def _read_gram(file: Path | zipfile.Path, hashes: Mapping[str, str]) -> np.ndarray | None:
+def _read_gram(file: AnyPath, hashes: Mapping[str, str]) -> np.ndarray | None:
     if file.name not in hashes:
         return None
     table, units = read_flat_csv(file, (), {"mode": ("1",)}, more="gram")

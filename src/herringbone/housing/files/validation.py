@@ -4,6 +4,7 @@ import numpy as np
 
 from herringbone.core import ResourceError
 from herringbone.core.roles import HALVES
+from herringbone.housing.files.plausibility import implausible
 from herringbone.housing.modal_model import AXES, SEAT_DOFS, Frame, ModalHousing, Point
 
 KINDS = ("normal", "residual", "rigid")
@@ -12,6 +13,8 @@ _COUPLINGS = ("rbe3", "rbe2", "node")
 _DOFS = (*AXES, *(f"r{axis}" for axis in AXES))
 _SYMMETRY = 1e-6
 """Largest asymmetry of a compliance or Gram matrix, over its largest entry."""
+_LARGEST = 1e100
+"""Above the largest entry of a compliance or Gram matrix in any unit; its square is finite."""
 _NEGATIVE = -1e-9
 """Smallest eigenvalue of a positive semidefinite matrix, over its largest: rounding of files."""
 BAND_OF_MODES = 1.5
@@ -109,7 +112,9 @@ def _check_points(points: tuple[Point, ...]) -> None:
 
 
 def _check_frame(frame: Frame) -> None:
-    rotation, origin = np.array(frame.rotation, dtype=float), np.array(frame.origin, dtype=float)
+    origin = np.array(frame.origin, dtype=float)
+    whole = len(frame.rotation) == 3 and all(len(row) == 3 for row in frame.rotation)
+    rotation = np.array(frame.rotation if whole else [], dtype=float)
     if origin.shape != (3,) or not np.isfinite(origin).all():
         raise ResourceError(f"frame: origin {list(frame.origin)} must be 3 numbers, m")
     if (
@@ -131,6 +136,8 @@ def _check_matrix(matrix: np.ndarray | None, name: str) -> None:
     largest = np.abs(matrix).max()
     if np.abs(matrix - matrix.T).max() > _SYMMETRY * largest:
         raise ResourceError(f"matrix '{name}' is not symmetric, against reciprocity")
+    if not largest < _LARGEST:
+        raise ResourceError(f"matrix '{name}' has the value {largest:g}; at most {_LARGEST:g}")
     lowest = float(np.linalg.eigvalsh((matrix + matrix.T) / 2.0)[0])
     if lowest < _NEGATIVE * largest:
         raise ResourceError(
@@ -140,7 +147,7 @@ def _check_matrix(matrix: np.ndarray | None, name: str) -> None:
 
 def housing_warnings(housing: ModalHousing) -> list[str]:
     """What is doubtful about a model that `check_housing` accepts; one line each."""
-    found = []
+    found = [*implausible(housing)]
     normal = housing.frequency_hz[[kind == "normal" for kind in housing.kind]]
     highest, needed = float(normal.max(initial=0.0)), BAND_OF_MODES * housing.valid_to_hz
     following = float(housing.certificate.get("next_frequency_hz") or 0.0)

@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number, whole
+from herringbone.core.reading.texts import LARGEST_MODEL, lines_of, read_text
 from herringbone.housing.importers.matrix_model import MatrixModel, Row, only_name
 
 _SYMMETRIC = 6
@@ -30,10 +32,7 @@ def read_dmig(path: str | Path) -> MatrixModel:
             matrix of each kind.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="ascii", errors="replace")
-    except OSError as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+    text = read_text(path, most=LARGEST_MODEL, ascii_only=True)
     entries: dict[str, dict[tuple[Row, Row], float]] = {}
     coordinates: dict[int, np.ndarray] = {}
     try:
@@ -41,7 +40,7 @@ def read_dmig(path: str | Path) -> MatrixModel:
             if card[0] == "DMIG":
                 _read_dmig(card[1:], entries)
             elif card[0] == "GRID":
-                coordinates[int(card[1])] = _position(card)
+                coordinates[whole(card[1])] = _position(card)
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
     except (ValueError, IndexError) as error:
@@ -57,7 +56,7 @@ def read_dmig(path: str | Path) -> MatrixModel:
 def _cards(text: str) -> Iterator[list[str]]:
     """Fields of each DMIG and GRID entry, continuations joined."""
     card: list[str] = []
-    for raw in text.splitlines():
+    for raw in lines_of(text):
         line = raw.split("$")[0].rstrip()
         if not line:
             continue
@@ -85,7 +84,7 @@ def _fields(line: str) -> list[str]:
 
 
 def _integer(field: str) -> int:
-    return int(field) if field else 0
+    return whole(field) if field else 0
 
 
 def _real(field: str) -> float:
@@ -93,7 +92,7 @@ def _real(field: str) -> float:
     if not field:
         return 0.0
     text = field.upper().replace("D", "E")
-    return float(text if "E" in text else _BARE_EXPONENT.sub(r"E\1", text))
+    return number(text if "E" in text else _BARE_EXPONENT.sub(r"E\1", text))
 
 
 def _position(grid: list[str]) -> np.ndarray:
@@ -116,10 +115,10 @@ def _read_dmig(fields: list[str], entries: dict[str, dict[tuple[Row, Row], float
         return
     if name not in entries:
         raise ResourceError(f"DMIG {name} has no header card (second field 0)")
-    column = (int(fields[1]), _integer(fields[2]))
+    column = (whole(fields[1]), _integer(fields[2]))
     for at in range(4, len(fields) - 2, 4):
         if fields[at]:
-            row = (int(fields[at]), _integer(fields[at + 1]))
+            row = (whole(fields[at]), _integer(fields[at + 1]))
             entries[name][row, column] = _real(fields[at + 2])
 
 

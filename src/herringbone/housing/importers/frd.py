@@ -12,7 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number, whole
+from herringbone.core.reading.texts import LARGEST_MODEL, lines_of, read_text
 from herringbone.housing.importers.mode_set import ModeSet, check_modal_mass
 
 _LABEL_WIDTHS = {"0": 5, "1": 10}
@@ -27,17 +29,14 @@ def read_frd(path: str | Path) -> ModeSet:
         ResourceError: not readable, binary, truncated, without modes, or complex modes.
     """
     path = Path(path)
-    try:
-        lines = path.read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+    lines = lines_of(read_text(path, most=LARGEST_MODEL, ascii_only=True))
     if not lines or not lines[0].startswith("    1C"):
         raise ResourceError(f"{path} is no CalculiX result file: it does not begin with '    1C'")
     if lines[-1].strip() != "9999":
         raise ResourceError(f"{path} is truncated: the end mark 9999 is missing")
     try:
         node, coordinates, frequency, shapes = _parse(lines)
-    except (ValueError, IndexError, StopIteration) as error:
+    except (ValueError, IndexError, KeyError, StopIteration) as error:
         raise ResourceError(f"{path} is malformed: {error or 'a block does not end'}") from error
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
@@ -64,7 +63,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
             node, coordinates = _block(rest, _label_width(line))
         elif line.startswith("    1P"):
             name, _, value = line.strip().partition(" ")
-            header[name] = float(value.split()[0])
+            header[name] = number(value.split()[0])
         elif line.startswith("  100C"):
             kind = line[58:70].strip()
             found = _result(rest, _label_width(line), kind)
@@ -73,7 +72,7 @@ def _parse(lines: list[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
                 if kind.endswith("I") or "1PGM" not in header:
                     raise ResourceError("the modes are complex or have no generalised mass")
                 mass = check_modal_mass(header["1PGM"], f"mode {len(shapes) + 1}")
-                frequencies.append(_frequency(header["1PGK"] / mass, float(line[12:24])))
+                frequencies.append(_frequency(header["1PGK"] / mass, number(line[12:24])))
                 shapes.append(_in_order(node, at, values) / math.sqrt(mass))
             header.clear()
     if not shapes:
@@ -102,8 +101,8 @@ def _block(lines: Iterator[str], width: int) -> tuple[np.ndarray, np.ndarray]:
         if line.startswith(" -3"):
             return np.array(labels, dtype=int), np.array(values).reshape(-1, 3)
         if line.startswith(" -1"):
-            labels.append(int(line[3:first]))
-            values.append([float(line[first + _VALUE * j :][:_VALUE]) for j in range(3)])
+            labels.append(whole(line[3:first]))
+            values.append([number(line[first + _VALUE * j :][:_VALUE]) for j in range(3)])
     raise ResourceError("a block does not end")
 
 
@@ -123,6 +122,8 @@ def _in_order(node: np.ndarray, labels: np.ndarray, values: np.ndarray) -> np.nd
     if np.array_equal(node, labels):
         return values
     rows = {int(label): i for i, label in enumerate(node)}
+    if unknown := [int(label) for label in labels if int(label) not in rows]:
+        raise ResourceError(f"a mode has the node {unknown[0]}, which has no coordinates")
     found = np.zeros((node.size, 3))
     found[[rows[int(label)] for label in labels]] = values
     return found

@@ -14,7 +14,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.core import ResourceError, reason
-from herringbone.housing.importers.matrix_model import MatrixModel
+from herringbone.core.reading.numbers import whole
+from herringbone.core.reading.texts import check_regular
+from herringbone.housing.importers.matrix_model import MatrixModel, check_size
 
 _BANNER = "%%matrixmarket"
 _SYMMETRIES = {"general": 0.0, "symmetric": 1.0, "skew-symmetric": -1.0}
@@ -22,8 +24,8 @@ _SYMMETRIES = {"general": 0.0, "symmetric": 1.0, "skew-symmetric": -1.0}
 _VALUE = np.dtype([("value", np.float64)])
 _ENTRY = np.dtype([("row", np.int64), ("column", np.int64), ("value", np.float64)])
 _LONGEST_LINE = 1024
-MOST_ROWS = 10**7
-"""More rows than any model that can be reduced here."""
+_LEAST_BYTES = 2
+"""That an entry takes."""
 
 
 def read_matrix_market(paths: Sequence[str | Path]) -> MatrixModel:
@@ -72,11 +74,15 @@ class _Head:
 
 def read_matrix(file: Path) -> sp.csr_array:
     """One real matrix; raises ResourceError."""
+    check_regular(file)
     try:
         with file.open(encoding="ascii", newline="") as stream:
             head = _head(stream)
+            _check_room(head, file.stat().st_size)
             return _entries(stream, head)
-    except OSError as error:
+    except ResourceError as error:
+        raise ResourceError(f"{file}: {error}") from None
+    except (OSError, MemoryError) as error:
         raise ResourceError(f"cannot read {file}: {reason(error)}") from error
     except (ValueError, OverflowError) as error:
         raise ResourceError(f"{file} is no valid Matrix Market file: {error}") from error
@@ -96,19 +102,24 @@ def _head(stream: TextIO) -> _Head:
             raise ValueError(f"{word!r}: it must be {' or '.join(sorted(words))}")
     line = "%"
     while line.startswith("%") or (line and not line.strip()):
-        line = stream.readline()
-    sizes = [int(word) for word in line.split()]
+        line = stream.readline(_LONGEST_LINE)
+    sizes = [whole(word) for word in line.split()]
     coordinate = form == "coordinate"
     if len(sizes) != (3 if coordinate else 2) or min(sizes) < 1:
         raise ValueError(f"{line[:40]!r} does not tell its size")
     rows, columns = sizes[:2]
-    if max(rows, columns) > MOST_ROWS:
-        raise ValueError(f"{max(sizes[:2])} rows or columns; at most {MOST_ROWS} are read")
+    check_size(rows, columns)
     if symmetry != "general" and rows != columns:
         raise ValueError(f"it is {symmetry}, but has {rows} rows and {columns} columns")
     mirror = _SYMMETRIES[symmetry]
     stored = {0.0: rows * columns, 1.0: rows * (rows + 1) // 2, -1.0: rows * (rows - 1) // 2}
     return _Head(coordinate, mirror, rows, columns, sizes[2] if coordinate else stored[mirror])
+
+
+def _check_room(head: _Head, size: int) -> None:
+    """Refuse a head that tells of more entries than a file of so many bytes can have."""
+    if head.entries * _LEAST_BYTES > size:
+        raise ValueError(f"it is too short for {head.entries} entries")
 
 
 def _entries(stream: TextIO, head: _Head) -> sp.csr_array:

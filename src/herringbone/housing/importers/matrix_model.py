@@ -1,5 +1,6 @@
 """Mass and stiffness matrices of a foreign program, and how they become a housing."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,7 +9,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import whole
+from herringbone.core.reading.texts import LARGEST_MODEL, read_text
 from herringbone.core.roles import HALVES
 from herringbone.housing.importers.mode_set import make_frame, make_point
 from herringbone.housing.importers.seat_file import SeatFile, Selection
@@ -19,6 +22,10 @@ from herringbone.housing.reduction.reduced_housing import RESIDUAL_DAMPING
 Row = tuple[int, int]
 """Node and component (1, 2, 3: translations) of a matrix row."""
 _DAMPING = 0.01
+_SLOWEST = 1e-2
+"""Hz at which no node of a housing shakes on the springs around it."""
+_MOST_ROWS = 10**7
+"""More rows than any model that can be reduced here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +60,17 @@ def only_name(names: Sequence[str], letter: str, path: Path) -> str:
     return found[0]
 
 
+def check_size(rows: int, columns: int) -> None:
+    """Refuse a matrix before there is memory for it; raises ResourceError."""
+    if max(rows, columns) > _MOST_ROWS:
+        raise ResourceError(f"{max(rows, columns)} rows or columns; at most {_MOST_ROWS} are read")
+
+
 def read_rows(path: Path) -> tuple[Row, ...]:
     """Labels of matrix rows, one "node.axis" a line; raises ResourceError."""
+    labels = read_text(path, most=LARGEST_MODEL).split()
     try:
-        lines = path.read_text(encoding="ascii").split()
-        rows = tuple((int(node), int(axis)) for node, axis in (li.split(".") for li in lines))
-    except OSError as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+        rows = tuple((whole(node), whole(axis)) for node, axis in (li.split(".") for li in labels))
     except ValueError as error:
         raise ResourceError(f"{path}: each line must be 'node.axis', such as 12.3") from error
     if bad := [row for row in rows if not 1 <= row[1] <= 6]:
@@ -86,6 +97,7 @@ def housing_from_matrices(
     Raises:
         HerringboneError: a node or the labels of the rows are missing, or see `reduce_model`.
     """
+    _check_order(model)
     if seats is None:
         return _without_seat_file(model, band_hz, tolerance, most_modes, progress)
     rows = _labels(model, seats)
@@ -119,6 +131,20 @@ def housing_from_matrices(
         frame=make_frame(seats),
         source={**housing.source, **description},
     )
+
+
+def _check_order(model: MatrixModel) -> None:
+    """Refuse mass and stiffness of each other; in any units, nodes shake at more than 0.01 Hz."""
+    stiffness, mass = model.stiffness.diagonal(), model.mass.diagonal()
+    both = (stiffness > 0.0) & (mass > 0.0)
+    if not both.any():
+        return
+    slow = math.sqrt(float(np.median(stiffness[both] / mass[both]))) / (2.0 * math.pi)
+    if slow < _SLOWEST:
+        raise ResourceError(
+            f"{model.source.get('file', 'the matrices')}: stiffness over mass is that of "
+            f"{slow:.2g} Hz; are they in the wrong order? Stiffness comes first"
+        )
 
 
 def _without_seat_file(

@@ -11,8 +11,10 @@ from pathlib import Path
 
 import scipy.sparse as sp
 
-from herringbone.core import ResourceError, reason
-from herringbone.housing.importers.matrix_model import MatrixModel, only_name
+from herringbone.core import ResourceError
+from herringbone.core.reading.numbers import number, whole
+from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes
+from herringbone.housing.importers.matrix_model import MatrixModel, check_size, only_name
 
 _HEADER = re.compile(r"^(.{8})(.{8})(.{8})(.{8})(.{8})\s*\d*P?,?(\d+)[ED](\d+)\.(\d+)")
 _REAL = {1, 2}
@@ -28,10 +30,7 @@ def read_op4(path: str | Path) -> MatrixModel:
             matrix of each kind.
     """
     path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+    data = read_bytes(path, LARGEST_MODEL)
     if b"\x00" in data[:4096] or not data[:4096].isascii():
         raise ResourceError(
             f"{path} is a binary OUTPUT4 file; write it formatted: "
@@ -65,6 +64,7 @@ def _matrices(lines: list[str]) -> Iterator[tuple[str, sp.csr_array]]:
         name = header[5].strip().upper()
         if kind not in _REAL:
             raise ResourceError(f"matrix {name} has type {kind}; real ones, 1 and 2, are read")
+        check_size(abs(rows), columns)
         at, matrix = _columns(lines, at + 1, abs(rows), columns, int(header[7]), name)
         yield name, matrix
 
@@ -85,10 +85,12 @@ def _columns(
             if column == columns:  # the closing column has one dummy value
                 return n + 1, found.tocsr()
             for k in range(0, len(line.rstrip()), width):
-                found[row, column] = float(line[k : k + width].replace("D", "E"))
+                if not (0 <= row < rows and 0 <= column < columns):
+                    raise ResourceError(f"line {n + 1}: a value outside of matrix {name}")
+                found[row, column] = number(line[k : k + width].replace("D", "E"))
                 row += 1
             continue
-        integers = [int(text) for text in line.split()]
+        integers = [whole(text) for text in line.split()]
         if len(integers) == 3:
             column, row = integers[0] - 1, integers[1] - 1
         elif len(integers) == 2:

@@ -3,7 +3,8 @@
 A sample with all keys is `seats.toml` in the folder of the shipped housing.
 """
 
-import tomllib
+import itertools
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core import ResourceError, reason
+from herringbone.core import ResourceError
+from herringbone.core.reading.structured import read_toml
 from herringbone.core.roles import HALVES
 from herringbone.housing.modal_model import AXES
 
@@ -20,6 +22,7 @@ _UNITS: Mapping[str, Mapping[str, float]] = {
     "mass": {"kg": 1.0, "t": 1e3, "g": 1e-3},
     "time": {"s": 1.0, "ms": 1e-3},
 }
+_LOG = logging.getLogger("herringbone")
 _KEYS = {
     "": {
         "valid_to_hz", "boundary", "source", "units", "frame", "damping", "seats", "sensors",
@@ -94,12 +97,7 @@ def read_seats(path: str | Path) -> SeatFile:
             kind.
     """
     path = Path(path)
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ResourceError(f"{path} is no valid TOML: {error}") from error
+    data = read_toml(path)
     try:
         return _seat_file(path, data)
     except ResourceError as error:
@@ -114,7 +112,7 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
     factors = {}
     for quantity, known in _UNITS.items():
         unit = sections["units"].get(quantity, next(iter(known)))
-        if unit not in known:
+        if not isinstance(unit, str) or unit not in known:
             raise ResourceError(f"unit of {quantity} '{unit}' is none of {', '.join(known)}")
         factors[quantity] = known[unit]
     damping, rows = sections["damping"], sections["matrix"].get("rows")
@@ -126,7 +124,7 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
         rotation=_numbers(
             sections["frame"].get("rotation", np.eye(3).tolist()), (3, 3), "frame rotation"
         ),
-        damping_ratio=float(_numbers(damping.get("ratio", 0.01), (), "damping ratio")),
+        damping_ratio=_damping_ratio(damping),
         damping_source=str(damping.get("source", "assumed")),
         valid_to_hz=float(_numbers(data.get("valid_to_hz", 0.0), (), "valid_to_hz")),
         boundary=str(data.get("boundary", "")),
@@ -134,6 +132,13 @@ def _seat_file(path: Path, data: Mapping[str, Any]) -> SeatFile:
         rows=path.parent / str(rows) if rows else None,
         static=path.parent / str(data["static"]) if "static" in data else None,
     )
+
+
+def _damping_ratio(damping: Mapping[str, Any]) -> float:
+    ratio = float(_numbers(damping.get("ratio", 0.01), (), "damping ratio"))
+    if not 0.0 < ratio < 1.0:
+        raise ResourceError(f"damping ratio {ratio:g} must lie between 0 and 1")
+    return ratio
 
 
 def _known(section: object, name: str, where: str) -> None:
@@ -157,13 +162,21 @@ def _numbers(value: object, shape: tuple[int, ...], what: str) -> np.ndarray:
 
 def _selections(data: Mapping[str, Any]) -> tuple[Selection, ...]:
     seats, sensors = data.get("seats", {}), data.get("sensors", {})
+    for section, what in ((seats, "seats"), (sensors, "sensors")):
+        if not isinstance(section, dict):
+            raise ResourceError(f"[{what}] must be a table")
     if missing := [name for name in HALVES if name not in seats]:
         raise ResourceError(f"seat {', '.join(missing)} is missing; give [seats.{missing[0]}]")
     if unknown := sorted(set(seats) - set(HALVES)):
         raise ResourceError(f"seat '{unknown[0]}' is none of {', '.join(HALVES)}")
-    return tuple(_selection(name, "seat", seats[name]) for name in HALVES) + tuple(
-        _selection(name, "sensor", item) for name, item in sensors.items()
-    )
+    found = tuple(_selection(name, "seat", seats[name]) for name in HALVES)
+    for one, other in itertools.combinations(found, 2):
+        if shared := sorted(set(one.nodes) & set(other.nodes)):
+            _LOG.warning(
+                "seats %s and %s share the node %d: they are not independent",
+                one.name, other.name, shared[0],
+            )  # fmt: skip
+    return found + tuple(_selection(name, "sensor", item) for name, item in sensors.items())
 
 
 def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
@@ -174,12 +187,21 @@ def _selection(name: str, role: str, item: Mapping[str, Any]) -> Selection:
     weights = _numbers(
         item.get("weights", [1.0] * len(nodes)), (len(nodes),), f"{role} {name}: weights"
     )
+    if (weights < 0.0).any():
+        node = nodes[int(np.argmax(weights < 0.0))]
+        _LOG.warning(
+            "%s %s: node %d has the weight %g; weights are shares of a mean, and not negative",
+            role, name, node, weights.min(),
+        )  # fmt: skip
     if weights.sum() <= 0.0:
         raise ResourceError(f"{role} {name}: the weights must have a positive sum")
     position = item.get("position")
     if position is not None:
         position = tuple(_numbers(position, (3,), f"{role} {name}: position").tolist())
-    dofs = tuple(map(str, item.get("dofs", AXES)))
+    given = item.get("dofs", AXES)
+    if not isinstance(given, list | tuple):
+        raise ResourceError(f"{role} {name}: 'dofs' must be a list of {', '.join(AXES)}")
+    dofs = tuple(map(str, given))
     if unknown := [dof for dof in dofs if dof not in AXES]:
         raise ResourceError(f"{role} {name}: dof '{unknown[0]}' is none of {', '.join(AXES)}")
     coupling = str(item.get("coupling", "node" if len(nodes) == 1 else "rbe3"))

@@ -6,6 +6,8 @@ checked here.
 Source: Universal File Formats for Modal Analysis Testing, University of Cincinnati, SDRL.
 """
 
+import contextlib
+import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core import HerringboneError, ResourceError, reason
+from herringbone.core import HerringboneError, ResourceError
+from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes
 from herringbone.housing.importers.mode_set import (
     ModeSet,
     check_modal_mass,
@@ -50,6 +53,8 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
         shapes = [_in_order(node, labels, shape) for _, _, labels, shape in modes]
     except ResourceError as error:
         raise ResourceError(f"{path}: {error}") from None
+    except (ValueError, KeyError, TypeError, IndexError, ArithmeticError) as error:
+        raise ResourceError(f"{path}: nodes or modes are malformed: {error}") from error
     return ModeSet(
         node,
         coordinates,
@@ -67,23 +72,22 @@ def _read_sets(path: Path) -> list[dict[str, Any]]:
         raise HerringboneError(
             "universal files need pyuff: pip install 'herringbone[import]'"
         ) from error
-    try:
-        lines = path.read_bytes().splitlines()
-    except OSError as error:
-        raise ResourceError(f"cannot read {path}: {reason(error)}") from error
+    lines = read_bytes(path, LARGEST_MODEL).splitlines()
     marks = sum(line.rstrip() == b"    -1" for line in lines)
     if marks == 0:
         raise ResourceError(f"{path} is no universal file: it has no mark '    -1'")
     if marks % 2:
         raise ResourceError(f"{path} is truncated: the last data set does not end with '    -1'")
-    file = pyuff.UFF(str(path))
+    n, kind = 0, "none"
     found = []
-    for n, kind in enumerate(file.get_set_types()):
-        if kind in {15, 55, 164, 2411, 2414}:
-            try:
-                found.append(file.read_sets(n))
-            except Exception as error:  # pyuff raises bare Exception for every defect
-                raise ResourceError(f"{path}: data set {n + 1} ({kind}) is malformed") from error
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does not know
+            file = pyuff.UFF(str(path))
+            for n, kind in enumerate(file.get_set_types(), 1):
+                if kind in {15, 55, 164, 2411, 2414}:
+                    found.append(file.read_sets(n - 1))
+    except Exception as error:  # pyuff raises bare Exception for every defect
+        raise ResourceError(f"{path}: data set {n} ({kind}) is malformed") from error
     return found
 
 
@@ -106,10 +110,11 @@ def _nodes(sets: list[dict[str, Any]]) -> tuple[np.ndarray, np.ndarray]:
                 raise ResourceError(
                     "nodes have several displacement coordinate systems; export global directions"
                 )
-            return (
-                np.asarray(item["node_nums"]).astype(int),
-                np.column_stack([item["x"], item["y"], item["z"]]),
-            )
+            labels = np.asarray(item["node_nums"]).astype(int)
+            places = np.column_stack([item["x"], item["y"], item["z"]])
+            if len(labels) != len(places):
+                raise ResourceError(f"{len(labels)} nodes have {len(places)} coordinates")
+            return labels, places
     raise ResourceError("no data set 15 or 2411 holds nodes")
 
 

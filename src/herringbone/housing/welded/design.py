@@ -15,13 +15,13 @@ center_distance = 218.2
 """
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from herringbone.core import ParameterError, reason
+from herringbone.core import ParameterError
+from herringbone.core.reading.structured import read_toml
 from herringbone.housing.welded.dimensions import Dimensions
 
 FINEST, COARSEST = 5e-3, 0.2
@@ -127,10 +127,7 @@ def read_design(file: str | Path) -> HousingDesign:
         ParameterError: not readable, a key is missing or unknown, or a value is impossible.
     """
     file = Path(file)
-    try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ParameterError(f"cannot read {file}: {reason(error)}") from error
+    data = read_toml(file, ParameterError)
     known = {
         "description",
         "length_unit",

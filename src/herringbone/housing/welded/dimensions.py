@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 
 SHORTEST, LONGEST = 5e-4, 5.0
 """Range of any length of a housing [m]; values outside have the wrong unit."""
+MOST_BOLTS = 1000
 
 
 @dataclass(frozen=True)
@@ -110,8 +111,8 @@ class Dimensions:
                     f"{field.name} = {value:g} m: it must be from {SHORTEST:g} to {LONGEST:g} m; "
                     "is length_unit right?"
                 )
-        if self.bolts_per_side < 2:
-            return f"bolts_per_side = {self.bolts_per_side}: it must be 2 or more"
+        if not 2 <= self.bolts_per_side <= MOST_BOLTS:
+            return f"bolts_per_side = {self.bolts_per_side}: it must be from 2 to {MOST_BOLTS}"
         return next((text for possible, text in self._conditions() if not possible), None)
 
     def _conditions(self) -> list[tuple[bool, str]]:

@@ -1,14 +1,12 @@
 """Signatures of foreign FMUs, kept by what they depend on: content, values, step, and trials."""
 
-import contextlib
-import json
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from herringbone.core.caching.files import write_file
+from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.paths import cache_root
 from herringbone.cosim.signature import Answer, Kind, Signature
@@ -30,13 +28,11 @@ def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) 
         find: makes the trials.
     """
     file = cache_root() / "signatures" / f"{_key(spec, step)}.json"
-    try:
-        return _read(file)
-    except (OSError, ValueError, TypeError, KeyError):  # none, or a damaged one
-        found = find()
+    if (known := kept(file)) is not None:
+        return _signature(known)
+    found = find()
     if found.kind is not Kind.UNKNOWN:
-        with contextlib.suppress(OSError):  # it only saves time
-            write_file(file, json.dumps(_plain(found)).encode())
+        keep(file, _plain(found))
     return found
 
 
@@ -60,22 +56,20 @@ def _plain(found: Signature) -> dict:
     return plain
 
 
-def _read(file: Path) -> Signature:
-    """Raises OSError, ValueError, TypeError or KeyError."""
-    kept = json.loads(file.read_text(encoding="utf-8"))
-    inputs, outputs = tuple(kept.pop("inputs")), tuple(kept.pop("outputs"))
+def _signature(plain: dict) -> Signature:
+    inputs, outputs = tuple(plain.pop("inputs")), tuple(plain.pop("outputs"))
     shape = len(outputs), len(inputs)
-    rates = tuple(Rate(**{**rate, "holds": Answer(rate["holds"])}) for rate in kept.pop("rates"))
+    rates = tuple(Rate(**{**rate, "holds": Answer(rate["holds"])}) for rate in plain.pop("rates"))
     return Signature(
         inputs,
         outputs,
-        kind=Kind(kept.pop("kind")),
-        feedthrough=np.array(kept.pop("feedthrough"), dtype=float).reshape(shape),
-        memory=Answer(kept.pop("memory")),
-        delay=np.array(kept.pop("delay"), dtype=int).reshape(shape),
+        kind=Kind(plain.pop("kind")),
+        feedthrough=np.array(plain.pop("feedthrough"), dtype=float).reshape(shape),
+        memory=Answer(plain.pop("memory")),
+        delay=np.array(plain.pop("delay"), dtype=int).reshape(shape),
         rates=rates,
-        given=tuple(Given(rule) for rule in kept.pop("given")),
-        rate_inputs=tuple(kept.pop("rate_inputs")),
-        notes=tuple(kept.pop("notes")),
-        **kept,
+        given=tuple(Given(rule) for rule in plain.pop("given")),
+        rate_inputs=tuple(plain.pop("rate_inputs")),
+        notes=tuple(plain.pop("notes")),
+        **plain,
     )

@@ -10,6 +10,7 @@ from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.core.roles import GEARS, PortKind, Quantity, Role
 from herringbone.housing import ModalHousing
+from herringbone.housing.files.plausibility import implausible
 from herringbone.result.result import Result
 
 _DISTANCE, _DIRECTION = 1e-3, math.radians(1.0)
@@ -29,6 +30,7 @@ def of_housing(result: Result, gear: str) -> Iterator[str]:
     housing = housing_of(result, part)
     if housing is None:
         return
+    yield from (f"{part}: {line}" for line in implausible(housing))
     yield from _of_seats(result, gear, bearing, part, housing)
     frequency = run_mesh_frequency(result, gear=gear)
     if frequency and _HARMONICS * frequency > housing.valid_to_hz:

@@ -39,10 +39,11 @@ static bool has_rest(const HbText *grammar) {
     return grammar->column_count && grammar->columns[grammar->column_count - 1].rest;
 }
 
-/* Names in a list of the form a, b, c. */
+/* Names in a list of the form a, b, c; empty ones are left out. */
 static void list_name(char *list, size_t size, const char *name) {
     size_t used = strlen(list);
-    snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
+    if (*name)
+        snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
 }
 
 static size_t find_field(const Table *table, const char *name) {
@@ -72,6 +73,7 @@ static void list_missing(const Table *table, const HbText *grammar, bool words, 
 
 static bool check_header(const Table *table, const HbText *grammar, Message *message) {
     char missing[256] = "", extra[256] = "", all[256] = "";
+    size_t unknown = 0;
     for (size_t i = 0; i < table->rows->count; i++) {
         const char *name = table->fields[i];
         list_name(all, sizeof all, name);
@@ -79,14 +81,16 @@ static bool check_header(const Table *table, const HbText *grammar, Message *mes
             message_write(message, "%s: column %s stands twice", table->file, name);
             return false;
         }
-        if (!declared_column(grammar, name))
+        if (!declared_column(grammar, name)) {
             list_name(extra, sizeof extra, name);
+            unknown++;
+        }
     }
     list_missing(table, grammar, true, missing, sizeof missing);
     list_missing(table, grammar, false, missing, sizeof missing);
     if (*missing)
         message_write(message, "%s: column %s is missing; it has %s", table->file, missing, all);
-    else if (*extra && !has_rest(grammar))
+    else if (unknown && !has_rest(grammar))
         message_write(message, "%s: column %s is unknown", table->file, extra);
     else
         return true;

@@ -196,7 +196,7 @@ bool platform_number(const char *text, double *value) {
     static const char space[] = " \t\v\f";
     text += strspn(text, space);
     size_t length = decimal_length(text);
-    if (length == 0 || text[length + strspn(text + length, space)] != '\0')
+    if (length == 0 || length > LONGEST_NUMBER || text[length + strspn(text + length, space)] != '\0')
         return false;
     *value = convert(text);
     return isfinite(*value);

@@ -21,8 +21,9 @@ char *platform_path(const char *location);
 /* folder/name, or name alone if it is absolute; NULL if memory is short. */
 char *platform_join(const char *folder, const char *name);
 
-/* Read a decimal number with a point, whatever the locale; false if the text is anything else or
-   the value is not finite. */
+/* Read a decimal number with a point, whatever the locale; false if the text is anything else, has
+   more than LONGEST_NUMBER characters, or the value is not finite. */
+#define LONGEST_NUMBER 400
 bool platform_number(const char *text, double *value);
 
 #endif

@@ -1,0 +1,1 @@
+"""Damaged files of strangers, made of good ones; every reader refuses them in one line."""

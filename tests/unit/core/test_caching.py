@@ -1,0 +1,118 @@
+"""The cache: what is damaged, foreign or left behind."""
+
+import json
+import os
+import sys
+import time
+
+import pytest
+
+from herringbone.core import ResourceError
+from herringbone.core.caching.files import is_stored, keep, kept, store, stored_files, write_file
+from herringbone.core.caching.generated import load_generated
+from herringbone.core.paths import CACHE_VARIABLE, cache_folder
+
+posix = pytest.mark.skipif(os.name == "nt", reason="owners and modes of POSIX")
+ROOT = hasattr(os, "getuid") and os.getuid() == 0
+
+
+@pytest.fixture(autouse=True)
+def cache(monkeypatch, tmp_path):
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.mark.parametrize("content", [b"", b"wo", b"worm"])
+@pytest.mark.parametrize("suffix", ["", ".sha256"])
+def test_damaged_files_are_not_stored(tmp_path, caplog, content, suffix):
+    store(tmp_path / "x", b"word")
+    assert is_stored(tmp_path / "x")
+    (tmp_path / f"x{suffix}").write_bytes(content)
+    assert not is_stored(tmp_path / "x")
+    assert f"{tmp_path / 'x'} is damaged; it is made anew" in caplog.text
+
+
+def test_what_was_stored_and_is_gone_is_known(tmp_path):
+    store(tmp_path / "x.o", b"code")
+    (tmp_path / "x.o").unlink()
+    assert stored_files(tmp_path, "*.o") == [tmp_path / "x.o"]
+
+
+@pytest.mark.parametrize("content", ["", "{", "null", '{"a": 1}', "0\n{}", "\0"])
+def test_damaged_memos_are_as_none(tmp_path, content):
+    keep(tmp_path / "x", {"a": [1.5]})
+    assert kept(tmp_path / "x") == {"a": [1.5]}
+    (tmp_path / "x").write_text(content)
+    assert kept(tmp_path / "x") is None
+
+
+def test_a_changed_digit_is_damage(tmp_path):
+    keep(tmp_path / "x", {"a": 15})
+    (tmp_path / "x").write_text((tmp_path / "x").read_text().replace("15}", "16}"))
+    assert kept(tmp_path / "x") is None
+    assert json.loads((tmp_path / "x").read_text().partition("\n")[2]) == {"a": 16}
+
+
+def test_damaged_byte_code_is_made_anew(cache):
+    """Python itself would end with 'marshal data too short'."""
+    source = "def answer():\n    return 42\n"
+    assert load_generated("test", source).answer() == 42
+    (code,) = (cache / "generated").glob("*.code")
+    whole = code.read_bytes()
+    for damaged in (whole[: len(whole) // 2], b"", whole.replace(b"answer", b"ANSWER")):
+        code.write_bytes(damaged)
+        for name in [n for n in sys.modules if n.startswith("herringbone_test_")]:
+            del sys.modules[name]
+        assert load_generated("test", source).answer() == 42
+        assert code.read_bytes() == whole
+
+
+@posix
+def test_a_new_cache_is_of_its_user_alone(cache):
+    assert cache_folder("x").is_dir()
+    assert cache.stat().st_mode & 0o777 == 0o700
+
+
+@posix
+@pytest.mark.parametrize("inner", [False, True])
+def test_a_cache_that_others_can_write_is_refused(cache, inner):
+    folder = cache_folder("x") if inner else cache
+    folder.mkdir(exist_ok=True)
+    folder.chmod(0o777)
+    with pytest.raises(ResourceError, match=f"{folder} holds code that is run, .* 'chmod go-w' it"):
+        cache_folder("x")
+    folder.chmod(0o755)
+    assert cache_folder("x").is_dir()
+
+
+@posix
+def test_a_file_that_others_can_write_is_made_anew(tmp_path, caplog):
+    store(tmp_path / "x", b"word")
+    keep(tmp_path / "y", 3)
+    for name in "xy":
+        (tmp_path / name).chmod(0o666)
+    assert not is_stored(tmp_path / "x")
+    assert "is of another user, or others can write it; it is made anew" in caplog.text
+    assert kept(tmp_path / "y") is None
+
+
+@posix
+@pytest.mark.skipif(not ROOT, reason="only the administrator can give files away")
+def test_what_is_of_another_user(tmp_path, cache):
+    store(tmp_path / "x", b"word")
+    os.chown(tmp_path / "x", 12345, -1)
+    assert not is_stored(tmp_path / "x")
+    store(tmp_path / "x", b"word")
+    assert is_stored(tmp_path / "x")
+    os.chown(cache_folder("x"), 12345, -1)
+    with pytest.raises(ResourceError, match="is of another user"):
+        cache_folder("x")
+
+
+def test_what_was_not_written_to_its_end_is_swept(tmp_path):
+    old, young = tmp_path / "old.part", tmp_path / "young.part"
+    for file in (old, young):
+        file.touch()
+    os.utime(old, (time.time() - 7200,) * 2)
+    write_file(tmp_path / "x", b"word")
+    assert sorted(file.name for file in tmp_path.iterdir() if file.is_file()) == ["x", "young.part"]
