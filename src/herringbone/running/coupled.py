@@ -24,7 +24,7 @@ from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
-from herringbone.running.foreign.interfaces import exchanged_outputs, holds_inputs
+from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
@@ -74,7 +74,6 @@ class Coupled(NamedTuple):
         algorithm: that was chosen.
         once: a part can be instantiated once only.
         exchanged: outputs of foreign parts that other parts take.
-        holds: a foreign part holds its inputs over a step, which leaves the first order.
     """
 
     result: Result
@@ -83,7 +82,6 @@ class Coupled(NamedTuple):
     algorithm: Algorithm
     once: bool
     exchanged: tuple[str, ...]
-    holds: bool
 
 
 def coupled(
@@ -114,7 +112,7 @@ def coupled(
         elif asked.probe and system.connections:
             trial = asked.step or (algorithm or LI()).start_step
             parts, said = understood(system, opened, instances, trial)
-            lines += said
+            lines += [*said, *unfed(system, parts)]
         if algorithm is None:
             algorithm, why = _chosen_for(parts, asked)
             lines.append(why)
@@ -141,8 +139,8 @@ def coupled(
         if recorded:
             recorded(result)
         once = any(part.once for part in opened)
-        exchanged, holds = exchanged_outputs(system, parts), holds_inputs(system, parts)
-    return Coupled(result, every, recording, algorithm, once, exchanged, holds)
+        exchanged = exchanged_outputs(system, parts)
+    return Coupled(result, every, recording, algorithm, once, exchanged)
 
 
 def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:

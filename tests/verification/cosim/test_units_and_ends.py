@@ -157,4 +157,7 @@ def test_fmi2_part_that_ends_the_simulation(tmp_path, mass, end):
     assert result.data["one.flange.phi"].iloc[-1] == pytest.approx(100.0 * end, rel=1e-12)
     found = hb.run(tmp_path, values={**values, "one.refuses": 1.0}, t_end=0.1, record_step=0.02)
     assert found.outcome.kind is OutcomeKind.PART_FAILED
-    assert f"the step was discarded; the part came to {end:g} s" in found.outcome.message
+    assert (
+        f"the part came to {end:g} s; if it discarded the step, a smaller one"
+        in found.outcome.message
+    )

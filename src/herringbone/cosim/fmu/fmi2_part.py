@@ -101,7 +101,7 @@ class Fmu2Part(FmuPart):
             return None
         if ended:
             return last
-        said = f"the step was discarded; the part came to {last:g} s; use a smaller step"
+        said = f"the part came to {last:g} s; if it discarded the step, a smaller one may do"
         self._log.add(_DISCARD, said.encode())
         return None
 

@@ -1,11 +1,13 @@
 """What foreign parts exchange with others, and how."""
 
+import re
 from collections.abc import Sequence
 
-from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
+
+_NODE = re.compile(r"\.node\d+$")
 
 
 def exchanged_outputs(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
@@ -21,16 +23,34 @@ def exchanged_outputs(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
     return tuple(f"{part}.{name}" for part, name in sorted(taken) if part in system.foreign_parts)
 
 
-def holds_inputs(system: System, parts: Sequence[Part]) -> bool:
-    """True if a foreign part holds its inputs over a step, which leaves the first order.
+def unfed(system: System, parts: Sequence[Part]) -> list[str]:
+    """Lines on foreign parts that nothing is connected to, and on ports that are in part.
 
     Args:
         system: of the parts, in the same order.
         parts: as the coupling takes them.
     """
-    return any(s.foreign and _holds(part) for s, part in zip(system.parts, parts, strict=True))
-
-
-def _holds(part: Part) -> bool:
-    takes = INTERFACE_DEGREE in part.variables or bool(part.addresses.set_derivatives)
-    return not takes and any(v.causality == "input" for v in part.variables.values())
+    network = build_network(system, parts)
+    lines = []
+    for p, (spec, part) in enumerate(zip(system.parts, parts, strict=True)):
+        fed = {c.input for c in network.inputs(p)}
+        used = fed | {c.output for c in network.connections if c.source == p}
+        if not spec.foreign:
+            continue
+        if not used:
+            lines.append(f"{part.name}: nothing is connected to it")
+        ports = {name.rpartition(".")[0] for name in used} - {""}
+        missing = [
+            name
+            for name, v in part.variables.items()
+            if v.causality == "input"
+            and name not in fed
+            and name.rpartition(".")[0] in ports
+            and not _NODE.search(name)
+        ]
+        if missing:
+            lines.append(
+                f"{part.name}: {', '.join(missing)} of a connected port are fed by nothing and "
+                "keep their start values"
+            )
+    return lines

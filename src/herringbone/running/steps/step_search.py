@@ -14,8 +14,9 @@ prime, so that signals with a whole number of periods in the run do not look con
 from collections.abc import Callable
 from dataclasses import replace
 
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import LI
+from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
@@ -33,8 +34,20 @@ def searched_tolerance(system: System, asked: Asked) -> float | None:
 
     Without a step, an algorithm or a tolerance it is 1e-3 where all parts are foreign: nothing else
     tells which step suits them.
+
+    Raises:
+        ParameterError: a tolerance is asked for, but an FMU can be instantiated once only.
+        FmuError: one cannot be read.
     """
     if not system.foreign_parts or not system.connections:
+        return None
+    single = [name for name in system.foreign_parts if _once(system, name)]
+    if single and asked.tolerance is not None:
+        raise ParameterError(
+            f"tolerance = {asked.tolerance:g}: {', '.join(single)} can be instantiated once only, "
+            "and a step is found by several runs; give a --step"
+        )
+    if single:
         return None
     if asked.tolerance is not None:
         return asked.tolerance if asked.algorithm is None or not asked.algorithm.adaptive else None
@@ -87,3 +100,8 @@ def first_step(system: System, scene: Scene) -> float:
     own = len(system.foreign_parts) < len(system.parts)
     longest = scene.t_end / _PIECES
     return min(longest, _COARSE * LI().default_step) if own else longest
+
+
+def _once(system: System, name: str) -> bool:
+    model = read_fmu(str(system.part(name).fmu))
+    return bool(model.coSimulation.canBeInstantiatedOnlyOncePerProcess)

@@ -129,7 +129,6 @@ class Search:
         lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
         reasons = {
             "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
-            "an FMU can be instantiated once only": found.once,
             outcome.message: lost,
             "met": outcome.completed and self.tried[-1].error <= self._tolerance,
             "the differences do not fall with the step, as with noise or jumps": flat,
