@@ -46,6 +46,8 @@ Progress = Callable[[str], None]
 """Called after every matrix, with the name of the algorithm."""
 _BEYOND = 1.01
 _SCAN_OF_STRANGERS = 1.1
+_SHORTER, _ALIKE = 8.0, 0.1
+"""A motion grows of itself if with so much shorter steps its rate is the same to this share."""
 _UNSEEN = 3.0
 """Powers of e that a motion may grow by in a run that still looks sound."""
 _LARGEST_OF_STRANGERS = 1.0
@@ -317,11 +319,26 @@ def warn_if_unstable(
         return None
     if amplification.residual > PROMISED:
         return None
+    if _grows_itself(amplification, growth, step):
+        return (
+            f"{system.name} itself, linear at the start, grows at {hertz(growth.frequency)} "
+            f"{_in_time(growth, step, duration)}, whatever the step"
+        )
     return (
         f"{algorithm} is unstable at a step of {step:g} s: a motion at {hertz(growth.frequency)} "
         f"grows by {100.0 * (growth.radius - 1.0):.3g} % per step, "
         f"{_in_time(growth, step, duration)}; 'herringbone stability' shows the limits"
     )
+
+
+def _grows_itself(amplification: Amplification, growth: Growth, step: float) -> bool:
+    """True if a motion grows alike with an eighth of the step: the coupling is not to blame."""
+    try:
+        shorter = amplification.growth(step / _SHORTER).radius
+    except HerringboneError:
+        return False
+    rate, known = _SHORTER * np.log(max(shorter, 1e-300)), np.log(growth.radius)
+    return bool(abs(rate - known) < _ALIKE * known)
 
 
 def _in_time(growth: Growth, step: float, duration: float) -> str:

@@ -7,6 +7,7 @@ have in common, such as an FMU's own integration, does not show.
 """
 
 from dataclasses import replace
+from statistics import median
 
 from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.anatomy import anatomy, value_at
@@ -87,9 +88,9 @@ def verified_by_longer_steps(
     """The result with its error by longer steps, which cost three quarters of the run.
 
     With an error C h^p the run and one with 2 h differ by d = C h^p (2^p - 1), those with 2 h and
-    4 h by r d with r = 2^p, so that the error is d / (r - 1). The least r counts, of the groups
-    with more than a hundredth of the largest d, and between 2 and 16. If the run with 4 h does not
-    reach its end, p = 3 is assumed: d / 7 is right within 2.4 for p = 2 and 4.
+    4 h by r d with r = 2^p, so that the error is d / (r - 1). The median of the groups' r counts,
+    between 2 and 16. If the run with 4 h does not reach its end, p = 3 is assumed: d / 7 is right
+    within 2.4 for p = 2 and 4.
 
     Args:
         result, system, scene, found, asked: see `verified`.
@@ -111,10 +112,9 @@ def verified_by_longer_steps(
     share, how = _SHORTER, "by twice the macro step, third order assumed"
     if len(runs) > 2:
         before, now = apart(runs[2], runs[1], found.exchanged).groups, differences.groups
-        floor = 0.01 * max(now.values(), default=0.0)
-        ratios = [before[n] / d for n, d in now.items() if d > floor and n in before]
-        least = min(max(min(ratios, default=_FALL), 2.0), 16.0)
-        share, how = 1.0 / (least - 1.0), "by two and four times the macro step"
+        ratios = [before[name] / d for name, d in now.items() if d and name in before]
+        fall = min(max(median(ratios) if ratios else _FALL, 2.0), 16.0)
+        share, how = 1.0 / (fall - 1.0), "by two and four times the macro step"
     verification = scaled(differences, share, 2.0 * step, how)
     return with_coupling_row(replace(result, verification=verification))
 
