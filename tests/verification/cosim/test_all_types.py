@@ -157,7 +157,7 @@ def test_values_of_toml_and_command_line(files, tmp_path, capsys):
     [
         ({"Int8_in": 128}, "p.Int8_in = 128: the type Int8 goes from -128 to 127"),
         ({"UInt64_in": -1}, "the type UInt64 goes from 0 to 18446744073709551615"),
-        ({"Int32_in": 0.5}, "p.Int32_in = 0.5: it takes a Int32, a whole number"),
+        ({"Int32_in": 0.5}, "p.Int32_in = 0.5: its type is Int32, it takes a whole number"),
         ({"Boolean_in": 2}, "p.Boolean_in = 2: it takes a Boolean, true or false"),
         ({"Enumeration_in": 3}, "it takes an Enumeration, one of 1 ('first'), 2 ('second')"),
         ({"Binary_in": "0g"}, "it takes a Binary, as hexadecimal digits"),

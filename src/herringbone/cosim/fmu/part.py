@@ -4,6 +4,7 @@ import contextlib
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.values import as_value, as_values
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.signature.signature import Signature
+
+_SHOWN = 8
 
 
 class FmuPart(ABC):
@@ -113,8 +116,7 @@ class FmuPart(ABC):
         names = [n for n, v in self.variables.items() if v.array == name] or [name]
         if name not in self.variables and names == [name]:
             raise ParameterError(
-                f"{self.name}: {self.file.name} has no variable '{name}'; "
-                f"'herringbone check {self.file}' lists them"
+                f"{self.name}: {self.file.name} has no variable '{name}'; {self._near(name)}"
             )
         first = self.variables[names[0]]
         if first.array == name:
@@ -127,6 +129,14 @@ class FmuPart(ABC):
             self._put(dict(zip(names, values, strict=True)))
         except FMICallException as error:
             raise ParameterError(self._refusal(what, error)) from error
+
+    def _near(self, name: str) -> str:
+        """Variables that a wrong name may mean, or the first ones."""
+        if near := get_close_matches(name, self.variables, 3):
+            return f"did you mean {' or '.join(near)}"
+        first = list(self.variables)[:_SHOWN]
+        more = ", ..." if len(self.variables) > _SHOWN else ""
+        return f"it has: {', '.join(first)}{more}"
 
     def put_values(self, values: Mapping[str, Value]) -> None:
         """Set variables at a communication point; raises FmuError."""

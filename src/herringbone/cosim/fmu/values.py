@@ -55,9 +55,10 @@ def as_value(kind: str, given: Value, what: str, items: Sequence[tuple[str, int]
     if kind in INTEGERS:
         limits = np.iinfo(INTEGERS[kind])
         return _whole(given, kind, what, int(limits.min), int(limits.max))
-    if kind in REALS and isinstance(given, float | int):
+    if kind in REALS and isinstance(given, float | int) and not isinstance(given, bool):
         return _real(given, kind, what)
-    raise ParameterError(f"{what}: it takes a {kind}")
+    number = ", a number" if kind in REALS else ""
+    raise ParameterError(f"{what}: it takes a {kind}{number}")
 
 
 def _real(given: float, kind: str, what: str) -> float:
@@ -76,7 +77,7 @@ def _whole(given: Value, kind: str, what: str, least: int, most: int) -> int:
     if isinstance(given, float) and not math.isfinite(given):
         raise ParameterError(f"{what}: it must be finite")
     if isinstance(given, str | bytes) or given != int(given):
-        raise ParameterError(f"{what}: it takes a {kind}, a whole number")
+        raise ParameterError(f"{what}: its type is {kind}, it takes a whole number")
     if not least <= int(given) <= most:
         raise ParameterError(f"{what}: the type {kind} goes from {least} to {most}")
     return int(given)
