@@ -53,7 +53,7 @@ def test_reduce_as_json(data, capsys):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["reduce", "nowhere"], "there is no file or folder nowhere"),
+        (["reduce", "nowhere"], "there is no file nowhere"),
         (["reduce", "data", "--band", "2500"], "band 2500 Hz is beyond valid_to_hz = 2000 Hz"),
         (["reduce", "data", "--tolerance", "2"], "tolerance 2 must lie between 0 and 1"),
         (["import", "modes.op2"], "modes.op2: '.op2' cannot be imported; export DMIG cards"),

@@ -39,7 +39,7 @@ def test_what_is_no_number(text):
 
 def test_whole_numbers():
     assert whole(" -12") == -12
-    for text in ("1.0", "1_0", "\u0663", "1" * 19, "", "0x1"):
+    for text in ("1.0", "1_0", "\u0663", "1" * 21, "", "0x1"):
         with pytest.raises(ValueError, match="is not a whole number"):
             whole(text)
 

@@ -17,7 +17,7 @@ from herringbone.analysis.stability.limits import default_algorithms, step_limit
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
 from herringbone.commands import main as cli
-from herringbone.cosim.algorithms import Jacobi, parse_algorithm
+from herringbone.cosim.algorithms import LI, Jacobi, parse_algorithm
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.running.foreign.surrogates import opened_surrogates, under_load
 from herringbone.running.prepared import Wishes, prepared
@@ -72,6 +72,10 @@ SYSTEMS = {
     ),
 }  # fmt: skip
 
+UNRESOLVED = {"states and feedthrough": (Jacobi(order=0), LI())}
+"""Not compared: held angles of a free rotation gain energy at every step, slower than trials tell;
+li has a band there that is narrower than runs resolve."""
+
 
 def make_system(folder, kinds, name):
     """One of the systems, with its values."""
@@ -89,6 +93,8 @@ def test_limits_of_all_algorithms(kinds, tmp_path, name):
     with opened_surrogates(system, STEP) as found:
         assert not found.missing
         for algorithm in default_algorithms():
+            if algorithm in UNRESOLVED.get(name, ()):
+                continue
             predicted, seen, residual, expected, rates = limits(system, found.strangers, algorithm)
             assert residual < 1e-4
             if math.isfinite(predicted):
@@ -105,7 +111,8 @@ def test_limits_of_all_algorithms(kinds, tmp_path, name):
 
 @pytest.fixture(scope="module")
 def c_housing(tmp_path_factory):
-    return c_housing_fmu(tmp_path_factory.mktemp("c_housing"))
+    """One that saves its states: of others nothing is predicted."""
+    return c_housing_fmu(tmp_path_factory.mktemp("c_housing"), ("SAVES",), saves=True)
 
 
 @pytest.mark.parametrize(

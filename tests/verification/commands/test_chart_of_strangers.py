@@ -23,11 +23,11 @@ def oscillator(kinds, tmp_path):
 
 
 def test_slope_of_held_inputs(oscillator):
-    """Second order in the step, from 1 to 8 ms."""
+    """Fourth order in the step, from 1 to 8 ms."""
     found = measure(oscillator, algorithms=("li:degree=3",), steps=STEPS, t_end=1.0, values=VALUES)
     errors = [point.worst for point in sorted(found.points, key=lambda p: p.step)]
     slope = np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
-    assert slope == pytest.approx(2.0, abs=0.1)
+    assert slope == pytest.approx(4.0, abs=0.1)
     assert any("finer" in note or "runs of the same parts" in note for note in found.notes)
 
 

@@ -74,6 +74,8 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
         noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
             out like 1 itself.
     """
+    if matrix.size == 0:
+        return Growth(0.0, 0.0, 0.0)
     with _BLAS.limit(limits=1, user_api="blas"):
         if noise > 0.0:
             eigenvalues, known = _with_errors(matrix, noise)

@@ -147,6 +147,8 @@ def _surrogate(
 
 def _refusal(part: Part, signature: Signature) -> str:
     """Why no trials tell of the part's steps; "" if they do."""
+    if isinstance(part, NodalPart) and part.answers_again:
+        return "it cannot repeat a step, and makes up in the next one for what it missed"
     if part.once or part.one_step or signature.kind is Kind.NOISY:
         return signature.notes[0]
     if part.addresses.set_derivatives:
