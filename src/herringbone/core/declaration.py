@@ -4,6 +4,7 @@ The block is one float64 array: mutable part (states, hidden states, inputs, out
 then parameters, then tables. The FMI value reference of a real is its index in the block.
 """
 
+import re
 from collections.abc import Iterable
 from functools import cached_property
 
@@ -14,11 +15,17 @@ from herringbone.core.units import base_exponents
 from herringbone.core.variable import NODES, Causality, StateVector, Text, Variable, parameter
 
 INTERFACE_DEGREE = "interface_degree"
+_NODE = re.compile(r"\.node\d+$")
 
 
 def node_name(name: str, node: int) -> str:
     """Name of a signal's value at node 1 ... NODES."""
     return f"{name}.node{node}"
+
+
+def is_node(name: str) -> bool:
+    """True for the name of a signal's value at a node."""
+    return bool(_NODE.search(name))
 
 
 class Declaration:

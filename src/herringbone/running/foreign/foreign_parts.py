@@ -4,17 +4,15 @@ Parts with known feedthrough are given polynomial signals (`cosim.nodal`). Of ot
 structure is used, and a line says why.
 """
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.activity import activity
-from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.declaration import INTERFACE_DEGREE, is_node
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.adapter import PartAdapter, WithoutStates
 from herringbone.cosim.fmu.part import FmuPart
@@ -25,7 +23,6 @@ from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.known_signatures import known_signature
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
-_NODE = re.compile(r"\.node\d+$")
 
 Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
 
@@ -47,16 +44,27 @@ def understood(
         if not spec.foreign or INTERFACE_DEGREE in part.variables:
             found.append(part)
             continue
-        signature = known_signature(spec, step, partial(_tried, spec, part, instances, step))
+        signature = found_signature(spec, part, instances, step)
         changed, lines = _with_signature(part, signature)
         found.append(changed)
         notes += [f"{part.name}: {line}" for line in lines]
     return found, notes
 
 
-def _tried(spec: PartSpec, part: Part, instances: Instances, step: float) -> Signature:
-    with activity(f"finding out what {part.name} is"), instances(spec) as make:
-        return signature_of(part, make, step)
+def found_signature(spec: PartSpec, part: Part, instances: Instances, step: float) -> Signature:
+    """Signature of a foreign part, by trials if it is not known from before.
+
+    Args:
+        spec: of the part.
+        part: whose variables count.
+        instances, step: see `understood`.
+    """
+
+    def tried() -> Signature:
+        with activity(f"finding out what {part.name} is"), instances(spec) as make:
+            return signature_of(part, make, step)
+
+    return known_signature(spec, step, tried)
 
 
 def alike(part: Part, made: Part) -> Part:
@@ -94,7 +102,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     return [
         name
         for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and not _NODE.search(name)
+        if v.causality == causality and v.is_real and not is_node(name)
     ]
 
 

@@ -1,13 +1,11 @@
 """What foreign parts exchange with others, and how."""
 
-import re
 from collections.abc import Sequence
 
+from herringbone.core.declaration import is_node
 from herringbone.core.part import Part
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
-
-_NODE = re.compile(r"\.node\d+$")
 
 
 def exchanged_outputs(system: System, parts: Sequence[Part]) -> tuple[str, ...]:
@@ -30,13 +28,13 @@ def unfed(system: System, parts: Sequence[Part]) -> list[str]:
         system: of the parts, in the same order.
         parts: as the coupling takes them.
     """
-    network = build_network(system, parts)
+    connections = build_network(system, parts).every_connection
     lines = []
     for p, (spec, part) in enumerate(zip(system.parts, parts, strict=True)):
-        fed = {c.input for c in network.inputs(p)}
-        used = fed | {c.output for c in network.connections if c.source == p}
         if not spec.foreign:
             continue
+        fed = {c.input for c in connections if c.target == p}
+        used = fed | {c.output for c in connections if c.source == p}
         if not used:
             lines.append(f"{part.name}: nothing is connected to it")
         ports = {name.rpartition(".")[0] for name in used} - {""}
@@ -46,7 +44,7 @@ def unfed(system: System, parts: Sequence[Part]) -> list[str]:
             if v.causality == "input"
             and name not in fed
             and name.rpartition(".")[0] in ports
-            and not _NODE.search(name)
+            and not is_node(name)
         ]
         if missing:
             lines.append(

@@ -16,7 +16,12 @@ from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.running.foreign.foreign_parts import alike, signature_of, start_inputs, understood
+from herringbone.running.foreign.foreign_parts import (
+    alike,
+    found_signature,
+    start_inputs,
+    understood,
+)
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.open_flanges import loaded
@@ -114,8 +119,13 @@ def _add(
     stack: ExitStack,
 ) -> None:
     try:
+        signature = (
+            part.signature
+            if isinstance(part, NodalPart)
+            else found_signature(spec, part, instances, step)
+        )
         make = stack.enter_context(instances(spec))
-        made = _surrogate(make, part, ports, step, stack)
+        made = _surrogate(make, part, signature, ports, step, stack)
     except FmuError as error:
         found.missing[part.name] = str(error)
         return
@@ -130,12 +140,12 @@ def _add(
 def _surrogate(
     make: Callable[[], Part],
     part: Part,
+    signature: Signature,
     ports: tuple[list[str], list[str]],
     step: float,
     stack: ExitStack,
 ) -> Surrogate | str:
     """A part's surrogate, or why there is none; raises FmuError."""
-    signature = part.signature if isinstance(part, NodalPart) else signature_of(part, make, step)
     why = _refusal(part, signature)
     if why:
         return why
