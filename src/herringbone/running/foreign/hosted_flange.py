@@ -43,6 +43,16 @@ class Flange:
         """Angle, if there is one, and speed."""
         return tuple(filter(None, (self.angle, self.speed)))
 
+    @property
+    def inputs(self) -> list[str]:
+        """What the FMU takes."""
+        return [self.torque] if self.takes_torque else list(self.motion)
+
+    @property
+    def outputs(self) -> list[str]:
+        """What the FMU gives."""
+        return list(self.motion) if self.takes_torque else [self.torque]
+
 
 @dataclass(frozen=True)
 class HostedFlange:
@@ -92,41 +102,43 @@ def hosted_flange(fmu: Path, flange: str, host: Host) -> HostedFlange:
         _check(found, host, flange)
         experiment = part.model.defaultExperiment
         step = float(experiment.stepSize) if experiment and experiment.stepSize else STEP
-        inputs = [found.torque] if found.takes_torque else list(found.motion)
-        outputs = list(found.motion) if found.takes_torque else [found.torque]
+        takes_derivatives = bool(part.addresses.set_derivatives)
         with activity(f"identifying {found.torque} of {fmu.name}"):
-            start = start_inputs(part, inputs)
+            start = start_inputs(part, found.inputs)
             signature = signature_of(make(), make, step)
             if signature.kind is Kind.NOISY:
                 raise FmuError(f"{fmu}: {signature.notes[0]}")
             tried: list[HostedFlange] = []
-            steps = [step, *_TRIED]
-            for h in steps:
-                with Laboratory(make, inputs, outputs, start, h) as lab:
+            for h in (step, *_TRIED):
+                with Laboratory(make, found.inputs, found.outputs, start, h) as lab:
                     surrogate = Surrogate(lab, signature, part.variables)
-                    if surrogate.model is None:
-                        why = surrogate.why
-                        continue
-                    model = _with_angle(surrogate.model, found)
-                    limits = host_limits(model, host, takes_torque=found.takes_torque)
-                    finite = [x.limit for x in limits if np.isfinite(x.limit)] or [surrogate.base]
-                    tried.append(
-                        HostedFlange(
-                            fmu,
-                            found,
-                            host,
-                            limits,
-                            bool(part.addresses.set_derivatives),
-                            surrogate.order,
-                            surrogate.base,
-                            max(surrogate.residual(x) for x in finite),
-                        )
-                    )
+                    if surrogate.model is not None:
+                        tried.append(_hosted(fmu, found, host, surrogate, takes_derivatives))
                 if tried and tried[-1].promised:
                     break
     if not tried:
-        raise FmuError(f"{fmu}: nothing is promised: {why}")
+        raise FmuError(f"{fmu}: nothing is promised: {surrogate.why}")
     return min(tried, key=lambda one: one.residual)
+
+
+def _hosted(
+    fmu: Path, flange: Flange, host: Host, surrogate: Surrogate, takes_derivatives: bool
+) -> HostedFlange:
+    """What a surrogate, which has a model, tells of the FMU at the host."""
+    assert surrogate.model is not None
+    model = _with_angle(surrogate.model, flange)
+    limits = host_limits(model, host, takes_torque=flange.takes_torque)
+    finite = [x.limit for x in limits if np.isfinite(x.limit)] or [surrogate.base]
+    return HostedFlange(
+        fmu,
+        flange,
+        host,
+        limits,
+        takes_derivatives,
+        surrogate.order,
+        surrogate.base,
+        max(surrogate.residual(x) for x in finite),
+    )
 
 
 def flange_of(part: Part, asked: str) -> Flange:

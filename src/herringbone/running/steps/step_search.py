@@ -41,18 +41,19 @@ def searched_tolerance(system: System, asked: Asked) -> float | None:
     """
     if not system.foreign_parts or not system.connections:
         return None
+    if asked.tolerance is None:
+        unknown = asked.step is None and asked.algorithm is None and asked.probe
+        if not unknown or len(system.foreign_parts) < len(system.parts):
+            return None
     single = [name for name in system.foreign_parts if _once(system, name)]
-    if single and asked.tolerance is not None:
+    if asked.tolerance is None:
+        return None if single else _DEFAULT
+    if single:
         raise ParameterError(
             f"tolerance = {asked.tolerance:g}: {', '.join(single)} can be instantiated once only, "
             "and a step is found by several runs; give a --step"
         )
-    if single:
-        return None
-    if asked.tolerance is not None:
-        return asked.tolerance if asked.algorithm is None or not asked.algorithm.adaptive else None
-    unknown = asked.step is None and asked.algorithm is None and asked.probe
-    return _DEFAULT if unknown and len(system.foreign_parts) == len(system.parts) else None
+    return asked.tolerance if asked.algorithm is None or not asked.algorithm.adaptive else None
 
 
 def searched(

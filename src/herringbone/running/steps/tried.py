@@ -21,7 +21,7 @@ _LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
 _FAR = 0.3
 """Difference of two runs above which the longer step follows no power."""
 _BLIND = 2.0
-"""What the step is divided by as long as nothing is known."""
+"""What the step is divided by as long as nothing is known of the error."""
 _FALLS = 0.3
 """Power below which the difference of two runs does not fall with their steps. Two such runs near
 each other tell, or three that are far apart, as those are where long steps are nearly unstable."""
@@ -97,11 +97,9 @@ class Search:
         return int(min(max(math.ceil(self._shorter()), 2), _AT_ONCE))
 
     def _shorter(self) -> float:
-        if not self.tried or self.tried[-1].differences is None:
-            return 2.0
-        last = self.tried[-1]
-        if last.apart > _FAR:
+        if not self.tried or self.tried[-1].apart > _FAR:
             return _BLIND
+        last = self.tried[-1]
         power = last.counted if len(self.tried) > 2 else _HIGHEST
         return (last.error / (_AIM * self._tolerance)) ** (1.0 / power)
 

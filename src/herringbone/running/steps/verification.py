@@ -22,8 +22,8 @@ from herringbone.running.progress import Progress
 from herringbone.running.run_result import with_coupling_row
 from herringbone.scenes import Scene
 
-_LONGER, _SHORTER = 4.0 / 3.0, 1.0 / 7.0
-"""Error of the run with the longer, and the shorter, of two steps over their difference."""
+_LONGER = 4.0 / 3.0
+"""Error of the run with the longer of two steps over their difference."""
 _FALL = 8.0
 """Of differences as the step is halved, with an error of third order."""
 
@@ -109,13 +109,13 @@ def verified_by_longer_steps(
             result, "the error is not known: with twice the step no run ends well; use --verify"
         )
     differences = apart(runs[1], result, found.exchanged)
-    share, how = _SHORTER, "by twice the macro step, third order assumed"
+    fall, how = _FALL, "by twice the macro step, third order assumed"
     if len(runs) > 2:
         before, now = apart(runs[2], runs[1], found.exchanged).groups, differences.groups
         ratios = [before[name] / d for name, d in now.items() if d and name in before]
         fall = min(max(median(ratios) if ratios else _FALL, 2.0), 16.0)
-        share, how = 1.0 / (fall - 1.0), "by two and four times the macro step"
-    verification = scaled(differences, share, 2.0 * step, how)
+        how = "by two and four times the macro step"
+    verification = scaled(differences, 1.0 / (fall - 1.0), 2.0 * step, how)
     return with_coupling_row(replace(result, verification=verification))
 
 
