@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.limits import step_limits
 from herringbone.analysis.stability.linear_parts import linear_network, real_parts
+from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
 from herringbone.core.part import closing_all

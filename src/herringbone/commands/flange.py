@@ -67,7 +67,7 @@ def flange_limits(options: argparse.Namespace) -> str:
     Raises:
         HerringboneError: something about the input is wrong, or trials tell nothing of the FMU.
     """
-    from herringbone.analysis.stability.hosted_flange import Host  # noqa: PLC0415 (numba)
+    from herringbone.analysis.flange.hosted_flange import Host  # noqa: PLC0415 (numba)
     from herringbone.running.foreign.hosted_flange import hosted_flange  # noqa: PLC0415
 
     host = Host(options.inertia, options.stiffness or 0.0, options.damping or 0.0)

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from herringbone.analysis.stability.hosted_flange import Host
+from herringbone.analysis.flange.hosted_flange import Host
 from herringbone.commands import main as cli
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature.trial import Trial
@@ -23,7 +23,7 @@ def limit_of(found, order, *, parallel=False):
 def growth_at_host(file, host, h, *, parallel=False, inside=False):
     """Logarithm of growth of a host's torque over the second half of a run of the FMU.
 
-    The host of `analysis.stability.hosted_flange` at order 0: a free inertia at 1 rad/s.
+    The host of `analysis.flange.hosted_flange` at order 0: a free inertia at 1 rad/s.
     """
     inputs, outputs = (
         (["flange.phi", "flange.w"], ["flange.tau"]) if inside else (["f"], ["x", "v"])

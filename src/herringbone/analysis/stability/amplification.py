@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
-from herringbone.analysis.stability.surrogate_part import StandIn
+from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -77,11 +77,15 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with _BLAS.limit(limits=1, user_api="blas"):
-        if noise > 0.0:
-            eigenvalues, known = _with_errors(matrix, noise)
-        else:
-            eigenvalues, known = np.linalg.eigvals(matrix), np.zeros(1)
-    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)]
+        eigenvalues = np.linalg.eigvals(matrix)
+        found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
+        if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less
+            return found
+        eigenvalues, known = _with_errors(matrix, noise)
+    return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
+
+
+def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
     sizes = np.abs(eigenvalues)
     if sizes.size == 0:
         return Growth(0.0, 0.0, 0.0)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.stability.hosted_flange import Host, HostLimit, host_limits
-from herringbone.analysis.stability.identification import LinearModel
-from herringbone.analysis.stability.surrogate import PROMISED, Surrogate
+from herringbone.analysis.flange.hosted_flange import Host, HostLimit, host_limits
+from herringbone.analysis.stability.surrogates.identification import LinearModel
+from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part
