@@ -184,7 +184,7 @@ class Amplification:
         return found
 
     def _of_coupling(self, found: Growth, step: float) -> bool:
-        """False if slow growth may be free rotation that models of foreign parts know too little of.
+        """False if slow growth may be free rotation, of which models of foreign parts know little.
 
         What they miss makes a motion grow in time whatever the step, growth by held values goes
         with a power of the step.
