@@ -54,9 +54,19 @@ def run(options: argparse.Namespace) -> int:
     show(
         f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
     )
-    for line in _signature(options.fmu, options.step):
+    for line in (*_remarks(options.fmu), *_signature(options.fmu, options.step)):
         show(f"  {line}")
     return 1 if problems else 0
+
+
+def _remarks(fmu: Path) -> list[str]:
+    """What FMI allows, but leaves open; nothing if the file cannot be read, which is said."""
+    from herringbone.fmi.check import without_unit  # noqa: PLC0415
+
+    try:
+        return [f"remark: {line}, taken as SI" for line in without_unit(fmu)]
+    except FmuError:
+        return []
 
 
 def _refuse_wrong(options: argparse.Namespace) -> None:

@@ -34,7 +34,7 @@ def check_fmu(path: str | Path) -> list[str]:
         description = read_fmu(path)
     except FmuError as error:
         return [str(error)]
-    problems = validate_fmu(str(path)) + _without_unit(description)
+    problems = list(validate_fmu(str(path)))
     for check in (_default_run, _state_round_trip, _reset):
         try:
             problems += check(path, description)
@@ -43,8 +43,16 @@ def check_fmu(path: str | Path) -> list[str]:
     return problems
 
 
-def _without_unit(description: ModelDescription) -> list[str]:
-    """Reals without unit; an event indicator, which is a variable in FMI 3.0, needs none."""
+def without_unit(path: str | Path) -> list[str]:
+    """Reals without unit, which FMI allows, one line each; event indicators need none.
+
+    Args:
+        path: the FMU.
+
+    Raises:
+        FmuError: the file cannot be read.
+    """
+    description = read_fmu(Path(path))
     indicators = {unknown.variable.name for unknown in description.eventIndicators}
     return [
         f"{v.name}: a {v.type} without unit"
