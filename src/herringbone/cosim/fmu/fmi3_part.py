@@ -13,7 +13,7 @@ from herringbone.core.part import STRUCTURE, Addresses, Given, Value
 from herringbone.cosim.fmu import fmi3_calls, fmi3_memory, fmi3_steps
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
-from herringbone.cosim.fmu.variables import Element, read_elements, read_variables
+from herringbone.cosim.fmu.variables import Element, read_elements, resized
 from herringbone.kernels.linking import CFunction
 
 _WARNING = 1
@@ -158,13 +158,7 @@ class Fmu3Part(FmuPart):
 
     def _resize(self, name: str, size: int) -> None:
         """Arrays whose size is a structural parameter have another one now."""
-        changed = next(v for v in self.model.modelVariables if v.name == name)
-        changed.start = str(size)
-        for v in self.model.modelVariables:
-            v.shape = tuple(
-                int(d.start if d.variable is None else d.variable.start) for d in v.dimensions
-            )
-        self.variables = read_variables(self.model)
+        self.variables = resized(self.model, name, size)
         self._others = OtherValues(self.model)
         self._make_memory(read_elements(self.model))
         self._connect_memory()

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
@@ -19,7 +19,9 @@ from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.values import as_value, as_values
 from herringbone.cosim.fmu.variables import read_variables
-from herringbone.cosim.signature.signature import Signature
+
+if TYPE_CHECKING:  # a cell starts quicker without
+    from herringbone.cosim.signature.signature import Signature
 
 _SHOWN = 8
 
@@ -211,10 +213,18 @@ class FmuPart(ABC):
 
     def close(self) -> None:
         """Terminate and free the instance, unless it has failed, and remove the extracted files."""
+        self.terminate()
+        self.free()
+
+    def terminate(self) -> None:
+        """Terminate the instance if it runs."""
         if self._running and not self._log.fatal:
             self._running = False
             with contextlib.suppress(FMICallException):  # its results are there, and stay
                 self.slave.terminate()
+
+    def free(self) -> None:
+        """Free the instance, unless it has failed for good, and remove the extracted files."""
         if not self._log.fatal:
             self.slave.freeInstance()
         self._remove_files()

@@ -1,0 +1,91 @@
+"""Which FMUs run in cells, and what came of those that did."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+
+from herringbone.core import ParameterError
+from herringbone.cosim.cell.atomics import FUTEX
+
+DEADLINE = 60.0
+"""Longest time that a call of an FMU takes, unless something else is asked for [s]."""
+_SPIN = 20e-6
+
+
+@dataclass(frozen=True)
+class Remark:
+    """What a cell found out about an FMU, besides its results.
+
+    Attributes:
+        part: name of the instance.
+        text: what, to be read after the name.
+        crashed: it did not survive its end.
+    """
+
+    part: str
+    text: str
+    crashed: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.part} {self.text}"
+
+
+@dataclass(frozen=True)
+class Policy:
+    """How foreign FMUs are housed.
+
+    Attributes:
+        in_process: in this process, as those that were built here.
+        deadline: longest time that a call of an FMU in a cell takes [s].
+        remarks: what was found out.
+    """
+
+    in_process: bool = False
+    deadline: float = DEADLINE
+    remarks: list[Remark] = field(default_factory=list)
+
+
+_policy: ContextVar[Policy | None] = ContextVar("cell_policy", default=None)
+
+
+def policy() -> Policy:
+    """The policy of this context."""
+    return _policy.get() or Policy()
+
+
+@contextmanager
+def housing_of_strangers(
+    *, in_process: bool = False, deadline: float | None = None
+) -> Iterator[Policy]:
+    """Context in which foreign FMUs are opened so.
+
+    Args:
+        in_process: in this process.
+        deadline: longest time of a call [s]; `DEADLINE` if not given.
+
+    Raises:
+        ParameterError: the deadline is not positive.
+    """
+    if deadline is not None and not deadline > 0.0:
+        raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
+    found = Policy(in_process, DEADLINE if deadline is None else deadline)
+    token = _policy.set(found)
+    try:
+        yield found
+    finally:
+        _policy.reset(token)
+
+
+def cells_work() -> bool:
+    """True where there are cells: on Linux, on processors whose system calls are known."""
+    return sys.platform == "linux" and FUTEX > 0 and hasattr(os, "pidfd_open")
+
+
+def spin_time(cells: int) -> float:
+    """Time to spin [s], with so many cells of this process; 0 where cores are scarce."""
+    if sys.platform != "linux":
+        return 0.0
+    return _SPIN if 1 + cells <= len(os.sched_getaffinity(0)) else 0.0
