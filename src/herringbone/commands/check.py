@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from herringbone.commands.options import add_cells
 from herringbone.commands.output import show
 from herringbone.core import FmuError, ParameterError
 
@@ -33,6 +34,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
     )
     sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
+    add_cells(sub)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -8,15 +8,13 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from herringbone.cosim.cell.system_calls import FUTEX, GETPPID
 from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.jit import kernel
 
 _INT32 = ir.IntType(32)
 _ALIGNED = 4
 _PAUSE = {"x86_64": "llvm.x86.sse2.pause"}.get(platform.machine(), "")
-_NUMBERS = {"x86_64": (202, 110), "aarch64": (98, 173)}
-FUTEX, GETPPID = _NUMBERS.get(platform.machine(), (0, 0))
-"""Numbers of system calls on Linux; 0 where they are not known."""
 _WAIT, _WAKE, _ALL = 0, 1, 2**31 - 1
 
 _syscall = c_call("count", "address", "count", "count", "address", "address", "count")

@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 
 from herringbone.core import ParameterError
-from herringbone.cosim.cell.atomics import FUTEX
+from herringbone.cosim.cell.system_calls import FUTEX
 
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
@@ -77,6 +77,14 @@ def housing_of_strangers(
         yield found
     finally:
         _policy.reset(token)
+
+
+@contextmanager
+def remarks_of_cells() -> Iterator[list[Remark]]:
+    """Context with the policy as it is, and the remarks on the FMUs that are opened in it."""
+    kept = policy()
+    with housing_of_strangers(in_process=kept.in_process, deadline=kept.deadline) as found:
+        yield found.remarks
 
 
 def cells_work() -> bool:
