@@ -104,3 +104,16 @@ outputs that were read last, whether these are still those of the FMU, and statu
 derivatives of outputs, with their orders (int32). FMI status of a message that was sent without
 being asked for its own.
 """
+FUNCTIONS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "component", "set_real", "get_real", "do_step", "get_state", "set_state", "free_state",
+            "set_derivatives", "get_derivatives", "states",
+        )
+    ]
+)  # fmt: skip
+"""Of one instance: `Addresses`, and the address of its states (int64)."""
+SERVER = np.dtype([(name, np.int64) for name in ("side", "instances", "references", "orders")])
+"""Addresses of the side, of the instances' functions, and of room for value references (uint32) and
+orders (int32)."""

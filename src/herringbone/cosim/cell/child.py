@@ -1,4 +1,4 @@
-"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER`."""
+"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER CODE`."""
 
 import ctypes
 import locale
@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import FmuError, HerringboneError
-from herringbone.cosim.cell.block import INSTANCES, STATES, places
-from herringbone.cosim.cell.serving import FUNCTIONS, SERVER, answer, serve
+from herringbone.cosim.cell.block import FUNCTIONS, INSTANCES, SERVER, STATES, places
+from herringbone.cosim.cell.loading import Code, loaded
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
+from herringbone.cosim.fmu.fmi3_adapters import ADAPTERS, use_adapters
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
@@ -41,9 +42,10 @@ class Server:
         block: file descriptor of the shared memory.
         capacity: words of operations that fit into it.
         master: number of the master's process.
+        code: compiled functions.
     """
 
-    def __init__(self, block: int, capacity: int, master: int) -> None:
+    def __init__(self, block: int, capacity: int, master: int, code: Code) -> None:
         self._side = Side(block, places(capacity), capacity, _SPIN, _SLEEP)
         self._side.record["parent"] = master
         self._functions = np.zeros(INSTANCES, FUNCTIONS)
@@ -57,7 +59,7 @@ class Server:
         self._parts: dict[int, FmuPart] = {}
         self._states: dict[int, np.ndarray] = {}
         self._before: dict[str, object] = {}
-        self._serve, self._answer = _POINTER(serve.address), _POINTER(answer.address)
+        self._serve, self._answer = (_POINTER(code.address(n)) for n in ("serve", "answer"))
         self.folders: set[str] = set()
 
     def _spin(self, _: int, seconds: float) -> None:
@@ -178,11 +180,13 @@ def watch(master: int, server: Server) -> None:
     os._exit(1)
 
 
-def main(block: int, capacity: int, master: int) -> None:
+def main(block: int, capacity: int, master: int, code: Path) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    server = Server(block, capacity, master)
+    functions = loaded(code)
+    use_adapters({name: functions.address(name) for name in ADAPTERS})
+    server = Server(block, capacity, master, functions)
     os.close(block)
     threading.Thread(target=watch, args=(master, server), daemon=True).start()
     server.converse()
@@ -190,4 +194,4 @@ def main(block: int, capacity: int, master: int) -> None:
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:4]))
+    main(*map(int, sys.argv[1:4]), Path(sys.argv[4]))

@@ -9,10 +9,11 @@ import signal
 import subprocess
 import sys
 import weakref
+from pathlib import Path
 from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
-from herringbone.cosim.cell import calls, serving
+from herringbone.cosim.cell import calls
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -21,6 +22,7 @@ from herringbone.cosim.cell.block import (
     MORE,
     places,
 )
+from herringbone.cosim.cell.code import code_file
 from herringbone.cosim.cell.log import OutputLog
 from herringbone.cosim.cell.policy import policy, spin_time
 from herringbone.cosim.cell.sides import Side
@@ -58,14 +60,13 @@ class Cell:
 
     def __init__(self, name: str, words: int) -> None:
         self.name = name
-        for needed in (serving.serve, serving.answer):  # compiled here, at most once
-            _ = needed.address
+        code = code_file()
         layout = places(words)
         block = os.memfd_create("herringbone-cell")
         try:
             os.ftruncate(block, layout.size)
             self.side = Side(block, layout, words, 0.0, _SLEEP)
-            self._process = _start(block, words)
+            self._process = _start(block, words, code)
         finally:
             os.close(block)
         self._watched = os.pidfd_open(self._process.pid)
@@ -199,12 +200,12 @@ def _signal(number: int) -> str:
         return "unknown"
 
 
-def _start(block: int, words: int) -> "subprocess.Popen[bytes]":
+def _start(block: int, words: int, code: Path) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.child"]
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
     try:
         return subprocess.Popen(
-            [*command, str(block), str(words), str(os.getpid())],
+            [*command, str(block), str(words), str(os.getpid()), str(code)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

@@ -9,6 +9,7 @@ from herringbone.cosim.cell.block import (
     ANSWER,
     CELL_SLEEPS,
     FREE,
+    FUNCTIONS,
     GET,
     GET_DERIVATIVES,
     HEADER,
@@ -18,6 +19,7 @@ from herringbone.cosim.cell.block import (
     REQUEST,
     RESTORE,
     SAVE,
+    SERVER,
     SET,
     SET_DERIVATIVES,
     SIDE,
@@ -34,19 +36,6 @@ from herringbone.cosim.loops.calls import (
 )
 from herringbone.kernels.jit import allocating, c_function
 
-FUNCTIONS = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "component", "set_real", "get_real", "do_step", "get_state", "set_state", "free_state",
-            "set_derivatives", "get_derivatives", "states",
-        )
-    ]
-)  # fmt: skip
-"""Of one instance: `Addresses`, and the address of its states (int64)."""
-SERVER = np.dtype([(name, np.int64) for name in ("side", "instances", "references", "orders")])
-"""Addresses of the side, of the instances' functions, and of room for value references (uint32) and
-orders (int32)."""
 _POINTER = types.CPointer(from_dtype(SERVER))
 _LAST_GOOD = 1
 _BYTES = 8

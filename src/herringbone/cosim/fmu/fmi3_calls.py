@@ -13,8 +13,8 @@ The kernels view memory as arrays of given types, which numba compiles with coun
 import numpy as np
 from numba import carray, types
 
-from herringbone.cosim.fmu.fmi3_memory import ELEMENT, POINTER
-from herringbone.cosim.fmu.fmi3_steps import any_discrete, enter_events, leave_events
+from herringbone.cosim.fmu.fmi3_memory import ELEMENT
+from herringbone.cosim.fmu.fmi3_steps import POINTER, any_discrete, enter_events, leave_events
 from herringbone.cosim.loops.calls import at_address, c_call, state_call
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.fmi_calls import OK
