@@ -91,7 +91,7 @@ INSTANCE = np.dtype(
         for name in (
             "side", "number", "words", "used", "known", "slots", "references", "count", "found",
             "valid", "status", "rates", "orders", "rate_count", "rate_found", "rate_valid",
-            "rate_status", "failed",
+            "rate_status", "waiting",
         )
     ]
 )  # fmt: skip
@@ -101,8 +101,7 @@ Address of the cell's side; number of the instance; address of the operations th
 and how many words they are; address of marks of the kinds of operations that were accepted once
 (uint8), and of the states that are in use (uint8). References (uint32), number and values of the
 outputs that were read last, whether these are still those of the FMU, and status; the same of the
-derivatives of outputs, with their orders (int32). FMI status of a message that was sent without
-being asked for its own.
+derivatives of outputs, with their orders (int32). Steps that wait to be sent.
 """
 FUNCTIONS = np.dtype(
     [

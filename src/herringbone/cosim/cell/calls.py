@@ -76,7 +76,7 @@ def _send(memory: np.ndarray) -> int:
     part = memory[0]
     side = carray(at_address(part.side), 1, SIDE)
     if side[0].lost != ALIVE:
-        memory[0].used = 0
+        memory[0].used = memory[0].waiting = 0
         return _FATAL
     own = carray(at_address(part.words), part.used, np.int64)
     words = carray(at_address(side[0].words), part.used, np.int64)
@@ -85,7 +85,7 @@ def _send(memory: np.ndarray) -> int:
     header = carray(at_address(side[0].block + HEADER), 1, HEADER_TYPE)
     header[0].kind, header[0].instance = OPERATIONS, part.number
     header[0].words, header[0].status = part.used, 0
-    memory[0].used = 0
+    memory[0].used = memory[0].waiting = 0
     if _converse(side) != ALIVE:
         return _FATAL
     return header[0].status
@@ -172,6 +172,20 @@ def _keep(memory: np.ndarray, rates: bool) -> None:
             rate[i] = value[at + 1 + i]
 
 
+@allocating
+def _step_now(memory: np.ndarray) -> int:
+    """Send the steps that were collected, with the requests for outputs; FMI status."""
+    part = memory[0]
+    _ask(memory)
+    if part.rate_count > 0:
+        _ask_rates(memory)
+    status = _send(memory)
+    if status <= _LAST_GOOD:
+        carray(at_address(part.known), KINDS, np.uint8)[STEP] = 1
+        _keep(memory, True)
+    return status
+
+
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal."""
@@ -209,6 +223,10 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
     value, number = carray(values, _UNKNOWN_SIZE), int(count)
     part = whole[0]
+    if part.waiting and _same(whole, reference, number):
+        status = _step_now(whole)
+        if status > _LAST_GOOD:
+            return types.int32(status)
     if not (part.valid and _same(whole, reference, number)):
         status = _room(whole, number)
         if status > _LAST_GOOD:
@@ -231,7 +249,10 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 
 @c_function(_STEP)
 def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _STEP)
-    """fmi2DoStep, with all that was collected before, and the outputs after it."""
+    """fmi2DoStep: it waits for the outputs to be read, or for the next step.
+
+    A step that fails says so there; the first one is made at once.
+    """
     whole = carray(memory, 1)
     part = whole[0]
     status = _room(whole, 4 + part.count + 2 * part.rate_count)
@@ -241,13 +262,10 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
     reals = carray(at_address(part.words), at + 2, np.float64)
     reals[at], reals[at + 1] = time, step
     part.used, part.valid, part.rate_valid = at + 2, 0, 0
-    _ask(whole)
-    if part.rate_count > 0:
-        _ask_rates(whole)
-    status = _send(whole)
-    if status <= _LAST_GOOD:
-        _keep(whole, True)
-    return types.int32(status)
+    part.waiting += 1
+    if part.waiting == 1 and carray(at_address(part.known), KINDS, np.uint8)[STEP]:
+        return types.int32(0)
+    return types.int32(_step_now(whole))
 
 
 @c_function(_HANDLE)

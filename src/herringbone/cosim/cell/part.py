@@ -147,7 +147,7 @@ class CellPart:
     def failed(self) -> None:
         """A step failed: FMI then allows no call but fmi2FreeInstance."""
         self._failed = True
-        self._memory["used"] = 0
+        self._memory["used"] = self._memory["waiting"] = 0
         if not self._cell.lost:
             self._ask("failed")
 
@@ -178,8 +178,9 @@ class CellPart:
         self._leave()
 
     def _end(self) -> None:
-        self._memory["used"] = 0
         try:
+            if not self._failed:
+                _SEND(calls.send.address)(self._memory.ctypes.data)
             for call in ("terminate", "free"):
                 self._cell.ask(call, self._number)
             if self._owned:
