@@ -112,6 +112,4 @@ SEEN = {
 
 def hostile_fmu(folder: Path, fmi: int = 2) -> Path:
     """The FMU of an FMI version."""
-    return compiled_fmu(
-        SOURCE, _TWO if fmi == 2 else _THREE, folder, () if fmi == 2 else ("FMI3",)
-    )
+    return compiled_fmu(SOURCE, _TWO if fmi == 2 else _THREE, folder, () if fmi == 2 else ("FMI3",))
