@@ -6,9 +6,9 @@ import numpy as np
 
 LINE = 64
 """Bytes of a cache line: words that different processes write lie on different lines."""
-REQUEST, ANSWER, MASTER_SLEEPS, CELL_SLEEPS, HEADER = (LINE * k for k in range(5))
+REQUEST, ANSWER, MASTER_SLEEPS, CELL_SLEEPS, SPIN, HEADER = (LINE * k for k in range(6))
 """Places of the counters (int32) of requests and answers, of the marks (int32) that who waits for
-them sleeps, and of the header."""
+them sleeps, of the time to spin (int32) [ns], 0: not at all, and of the header."""
 HEADER_TYPE = np.dtype(
     [
         ("kind", np.int64),
@@ -71,7 +71,7 @@ SIDE = np.dtype(
         (name, np.int64)
         for name in (
             "block", "words", "values", "capacity", "syscall", "clock", "poll", "now", "timeout",
-            "watched", "parent", "spin", "deadline", "lost", "misses", "rest",
+            "watched", "parent", "deadline", "lost", "misses", "rest",
         )
     ]
 )  # fmt: skip
@@ -80,8 +80,8 @@ SIDE = np.dtype(
 Addresses of the block, its words and values, and their number; of the C functions syscall,
 clock_gettime and poll; of a timespec to read the clock into, and of the one that sleep is limited
 to; of the pollfd by which the master sees the cell end; number of the process whose child the cell
-is; time to spin and to wait for an answer [ns], 0: not, or without end; why the cell is lost;
-waits in a row that spinning did not shorten; waits that do not spin.
+is; time to wait for an answer [ns], 0: without end; why the cell is lost; waits in a row that
+spinning did not shorten; waits that do not spin.
 """
 ALIVE, DIED, LATE = 0, 1, 2
 """Why a cell is lost: it ended; it did not answer in time."""
@@ -91,7 +91,7 @@ INSTANCE = np.dtype(
         for name in (
             "side", "number", "words", "used", "known", "slots", "references", "count", "found",
             "valid", "status", "rates", "orders", "rate_count", "rate_found", "rate_valid",
-            "rate_status", "waiting",
+            "rate_status", "waiting", "read",
         )
     ]
 )  # fmt: skip
@@ -101,7 +101,8 @@ Address of the cell's side; number of the instance; address of the operations th
 and how many words they are; address of marks of the kinds of operations that were accepted once
 (uint8), and of the states that are in use (uint8). References (uint32), number and values of the
 outputs that were read last, whether these are still those of the FMU, and status; the same of the
-derivatives of outputs, with their orders (int32). Steps that wait to be sent.
+derivatives of outputs, with their orders (int32). Steps that wait to
+be sent; 1 if outputs were read since the last step.
 """
 FUNCTIONS = np.dtype(
     [

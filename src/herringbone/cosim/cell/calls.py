@@ -223,6 +223,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     whole, reference = carray(memory, 1), carray(references, _UNKNOWN_SIZE)
     value, number = carray(values, _UNKNOWN_SIZE), int(count)
     part = whole[0]
+    part.read = 1
     if part.waiting and _same(whole, reference, number):
         status = _step_now(whole)
         if status > _LAST_GOOD:
@@ -249,7 +250,7 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 
 @c_function(_STEP)
 def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _STEP)
-    """fmi2DoStep: it waits for the outputs to be read, or for the next step.
+    """fmi2DoStep: where outputs were read after the last one, it waits for that, or the next step.
 
     A step that fails says so there; the first one is made at once.
     """
@@ -263,7 +264,8 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
     reals[at], reals[at + 1] = time, step
     part.used, part.valid, part.rate_valid = at + 2, 0, 0
     part.waiting += 1
-    if part.waiting == 1 and carray(at_address(part.known), KINDS, np.uint8)[STEP]:
+    read, part.read = part.read, 0
+    if part.waiting == 1 and read and carray(at_address(part.known), KINDS, np.uint8)[STEP]:
         return types.int32(0)
     return types.int32(_step_now(whole))
 

@@ -25,7 +25,6 @@ from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
 _SLEEP = 1.0
-_SPIN = 20e-6
 _LOOK = 0.25
 """Seconds between looks at whether the master lives."""
 _SIMPLE = {
@@ -46,7 +45,7 @@ class Server:
     """
 
     def __init__(self, block: int, capacity: int, master: int, code: Code) -> None:
-        self._side = Side(block, places(capacity), capacity, _SPIN, _SLEEP)
+        self._side = Side(block, places(capacity), capacity, _SLEEP)
         self._side.record["parent"] = master
         self._functions = np.zeros(INSTANCES, FUNCTIONS)
         self._references = np.zeros(capacity, np.uint32)
@@ -62,8 +61,8 @@ class Server:
         self._serve, self._answer = (_POINTER(code.address(n)) for n in ("serve", "answer"))
         self.folders: set[str] = set()
 
-    def _spin(self, _: int, seconds: float) -> None:
-        self._side.record["spin"] = int(1e9 * seconds)
+    def _start(self, _: int) -> None:
+        """It is there."""
 
     def converse(self) -> None:
         """Answer until the master is gone, or wants no more."""
@@ -135,6 +134,7 @@ class Server:
 
     def _changed(self, _: int) -> list[str]:
         """What FMUs changed of the process and did not put back."""
+        ctypes.CDLL(None).fflush(None)
         now = surroundings()
         return [what for what, before in self._before.items() if now[what] != before]
 

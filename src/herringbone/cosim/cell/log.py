@@ -1,7 +1,11 @@
 """What FMUs in a cell write to its standard output and error: to a file, up to a limit."""
 
 import contextlib
+import fcntl
+import termios
 import threading
+import time
+from array import array
 from pathlib import Path
 from typing import IO
 
@@ -14,6 +18,7 @@ _PIECE = 1 << 16
 _KEPT = 20
 """Logs that are kept."""
 _WAIT = 1.0
+_GLANCE = 1e-3
 
 
 class OutputLog:
@@ -55,6 +60,14 @@ class OutputLog:
             self.file.write_bytes(b"")
         with self.file.open("ab") as file:
             file.write(piece)
+
+    def settle(self) -> None:
+        """Wait until what was written is read."""
+        waiting, end = array("i", [1]), time.monotonic() + _WAIT
+        while waiting[0] and self._thread.is_alive() and time.monotonic() < end:
+            with contextlib.suppress(OSError, ValueError):
+                fcntl.ioctl(self._stream.fileno(), termios.FIONREAD, waiting)
+            time.sleep(_GLANCE)
 
     def close(self) -> None:
         """The cell has ended."""

@@ -9,6 +9,7 @@ import numpy as np
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, HerringboneError
+from herringbone.core.caching.built import content_of
 from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
 from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.cell import calls
@@ -24,9 +25,34 @@ _LAST_GOOD = 1
 _SEND = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
 
 
-def cell_for(name: str, model: ModelDescription) -> Cell:
-    """A new cell with room for the signals of an FMU; raises FmuError."""
-    return Cell(name, room(len(read_variables(model))))
+def cell_for(name: str, file: Path, model: ModelDescription) -> Cell:
+    """A cell of the FMU that is idle, or a new one with room for its signals; raises FmuError."""
+    content, idle = content_of(file), policy().idle or {}
+    if idle.get(content):
+        cell = idle[content].pop()
+        cell.name = name
+        return cell
+    return Cell(name, content, room(len(read_variables(model))))
+
+
+def give_back(cell: Cell) -> None:
+    """Keep a cell for the next time, or end it if its FMU did anything to it."""
+    idle = policy().idle
+    if idle is not None and _is_as_new(cell):
+        idle.setdefault(cell.content, []).append(cell)
+    else:
+        cell.close()
+
+
+def _is_as_new(cell: Cell) -> bool:
+    """True if its FMU did nothing to a cell that shows."""
+    try:
+        if cell.lost or cell.ask("changed", -1):
+            return False
+    except HerringboneError:
+        return False
+    cell.log.settle()
+    return cell.log.size == 0
 
 
 class CellPart:
@@ -108,13 +134,12 @@ class CellPart:
     def _ask(self, call: str, *arguments: object) -> object:
         """Call a function of the part in the cell; raises HerringboneError."""
         if _SEND(calls.send.address)(self._memory.ctypes.data) > _LAST_GOOD and not self._cell.lost:
-            raise FmuError(f"{self.name} refuses a value or a state")
+            said = "; ".join(self._cell.ask("messages", self._number))
+            raise FmuError(f"{self.name} refuses a step, a value or a state: {said}")
         return self._cell.ask(call, self._number, *arguments)
 
     def set(self, name: str, value: Given) -> None:
         """See `FmuPart.set`."""
-        if isinstance(value, np.generic | np.ndarray):
-            value = value.tolist()
         self._ask("set", name, value)
         known = self.variables.get(name)
         if known is not None and known.causality == STRUCTURE:
@@ -130,7 +155,7 @@ class CellPart:
 
     def put_values(self, values: Mapping[str, Value]) -> None:
         """Set variables at a communication point; raises FmuError."""
-        self._ask("put_values", _plain(values))
+        self._ask("put_values", dict(values))
 
     def get_values(self, names: Sequence[str]) -> list[Value]:
         """Values of variables of other types than real; raises FmuError."""
@@ -203,12 +228,7 @@ class CellPart:
         self._cell.forget(self._number)
         if not self._owned:
             return
-        self._cell.close()
+        give_back(self._cell)
         if said := self._cell.log.described():
             self._remark(said)
         remove_temporary_folder(self._folder)
-
-
-def _plain(values: Mapping[str, Value]) -> dict[str, Value]:
-    """Values without numpy's types."""
-    return {n: v.item() if isinstance(v, np.generic) else v for n, v in values.items()}

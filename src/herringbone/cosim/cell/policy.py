@@ -5,10 +5,14 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from herringbone.core import ParameterError
 from herringbone.cosim.cell.system_calls import FUTEX
+
+if TYPE_CHECKING:
+    from herringbone.cosim.cell.process import Cell
 
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
@@ -41,11 +45,13 @@ class Policy:
         in_process: in this process, as those that were built here.
         deadline: longest time that a call of an FMU in a cell takes [s].
         remarks: what was found out.
+        idle: cells by their FMU that may be used again; None: each is used once.
     """
 
     in_process: bool = False
     deadline: float = DEADLINE
     remarks: list[Remark] = field(default_factory=list)
+    idle: dict[str, list["Cell"]] | None = None
 
 
 _policy: ContextVar[Policy | None] = ContextVar("cell_policy", default=None)
@@ -71,20 +77,25 @@ def housing_of_strangers(
     """
     if deadline is not None and not deadline > 0.0:
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
-    found = Policy(in_process, DEADLINE if deadline is None else deadline)
+    found = Policy(in_process, DEADLINE if deadline is None else deadline, idle={})
     token = _policy.set(found)
     try:
         yield found
     finally:
         _policy.reset(token)
+        for cell in (cell for cells in (found.idle or {}).values() for cell in cells):
+            cell.close()
 
 
 @contextmanager
 def remarks_of_cells() -> Iterator[list[Remark]]:
     """Context with the policy as it is, and the remarks on the FMUs that are opened in it."""
-    kept = policy()
-    with housing_of_strangers(in_process=kept.in_process, deadline=kept.deadline) as found:
+    found = replace(policy(), remarks=[])
+    token = _policy.set(found)
+    try:
         yield found.remarks
+    finally:
+        _policy.reset(token)
 
 
 def cells_work() -> bool:

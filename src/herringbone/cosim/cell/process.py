@@ -52,20 +52,21 @@ class Cell:
 
     Args:
         name: of the FMU, for messages.
+        content: of it, that tells it from others.
         words: that the operations of the compiled loop need at most.
 
     Raises:
         FmuError: it does not start.
     """
 
-    def __init__(self, name: str, words: int) -> None:
-        self.name = name
+    def __init__(self, name: str, content: str, words: int) -> None:
+        self.name, self.content = name, content
         code = code_file()
         layout = places(words)
         block = os.memfd_create("herringbone-cell")
         try:
             os.ftruncate(block, layout.size)
-            self.side = Side(block, layout, words, 0.0, _SLEEP)
+            self.side = Side(block, layout, words, _SLEEP)
             self._process = _start(block, words, code)
         finally:
             os.close(block)
@@ -78,9 +79,14 @@ class Cell:
         self._call, self._why = "start", ""
         self._free = list(range(INSTANCES))
         _open.add(self)
+        _share_cores()
+        self.deadline = _START
         self._deadline(_START)
-        self.ask("spin", -1, spin_time(len(_open)))
-        self.side.record["spin"] = int(1e9 * spin_time(len(_open)))
+        try:
+            self.ask("start", -1)
+        except HerringboneError as error:
+            self.close()
+            raise FmuError(f"{error} {self.log.described()}".strip()) from error
         self.deadline = policy().deadline
         self._deadline(self.deadline)
 
@@ -162,6 +168,7 @@ class Cell:
     def close(self) -> None:
         """End the process."""
         _open.discard(self)
+        _share_cores()
         if self._process.poll() is None and not self.lost:
             with contextlib.suppress(HerringboneError):
                 self._quit()
@@ -215,6 +222,13 @@ def _start(block: int, words: int, code: Path) -> "subprocess.Popen[bytes]":
         )
     except OSError as error:
         raise FmuError(f"no cell for a foreign FMU starts ({error}); use --in-process") from error
+
+
+def _share_cores() -> None:
+    """Spin only as long as there is a core for each."""
+    cells = list(_open)
+    for cell in cells:
+        cell.side.spin(spin_time(len(cells)))
 
 
 @atexit.register

@@ -5,7 +5,7 @@ import mmap
 
 import numpy as np
 
-from herringbone.cosim.cell.block import HEADER, HEADER_TYPE, SIDE, TEXT_BYTES, Places
+from herringbone.cosim.cell.block import HEADER, HEADER_TYPE, SIDE, SPIN, TEXT_BYTES, Places
 
 
 class Side:
@@ -15,13 +15,10 @@ class Side:
         block: file descriptor of the memory; it is not needed afterwards.
         layout: of the block.
         capacity: words of operations.
-        spin: time to spin [s].
         sleep: time after which a sleeper looks around [s].
     """
 
-    def __init__(
-        self, block: int, layout: Places, capacity: int, spin: float, sleep: float
-    ) -> None:
+    def __init__(self, block: int, layout: Places, capacity: int, sleep: float) -> None:
         self._map = mmap.mmap(block, layout.size)
         self._bytes = np.frombuffer(self._map, np.uint8)
         address = self._bytes.ctypes.data
@@ -40,7 +37,6 @@ class Side:
             "now": self._now.ctypes.data,
             "timeout": self._timeout.ctypes.data,
             "watched": self.poll.ctypes.data,
-            "spin": int(1e9 * spin),
         }
         for name, function in (
             ("syscall", c.syscall),
@@ -50,6 +46,10 @@ class Side:
             values[name] = ctypes.cast(function, ctypes.c_void_p).value or 0
         for name, value in values.items():
             self.record[name] = value
+
+    def spin(self, seconds: float) -> None:
+        """Time to spin, for both sides."""
+        self._bytes[SPIN : SPIN + 4].view(np.int32)[0] = int(1e9 * seconds)
 
     @property
     def address(self) -> int:

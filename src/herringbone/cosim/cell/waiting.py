@@ -16,7 +16,7 @@ from herringbone.cosim.cell.atomics import (
     store_release,
     wake,
 )
-from herringbone.cosim.cell.block import ALIVE, DIED, LATE
+from herringbone.cosim.cell.block import ALIVE, DIED, LATE, SPIN
 from herringbone.cosim.loops.calls import at_address, c_call
 from herringbone.kernels.jit import allocating
 
@@ -54,12 +54,13 @@ def _spun(memory: np.ndarray, word: int, wanted: int) -> bool:
     side = memory[0]
     if load_acquire(word) == wanted:
         return True
-    if side.spin == 0:
+    budget = load_acquire(side.block + SPIN)
+    if budget == 0:
         return False
     if side.rest > 0:
         memory[0].rest -= 1
         return False
-    end = now(memory) + side.spin
+    end = now(memory) + budget
     while True:
         for _ in range(_LOOKS):
             if load_acquire(word) == wanted:

@@ -3,6 +3,8 @@
 import json
 from typing import Any
 
+import numpy as np
+
 from herringbone.core import FmuError
 
 _BYTES = "bytes"
@@ -28,6 +30,8 @@ def _plain(value: object) -> object:
         return {name: _plain(content) for name, content in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(content) for content in value]
+    if isinstance(value, np.generic | np.ndarray):
+        return _plain(value.tolist())
     return value
 
 

@@ -8,7 +8,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
 from herringbone.core.temporary import remove_temporary_folder
-from herringbone.cosim.cell.part import CellPart, cell_for
+from herringbone.cosim.cell.part import CellPart, cell_for, give_back
 from herringbone.cosim.cell.policy import Remark, cells_work, policy
 from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
@@ -33,7 +33,7 @@ def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | Cel
         return new_part(name, file, model=model)
     folder = extract_fmu(file)
     try:
-        cell = cell_for(name, model)
+        cell = cell_for(name, file, model)
         return CellPart(name, file, model, folder, cell, owned=True)
     except BaseException:
         remove_temporary_folder(folder)
@@ -69,14 +69,14 @@ def _instances(
 
     def make() -> CellPart:
         if not cells or cells[-1].lost:
-            cells.append(cell_for(name, model))
+            cells.append(cell_for(name, file, model))
         return CellPart(name, file, read_fmu(file), folder, cells[-1], owned=False)
 
     try:
         yield make
     finally:
         for cell in cells:
-            cell.close()
+            give_back(cell)
 
 
 def _needs_cell(name: str, file: Path) -> bool:
