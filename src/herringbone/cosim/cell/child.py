@@ -1,4 +1,4 @@
-"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER CODE`."""
+"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER CODE FOLDER`."""
 
 import ctypes
 import locale
@@ -71,6 +71,11 @@ class Server:
             if message is None:
                 return
             self._send(self._reply(message))
+
+    def remove_folders(self) -> None:
+        """What a killed master leaves."""
+        for folder in self.folders:
+            shutil.rmtree(folder, ignore_errors=True)
 
     def _received(self) -> dict[str, Any] | None:
         """The whole message; None: the last one."""
@@ -175,23 +180,25 @@ def watch(master: int, server: Server) -> None:
     """End this process when the master has ended, and remove what it left."""
     while os.getppid() == master:
         time.sleep(_LOOK)
-    for folder in server.folders:
-        shutil.rmtree(folder, ignore_errors=True)
+    server.remove_folders()
     os._exit(1)
 
 
-def main(block: int, capacity: int, master: int, code: Path) -> None:
+def main(block: int, capacity: int, master: int, code: Path, folder: str) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     functions = loaded(code)
     use_adapters({name: functions.address(name) for name in ADAPTERS})
     server = Server(block, capacity, master, functions)
+    server.folders.add(folder)
     os.close(block)
     threading.Thread(target=watch, args=(master, server), daemon=True).start()
     server.converse()
+    if os.getppid() != master:
+        server.remove_folders()
     os._exit(0)  # nothing of an FMU runs at the end
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:4]), Path(sys.argv[4]))
+    main(*map(int, sys.argv[1:4]), Path(sys.argv[4]), sys.argv[5])

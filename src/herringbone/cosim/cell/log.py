@@ -1,8 +1,6 @@
 """What FMUs in a cell write to its standard output and error: to a file, up to a limit."""
 
 import contextlib
-import fcntl
-import termios
 import threading
 import time
 from array import array
@@ -63,6 +61,9 @@ class OutputLog:
 
     def settle(self) -> None:
         """Wait until what was written is read."""
+        import fcntl  # noqa: PLC0415 (where there are cells)
+        import termios  # noqa: PLC0415
+
         waiting, end = array("i", [1]), time.monotonic() + _WAIT
         while waiting[0] and self._thread.is_alive() and time.monotonic() < end:
             with contextlib.suppress(OSError, ValueError):

@@ -25,14 +25,14 @@ _LAST_GOOD = 1
 _SEND = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
 
 
-def cell_for(name: str, file: Path, model: ModelDescription) -> Cell:
+def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Cell:
     """A cell of the FMU that is idle, or a new one with room for its signals; raises FmuError."""
     content, idle = content_of(file), policy().idle or {}
     if idle.get(content):
         cell = idle[content].pop()
         cell.name = name
         return cell
-    return Cell(name, content, room(len(read_variables(model))))
+    return Cell(name, content, room(len(read_variables(model))), folder)
 
 
 def give_back(cell: Cell) -> None:

@@ -53,13 +53,14 @@ class Cell:
     Args:
         name: of the FMU, for messages.
         content: of it, that tells it from others.
+        folder: that it removes if its master is killed; those of its instances are added.
         words: that the operations of the compiled loop need at most.
 
     Raises:
         FmuError: it does not start.
     """
 
-    def __init__(self, name: str, content: str, words: int) -> None:
+    def __init__(self, name: str, content: str, words: int, folder: Path) -> None:
         self.name, self.content = name, content
         code = code_file()
         layout = places(words)
@@ -67,7 +68,7 @@ class Cell:
         try:
             os.ftruncate(block, layout.size)
             self.side = Side(block, layout, words, _SLEEP)
-            self._process = _start(block, words, code)
+            self._process = _start(block, words, code, folder)
         finally:
             os.close(block)
         self._watched = os.pidfd_open(self._process.pid)
@@ -207,12 +208,12 @@ def _signal(number: int) -> str:
         return "unknown"
 
 
-def _start(block: int, words: int, code: Path) -> "subprocess.Popen[bytes]":
+def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.child"]
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
     try:
         return subprocess.Popen(
-            [*command, str(block), str(words), str(os.getpid()), str(code)],
+            [*command, str(block), str(words), str(os.getpid()), str(code), str(folder)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

@@ -33,7 +33,7 @@ def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | Cel
         return new_part(name, file, model=model)
     folder = extract_fmu(file)
     try:
-        cell = cell_for(name, file, model)
+        cell = cell_for(name, file, model, folder)
         return CellPart(name, file, model, folder, cell, owned=True)
     except BaseException:
         remove_temporary_folder(folder)
@@ -69,7 +69,7 @@ def _instances(
 
     def make() -> CellPart:
         if not cells or cells[-1].lost:
-            cells.append(cell_for(name, file, model))
+            cells.append(cell_for(name, file, model, folder))
         return CellPart(name, file, read_fmu(file), folder, cells[-1], owned=False)
 
     try:
