@@ -47,6 +47,9 @@ TOP = {"__init__", "__main__", "commands"}
 ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
     "llvmlite": {
+        "cosim/cell/atomics.py",
+        "cosim/cell/code.py",
+        "cosim/cell/loading.py",
         "cosim/loops/calls.py",
         "cosim/fmu/fmi3_steps.py",
         "fmi/native/objects.py",

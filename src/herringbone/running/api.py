@@ -119,9 +119,9 @@ def run(
         if reference:
             refuse_foreign_parts(structure)
         fmu, slower = choose_kind(fmu)
-        notes = [*notes, *slower]
+        said = (*notes, *slower)
         asked = Asked(
-            fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=notes
+            fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=said
         )
         aim = searched_tolerance(structure, asked)
         if aim is not None:

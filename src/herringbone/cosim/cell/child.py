@@ -201,4 +201,5 @@ def main(block: int, capacity: int, master: int, code: Path, folder: str) -> Non
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:4]), Path(sys.argv[4]), sys.argv[5])
+    numbers = [int(text) for text in sys.argv[1:4]]
+    main(numbers[0], numbers[1], numbers[2], Path(sys.argv[4]), sys.argv[5])

@@ -56,8 +56,8 @@ class OutputLog:
                 file.unlink(missing_ok=True)
             self.file = folder / self._name
             self.file.write_bytes(b"")
-        with self.file.open("ab") as file:
-            file.write(piece)
+        with self.file.open("ab") as log:
+            log.write(piece)
 
     def settle(self) -> None:
         """Wait until what was written is read."""

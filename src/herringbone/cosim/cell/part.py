@@ -102,7 +102,7 @@ class CellPart:
     def _make_memory(self) -> None:
         """What the adapters know."""
         words = int(self._cell.side.record["capacity"][0])
-        self._arrays = {
+        self._arrays: dict[str, np.ndarray] = {
             "words": np.zeros(words, np.int64),
             "known": np.zeros(KINDS, np.uint8),
             "slots": np.zeros(STATES, np.uint8),
@@ -146,7 +146,7 @@ class CellPart:
             self.variables = resized(self.model, name, int(float(value)))  # type: ignore[arg-type]
             if room(len(self.variables)) > self._cell.side.record["capacity"][0]:
                 raise FmuError(
-                    f"{self.name}.{name} = {value}: too many signals for a cell; use --in-process"
+                    f"{self.name}.{name} = {value!r}: too many signals for a cell; use --in-process"
                 )
 
     def get(self, names: Sequence[str]) -> list[float]:
