@@ -57,7 +57,7 @@ def run(systems, place, **options):
         options |= {"algorithm": "jacobi:order=0", "probe": False}
     return hb.run(
         systems[place is Place.SET], step=1e-5, t_end=1e-3, record_step=2e-5,
-        call_deadline=DEADLINE, **options,
+        in_process=False, call_deadline=DEADLINE, **options,
     )  # fmt: skip
 
 

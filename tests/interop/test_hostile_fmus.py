@@ -64,7 +64,7 @@ def test_results_are_there_whatever_happens_after_the_end(system, tmp_path, plac
 @cells
 @pytest.mark.parametrize("deed", [Deed.MOVE, Deed.CRASH])
 def test_what_a_cell_finds_after_the_end_is_in_the_summary(system, tmp_path, deed):
-    code, said = run(system, tmp_path, Place.FREE, deed)
+    code, said = run(system, tmp_path, Place.FREE, deed, "--cells")
     crashed = deed is Deed.CRASH
     assert rows(tmp_path, "completed_part_lost" if crashed else "completed") == 51
     assert code == crashed
@@ -75,16 +75,16 @@ def test_what_a_cell_finds_after_the_end_is_in_the_summary(system, tmp_path, dee
 
 @cells
 def test_a_crash_in_a_step_is_an_outcome(system, tmp_path):
-    code, said = run(system, tmp_path, Place.LATE_STEP, Deed.CRASH)
+    code, said = run(system, tmp_path, Place.LATE_STEP, Deed.CRASH, "--cells")
     assert code == 1
     assert "part_failed: stranger" in said
     assert "signal 11 (SIGSEGV) in doStep at 0.0005" in said
     assert 20 < rows(tmp_path, "part_failed") < 51
 
 
-@pytest.mark.parametrize("housing", ["--in-process", pytest.param("", marks=cells)])
+@pytest.mark.parametrize("housing", ["--in-process", pytest.param("--cells", marks=cells)])
 def test_a_changed_working_folder_moves_nothing(system, tmp_path, housing):
-    assert run(system, tmp_path, Place.STEP, Deed.MOVE, *housing.split())[0] == 0
+    assert run(system, tmp_path, Place.STEP, Deed.MOVE, housing)[0] == 0
     assert rows(tmp_path) == 51
 
 
@@ -102,7 +102,7 @@ def test_parts_are_terminated(system, tmp_path):
 
 @cells
 def test_output_of_a_part_goes_to_a_log(system, tmp_path):
-    code, said = run(system, tmp_path, Place.TERMINATE, Deed.SAY)
+    code, said = run(system, tmp_path, Place.TERMINATE, Deed.SAY, "--cells")
     assert code == 0
     assert "the hostile part was called" not in said
     notes = json.loads((tmp_path / "out" / "summary.json").read_text())["notes"]
@@ -116,7 +116,7 @@ def test_cells_end_with_a_killed_run(system, tmp_path):
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     with subprocess.Popen(
-        command(system, "--t-end", "1000", "--record-step", "0.1", "-o", "out"),
+        command(system, "--cells", "--t-end", "1000", "--record-step", "0.1", "-o", "out"),
         cwd=tmp_path, stderr=subprocess.DEVNULL, env={**os.environ, "TMPDIR": str(scratch)},
     ) as process:  # fmt: skip
         found = wait_for(lambda: children(process.pid) and list(scratch.glob("herringbone_*")))

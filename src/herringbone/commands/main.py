@@ -68,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _housing(options: argparse.Namespace) -> AbstractContextManager:
     """How the command's foreign FMUs are housed."""
     return housing_of_strangers(
-        in_process=getattr(options, "in_process", False),
+        in_process=getattr(options, "in_process", None),
         deadline=getattr(options, "call_deadline", None),
     )
 

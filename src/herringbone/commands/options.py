@@ -42,9 +42,14 @@ def add_kind(sub: argparse.ArgumentParser) -> None:
 
 def add_cells(sub: argparse.ArgumentParser) -> None:
     """Declare how foreign FMUs are housed."""
-    sub.add_argument(
-        "--in-process", action="store_true",
-        help="load foreign FMUs into this process; otherwise each has a child process of its own",
+    housed = sub.add_mutually_exclusive_group()
+    housed.add_argument(
+        "--cells", dest="in_process", action="store_false", default=None,
+        help="run each foreign FMU in a child process of its own (Linux), which may crash",
+    )  # fmt: skip
+    housed.add_argument(
+        "--in-process", action="store_true", default=None,
+        help="load foreign FMUs into this process, as is done if neither is given",
     )  # fmt: skip
     sub.add_argument(
         "--call-deadline", type=float, metavar="SECONDS",

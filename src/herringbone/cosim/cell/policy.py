@@ -14,6 +14,9 @@ from herringbone.cosim.cell.system_calls import FUTEX
 if TYPE_CHECKING:
     from herringbone.cosim.cell.process import Cell
 
+BY_DEFAULT = False
+"""Whether foreign FMUs run in cells where nobody says: not yet, because on a machine whose cores are
+all taken a run waits for the scheduler with every message."""
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
 _SPIN = 20e-6
@@ -48,7 +51,7 @@ class Policy:
         idle: cells by their FMU that may be used again; None: each is used once.
     """
 
-    in_process: bool = False
+    in_process: bool = not BY_DEFAULT
     deadline: float = DEADLINE
     remarks: list[Remark] = field(default_factory=list)
     idle: dict[str, list["Cell"]] | None = None
@@ -64,12 +67,12 @@ def policy() -> Policy:
 
 @contextmanager
 def housing_of_strangers(
-    *, in_process: bool = False, deadline: float | None = None
+    *, in_process: bool | None = None, deadline: float | None = None
 ) -> Iterator[Policy]:
     """Context in which foreign FMUs are opened so.
 
     Args:
-        in_process: in this process.
+        in_process: in this process; None: see `BY_DEFAULT`.
         deadline: longest time of a call [s]; `DEADLINE` if not given.
 
     Raises:
@@ -77,6 +80,7 @@ def housing_of_strangers(
     """
     if deadline is not None and not deadline > 0.0:
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
+    in_process = not BY_DEFAULT if in_process is None else in_process
     found = Policy(in_process, DEADLINE if deadline is None else deadline, idle={})
     token = _policy.set(found)
     try:
