@@ -27,7 +27,7 @@ class Side:
         self.record = np.zeros(1, SIDE)
         self._now, self._timeout = np.zeros(2, np.int64), np.zeros(2, np.int64)
         self.poll = np.zeros(1, np.int64)
-        self._timeout[1] = int(1e9 * sleep)
+        self._timeout[:] = int(sleep), int(1e9 * (sleep % 1.0))  # timespec: s, and ns below 1e9
         c = ctypes.CDLL(None)
         values = {
             "block": address,
