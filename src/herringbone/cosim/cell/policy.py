@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from herringbone.cosim.cell.process import Cell
 
 BY_DEFAULT = False
-"""Whether foreign FMUs run in cells where nobody says: not yet, because where all cores are taken a
-run waits for the scheduler with every message."""
+"""Whether foreign FMUs run in cells where nobody says."""
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
 _SPIN = 20e-6
