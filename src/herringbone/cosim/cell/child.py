@@ -57,6 +57,7 @@ class Server:
         self._server["orders"] = self._orders.ctypes.data
         self._parts: dict[int, FmuPart] = {}
         self._states: dict[int, np.ndarray] = {}
+        self._libraries: list[ctypes.CDLL] = []
         self._before: dict[str, object] = {}
         self._serve, self._answer = (_POINTER(code.address(n)) for n in ("serve", "answer"))
         self.folders: set[str] = set()
@@ -133,7 +134,8 @@ class Server:
         self._parts[number].terminate()
 
     def _free(self, number: int) -> None:
-        """Free the instance; one that FMI does not allow to be called any more is kept."""
+        """Free the instance; its library stays, because a thread of it may run on in its code."""
+        self._libraries.append(ctypes.CDLL(self._parts[number].slave.dll._name))
         self._parts[number].free()
         del self._parts[number]
 
