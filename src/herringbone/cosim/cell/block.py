@@ -31,9 +31,13 @@ SET, GET, STEP, SAVE, RESTORE, FREE, SET_DERIVATIVES, GET_DERIVATIVES = range(1,
 """Operations, and the calls in which a cell may be; 0: in none."""
 KINDS = 9
 TEXT_BYTES = 1 << 18
-LEAST_WORDS = 1 << 15
+_LEAST_WORDS, _SIZED_WORDS = 1 << 15, 1 << 21
+"""Room at the least; of an FMU that can get larger arrays. Memory is taken where it is used."""
+_WORDS_OF_ONE = 16
 STATES = 1024
 """Saved states of an instance at the most."""
+READS = 64
+"""What one message asks for at the most, as the outputs at a node."""
 INSTANCES = 64
 """Instances of a cell at the same time at the most."""
 _HEADER_BYTES = 4096
@@ -61,9 +65,19 @@ def places(words: int) -> Places:
     return Places(first, first + 8 * words, first + 16 * words, first + 16 * words + TEXT_BYTES)
 
 
-def room(reals: int) -> int:
-    """Words that the operations of a sweep need at most, of an FMU with so many real variables."""
-    return LEAST_WORDS + 16 * reals
+def room(reals: int, *, sized: bool) -> int:
+    """Words for the operations of a sweep.
+
+    Args:
+        reals: variables of the FMU.
+        sized: it has parameters that set the sizes of arrays.
+    """
+    return (_SIZED_WORDS if sized else _LEAST_WORDS) + _WORDS_OF_ONE * reals
+
+
+def fits(reals: int, words: int) -> bool:
+    """True if so many words are enough for an FMU with so many variables."""
+    return _LEAST_WORDS // 2 + _WORDS_OF_ONE * reals <= words
 
 
 SIDE = np.dtype(
@@ -71,7 +85,8 @@ SIDE = np.dtype(
         (name, np.int64)
         for name in (
             "block", "words", "values", "capacity", "syscall", "clock", "poll", "now", "timeout",
-            "watched", "parent", "deadline", "lost", "misses", "rest",
+            "watched", "parent", "deadline", "lost", "misses", "rest", "flying",
+            "nap", "interval",
         )
     ]
 )  # fmt: skip
@@ -81,7 +96,8 @@ Addresses of the block, its words and values, and their number; of the C functio
 clock_gettime and poll; of a timespec to read the clock into, and of the one that sleep is limited
 to; of the pollfd by which the master sees the cell end; number of the process whose child the cell
 is; time to wait for an answer [ns], 0: without end; why the cell is lost; waits in a row that
-spinning did not shorten; waits that do not spin.
+spinning did not shorten; waits that do not spin; address of the instance whose message is under
+way, 0: none is; of a timespec to nap for, 0: it does not; mean time until a message comes [ns].
 """
 ALIVE, DIED, LATE = 0, 1, 2
 """Why a cell is lost: it ended; it did not answer in time."""
@@ -91,7 +107,8 @@ INSTANCE = np.dtype(
         for name in (
             "side", "number", "words", "used", "known", "slots", "references", "count", "found",
             "valid", "status", "rates", "orders", "rate_count", "rate_found", "rate_valid",
-            "rate_status", "waiting", "read",
+            "rate_status", "waiting", "read", "steps", "steps_read", "batch", "flight", "came",
+            "reads", "wanted",
         )
     ]
 )  # fmt: skip
@@ -100,9 +117,12 @@ INSTANCE = np.dtype(
 Address of the cell's side; number of the instance; address of the operations that are collected,
 and how many words they are; address of marks of the kinds of operations that were accepted once
 (uint8), and of the states that are in use (uint8). References (uint32), number and values of the
-outputs that were read last, whether these are still those of the FMU, and status; the same of the
-derivatives of outputs, with their orders (int32). Steps that wait to
-be sent; 1 if outputs were read since the last step.
+outputs that were read so far, whether these values are still those of the FMU, and status; the same
+of the derivatives that were read last, with their orders (int32). Steps that wait to be sent; 1 if
+outputs were read since the last step. Steps since outputs were read, and how many there were
+between the last two times; batch: 1 if no step is sent until `calls.finish`. flight: 1 if a message
+is under way; came: worst status of messages that has not been told; reads: what they ask for, and
+address of where that goes (int64), see `messages`.
 """
 FUNCTIONS = np.dtype(
     [

@@ -7,9 +7,11 @@ import resource
 import shutil
 import signal
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +22,16 @@ from herringbone.cosim.cell.block import FUNCTIONS, INSTANCES, SERVER, STATES, p
 from herringbone.cosim.cell.loading import Code, loaded
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
+from herringbone.cosim.fmu.float_modes import leave_modes
 from herringbone.cosim.fmu.fmi3_adapters import ADAPTERS, use_adapters
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
 _SLEEP = 1.0
+_PR_SET_TIMERSLACK = 29
 _LOOK = 0.25
 """Seconds between looks at whether the master lives."""
+_KNOWN = set(FUNCTIONS.names or ())
 _SIMPLE = {
     "set", "get", "put_values", "get_values", "enter_initialization", "exit_initialization",
     "ended", "messages", "failed",
@@ -47,6 +52,8 @@ class Server:
     def __init__(self, block: int, capacity: int, master: int, code: Code) -> None:
         self._side = Side(block, places(capacity), capacity, _SLEEP)
         self._side.record["parent"] = master
+        self._nap = np.zeros(2, np.int64)
+        self._side.record["nap"] = self._nap.ctypes.data
         self._functions = np.zeros(INSTANCES, FUNCTIONS)
         self._references = np.zeros(capacity, np.uint32)
         self._orders = np.zeros(capacity, np.int32)
@@ -127,7 +134,8 @@ class Server:
     def _connect(self, number: int) -> list[bool]:
         at = self._parts[number].addresses
         for function, address in at._asdict().items():
-            self._functions[number][function] = address
+            if function in _KNOWN:
+                self._functions[number][function] = address
         return [bool(address) for address in at]
 
     def _terminate(self, number: int) -> None:
@@ -138,6 +146,12 @@ class Server:
         self._libraries.append(ctypes.CDLL(self._parts[number].slave.dll._name))
         self._parts[number].free()
         del self._parts[number]
+
+    def _apply(self, _: int, module: str, function: str, file: str, folder: str) -> object:
+        """What a function finds about an FMU; it has a folder for temporary files."""
+        self.folders.add(folder)
+        tempfile.tempdir = folder
+        return getattr(import_module(module), function)(Path(file))
 
     def _changed(self, _: int) -> list[str]:
         """What FMUs changed of the process and did not put back."""
@@ -189,8 +203,10 @@ def watch(master: int, server: Server) -> None:
 def main(block: int, capacity: int, master: int, code: Path, folder: str) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(1))  # it is up when it wants [ns]
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     functions = loaded(code)
+    leave_modes()
     use_adapters({name: functions.address(name) for name in ADAPTERS})
     server = Server(block, capacity, master, functions)
     server.folders.add(folder)

@@ -1,9 +1,9 @@
 """An FMU in a cell, as participant."""
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from fmpy.model_description import ModelDescription
@@ -11,9 +11,9 @@ from fmpy.model_description import ModelDescription
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.caching.built import content_of
 from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
-from herringbone.core.temporary import remove_temporary_folder
-from herringbone.cosim.cell import calls
-from herringbone.cosim.cell.block import INSTANCE, KINDS, STATES, room
+from herringbone.core.temporary import remove_temporary_folder, temporary_folder
+from herringbone.cosim.cell import calls, derivative_calls, state_calls
+from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits, room
 from herringbone.cosim.cell.policy import Remark, policy
 from herringbone.cosim.cell.process import Cell, CellLost
 from herringbone.cosim.fmu.variables import read_variables, resized
@@ -21,7 +21,18 @@ from herringbone.cosim.fmu.variables import read_variables, resized
 if TYPE_CHECKING:
     from herringbone.cosim.signature.signature import Signature
 
+T = TypeVar("T")
 _LAST_GOOD = 1
+_FUNCTIONS = {
+    "set_real": calls.set_real,
+    "get_real": calls.get_real,
+    "do_step": calls.do_step,
+    "get_state": state_calls.get_state,
+    "set_state": state_calls.set_state,
+    "free_state": state_calls.free_state,
+    "set_derivatives": derivative_calls.set_derivatives,
+    "get_derivatives": derivative_calls.get_derivatives,
+}
 _SEND = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
 
 
@@ -32,7 +43,9 @@ def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Ce
         cell = idle[content].pop()
         cell.name = name
         return cell
-    return Cell(name, content, room(len(read_variables(model))), folder)
+    known = read_variables(model)
+    sized = any(v.causality == STRUCTURE for v in known.values())
+    return Cell(name, content, room(len(known), sized=sized), folder)
 
 
 def give_back(cell: Cell) -> None:
@@ -42,6 +55,24 @@ def give_back(cell: Cell) -> None:
         idle.setdefault(cell.content, []).append(cell)
     else:
         cell.close()
+
+
+def applied(name: str, file: Path, model: ModelDescription, function: Callable[[Path], T]) -> T:
+    """What a function of a module finds about an FMU, in a cell.
+
+    Raises:
+        CellLost: the cell does not survive that.
+        HerringboneError: what the function raised.
+    """
+    with temporary_folder() as folder:
+        cell = cell_for(name, file, model, folder)
+        asked = function.__module__, function.__name__, str(file.absolute()), str(folder)
+        try:
+            return cell.ask("apply", -1, *asked)
+        finally:
+            cell.close()
+            if said := cell.log.described():
+                policy().remarks.append(Remark(name, said))
 
 
 def _is_as_new(cell: Cell) -> bool:
@@ -90,6 +121,7 @@ class CellPart:
         self._cell, self._folder, self._owned = cell, folder, owned
         self._remarks = policy().remarks
         self._number = cell.new_instance()
+        self._memory = np.zeros(1, INSTANCE)
         self._closed = self._failed = False
         try:
             has = cell.ask("open", self._number, name, str(file.absolute()), str(folder))
@@ -111,8 +143,8 @@ class CellPart:
             "rates": np.zeros(words, np.uint32),
             "orders": np.zeros(words, np.int32),
             "rate_found": np.zeros(words),
+            "wanted": np.zeros(3 * READS, np.int64),
         }
-        self._memory = np.zeros(1, INSTANCE)
         self._memory["side"] = self._cell.side.address
         self._memory["number"] = self._number
         for name, array in self._arrays.items():
@@ -121,11 +153,9 @@ class CellPart:
     @property
     def addresses(self) -> Addresses:
         """Addresses of the adapters, of what the FMU has; the component is their memory."""
-        found = {
-            name: getattr(calls, name).address if self._has[name] else 0
-            for name in Addresses._fields[1:]
-        }
-        return Addresses(self._memory.ctypes.data, **found)
+        found = {name: f.address for name, f in _FUNCTIONS.items() if self._has[name]}
+        found |= {"get_later": calls.get_later.address, "finish": calls.finish.address}
+        return Addresses(self._memory.ctypes.data, **found, answers_later=1)
 
     def new_state(self) -> int:
         """0: the adapters number the states."""
@@ -144,7 +174,7 @@ class CellPart:
         known = self.variables.get(name)
         if known is not None and known.causality == STRUCTURE:
             self.variables = resized(self.model, name, int(float(value)))  # type: ignore[arg-type]
-            if room(len(self.variables)) > self._cell.side.record["capacity"][0]:
+            if not fits(len(self.variables), int(self._cell.side.record["capacity"][0])):
                 raise FmuError(
                     f"{self.name}.{name} = {value!r}: too many signals for a cell; use --in-process"
                 )
@@ -225,7 +255,7 @@ class CellPart:
     def _leave(self) -> None:
         """Give back the cell, and what belongs to the part."""
         self._closed = True
-        self._cell.forget(self._number)
+        self._cell.forget(self._number, self._memory.ctypes.data)
         if not self._owned:
             return
         give_back(self._cell)

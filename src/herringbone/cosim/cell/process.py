@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
-from herringbone.cosim.cell import calls
+from herringbone.cosim.cell import messages
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -76,7 +76,8 @@ class Cell:
         assert self._process.stdout is not None
         log = f"{name}-{os.getpid()}-{next(_numbers)}.log".replace("/", "_")
         self.log = OutputLog(self._process.stdout, log)
-        self._converse = _POINTER(calls.converse.address)
+        self._converse = _POINTER(messages.converse.address)
+        self._land = _POINTER(messages.land_any.address)
         self._call, self._why = "start", ""
         self._free = list(range(INSTANCES))
         _open.add(self)
@@ -105,9 +106,11 @@ class Cell:
             raise FmuError(f"{self.name}: more than {INSTANCES} instances at the same time")
         return self._free.pop()
 
-    def forget(self, number: int) -> None:
-        """An instance is closed."""
+    def forget(self, number: int, memory: int) -> None:
+        """An instance is closed, whose memory is at this address."""
         self._free.append(number)
+        if self.side.record["flying"][0] == memory:
+            self.side.record["flying"] = 0
 
     def ask(self, call: str, number: int, *arguments: object) -> Any:  # noqa: ANN401 (of any call)
         """Call a function of the cell.
@@ -116,6 +119,7 @@ class Cell:
             CellLost: the cell ended, or did not answer in time.
             HerringboneError: what the function raised.
         """
+        self._land(self.side.address)
         self._call = call
         content = packed({"call": call, "instance": number, "arguments": list(arguments)})
         while content:
@@ -184,6 +188,7 @@ class Cell:
     def _quit(self) -> None:
         """The cell ends without an answer."""
         self._deadline(_END)
+        self._land(self.side.address)
         self.side.write(packed({"call": "quit", "instance": -1, "arguments": []}))
         self.side.header["kind"] = CONTROL
         self._converse(self.side.address)

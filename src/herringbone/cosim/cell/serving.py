@@ -1,4 +1,4 @@
-"""The cell's side of the messages of the compiled loop."""
+"""The cell's side of the messages of the compiled loop; FMUs keep modes that they set."""
 
 import numpy as np
 from numba import carray, from_dtype, types
@@ -29,10 +29,10 @@ from herringbone.cosim.cell.block import (
 from herringbone.cosim.cell.waiting import await_word, post
 from herringbone.cosim.loops.calls import (
     at_address,
-    do_step,
-    exchange_derivatives,
-    exchange_reals,
-    state_call,
+    of_state,
+    set_or_get,
+    set_or_get_derivatives,
+    step_once,
 )
 from herringbone.kernels.jit import allocating, c_function
 
@@ -63,11 +63,11 @@ def _state(part: np.ndarray, kind: int, number: int) -> int:
     """Save, restore or free a state; FMI status."""
     who, handle = part[0], part[0].states + _BYTES * number
     if kind == SAVE:
-        return state_call(who.get_state, who.component, handle)
+        return of_state(who.get_state, (who.component, handle))
     saved = carray(at_address(who.states), STATES, np.int64)
     if kind == RESTORE:
-        return state_call(who.set_state, who.component, saved[number])
-    status = state_call(who.free_state, who.component, handle)
+        return of_state(who.set_state, (who.component, saved[number]))
+    status = of_state(who.free_state, (who.component, handle))
     saved[number] = 0
     return status
 
@@ -78,22 +78,24 @@ def _perform(server: np.ndarray, part: np.ndarray, kind: int, count: int, at: in
     who = part[0]
     if kind == STEP:
         given = carray(at_address(at), 2, np.float64)
-        return do_step(who.do_step, who.component, given[0], given[1])
+        return step_once(who.do_step, (who.component, given[0], given[1], np.int32(1)))
     if kind in (SAVE, RESTORE, FREE):
         return _state(part, kind, count)
     references = _listed(server, at, count, False)
     if kind == SET:
         values = at + _BYTES * count
-        return exchange_reals(who.set_real, who.component, references, count, values)
+        return set_or_get(who.set_real, (who.component, references, count, values))
     if kind == GET:
-        return exchange_reals(who.get_real, who.component, references, count, to)
+        return set_or_get(who.get_real, (who.component, references, count, to))
     orders = _listed(server, at + _BYTES * count, count, True)
     if kind == SET_DERIVATIVES:
         values = at + 2 * _BYTES * count
-        return exchange_derivatives(
-            who.set_derivatives, who.component, references, count, orders, values
+        return set_or_get_derivatives(
+            who.set_derivatives, (who.component, references, count, orders, values)
         )
-    return exchange_derivatives(who.get_derivatives, who.component, references, count, orders, to)
+    return set_or_get_derivatives(
+        who.get_derivatives, (who.component, references, count, orders, to)
+    )
 
 
 @allocating

@@ -1,7 +1,9 @@
 """Posting a message, and waiting for one: spinning shortly, then asleep, with an eye on the clock.
 
 Spinning is worth while only if the other side answers soon. After some waits in a row that it did
-not shorten, it is left out for a while.
+not shorten, it is left out for a while. A cell whose messages come at even intervals, as those of a
+coupling do, naps first and spins when the next one is due: waking it costs its master more than all
+else.
 """
 
 import numpy as np
@@ -26,6 +28,10 @@ _LOOKS = 50
 _VAIN, _REST = 8, 256
 """Waits that spinning did not shorten, and waits without it that follow."""
 _SECOND = 1_000_000_000
+_LONGEST = 2_000_000
+"""Between messages for which a cell is up before they come [ns]."""
+_MEMORY = 8
+"""Intervals that the mean goes over."""
 _clock = c_call("flag", "address")
 _poll = c_call("address", "count", "flag")
 
@@ -55,8 +61,6 @@ def _spun(memory: np.ndarray, word: int, wanted: int) -> bool:
     if load_acquire(word) == wanted:
         return True
     budget = load_acquire(side.block + SPIN)
-    if budget == 0:
-        return False
     if side.rest > 0:
         memory[0].rest -= 1
         return False
@@ -85,11 +89,52 @@ def _other_is_gone(memory: np.ndarray) -> bool:
 
 
 @allocating
+def _nap(memory: np.ndarray, word: int, wanted: int, sleeps: int) -> None:
+    """Sleep until the counter is nearly due, if that is known; only where there is time to spin."""
+    side = memory[0]
+    budget = load_acquire(side.block + SPIN)
+    time = side.interval - budget // 2
+    if side.nap == 0 or time < budget or time > _LONGEST or side.rest > 0:
+        return
+    duration = carray(at_address(side.nap), 2, np.int64)
+    duration[0], duration[1] = 0, time
+    store_release(sleeps, np.int32(1))
+    fence()
+    seen = load_acquire(word)
+    if seen != wanted:
+        sleep_while(side.syscall, word, seen, side.nap)
+    store_release(sleeps, np.int32(0))
+
+
+@allocating
+def _learn(memory: np.ndarray, time: int) -> None:
+    """The counter came after so long [ns]; what came much later than usual counts as twice that."""
+    side = memory[0]
+    usual = side.interval
+    most = 2 * usual + load_acquire(side.block + SPIN)
+    memory[0].interval = usual + (min(time, most) - usual) // _MEMORY
+
+
+@allocating
 def await_word(memory: np.ndarray, word: int, wanted: int, sleeps: int) -> int:
     """Wait until a counter has a value; why it did not come, see `block.ALIVE`."""
-    if _spun(memory, word, wanted):
-        return ALIVE
+    if load_acquire(memory[0].block + SPIN) == 0:
+        return _slept(memory, word, wanted, sleeps)
+    begin = now(memory)
+    _nap(memory, word, wanted, sleeps)
+    found = ALIVE
+    if not _spun(memory, word, wanted):
+        found = _slept(memory, word, wanted, sleeps)
+    _learn(memory, now(memory) - begin)
+    return found
+
+
+@allocating
+def _slept(memory: np.ndarray, word: int, wanted: int, sleeps: int) -> int:
+    """Sleep until a counter has a value; why it did not come."""
     side, found = memory[0], ALIVE
+    if load_acquire(word) == wanted:
+        return ALIVE
     begin = now(memory)
     store_release(sleeps, np.int32(1))
     fence()

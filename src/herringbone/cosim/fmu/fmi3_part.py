@@ -11,6 +11,7 @@ from fmpy.fmi3 import FMU3Slave
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import STRUCTURE, Addresses, Given, Value
 from herringbone.cosim.fmu import fmi3_memory
+from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.fmi3_adapters import adapter
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
@@ -163,6 +164,7 @@ class Fmu3Part(FmuPart):
         self._make_memory(read_elements(self.model))
         self._connect_memory()
 
+    @keeping_modes
     def _put(self, values: Mapping[str, Value]) -> None:
         if not self._memory["events"][0]:
             super()._put(values)
@@ -218,6 +220,7 @@ class Fmu3Part(FmuPart):
         if arrays.size:  # a size that was set makes other start values
             self._read(arrays.tolist())
 
+    @keeping_modes
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""
         super().exit_initialization()

@@ -3,17 +3,21 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
 from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.cell.part import CellPart, cell_for, give_back
+from herringbone.cosim.cell.part import applied as applied_in_cell
 from herringbone.cosim.cell.policy import Remark, cells_work, policy
 from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
+
+T = TypeVar("T")
 
 
 def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | CellPart:
@@ -38,6 +42,21 @@ def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | Cel
     except BaseException:
         remove_temporary_folder(folder)
         raise
+
+
+def applied(file: Path, function: Callable[[Path], T]) -> T:
+    """What a function, which opens an FMU, finds about it, where this FMU belongs.
+
+    Args:
+        file: the FMU.
+        function: of a module; what it finds is made of numbers, texts, lists and dictionaries.
+
+    Raises:
+        FmuError: the file cannot be used, or ends the process that it is opened in.
+    """
+    if not _needs_cell(file.stem, file):
+        return function(file)
+    return applied_in_cell(file.stem, file, read_fmu(file), function)
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
 from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
+from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.values import as_value, as_values
@@ -39,6 +40,7 @@ class FmuPart(ABC):
         FmuError: the file cannot be used, or does not instantiate.
     """
 
+    @keeping_modes
     def __init__(
         self,
         name: str,
@@ -150,6 +152,7 @@ class FmuPart(ABC):
             what = ", ".join(f"{self.name}.{name} = {value!r}" for name, value in values.items())
             raise FmuError(self._refusal(what, error)) from error
 
+    @keeping_modes
     def _put(self, values: Mapping[str, Value]) -> None:
         """Set variables of any types, in as few calls as possible; raises FMICallException."""
         reals = [name for name in values if self.variables[name].is_real]
@@ -159,6 +162,7 @@ class FmuPart(ABC):
         others = {name: value for name, value in values.items() if name not in reals}
         self._others.write(self.slave, others)
 
+    @keeping_modes
     def get_values(self, names: Sequence[str]) -> list[Value]:
         """Values of variables of other types than real; raises FmuError."""
         if self._log.fatal:
@@ -177,6 +181,7 @@ class FmuPart(ABC):
     def _refusal(self, what: str, error: Exception) -> str:
         return f"{what}: {'; '.join(self.messages()) or error}"
 
+    @keeping_modes
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables; raises FmuError."""
         if self._log.fatal:
@@ -188,6 +193,7 @@ class FmuPart(ABC):
                 self._refusal(f"{self.name}: reading {', '.join(names)}", error)
             ) from error
 
+    @keeping_modes
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""
         try:
@@ -195,6 +201,7 @@ class FmuPart(ABC):
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 
+    @keeping_modes
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""
         try:
@@ -216,6 +223,7 @@ class FmuPart(ABC):
         self.terminate()
         self.free()
 
+    @keeping_modes
     def terminate(self) -> None:
         """Terminate the instance if it runs."""
         if self._running and not self._log.fatal:
@@ -223,6 +231,7 @@ class FmuPart(ABC):
             with contextlib.suppress(FMICallException):  # its results are there, and stay
                 self.slave.terminate()
 
+    @keeping_modes
     def free(self) -> None:
         """Free the instance, unless it has failed for good, and remove the extracted files."""
         if not self._log.fatal:
