@@ -44,7 +44,7 @@ from herringbone.core import (
     OutcomeKind,
     one_line,
 )
-from herringbone.cosim.cell.policy import housing_of_strangers
+from herringbone.cosim.cell.policy import Policy, housing_of_strangers
 
 BAD_INPUT = 2
 
@@ -53,8 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        with terminable(), logged(), seldom_collected(), _housing(options):
-            return options.command(options)
+        with terminable(), logged(), seldom_collected(), _housing(options) as housing:
+            code = options.command(options)
+            for remark in housing.remarks:  # a run has told its own
+                say(f"note: {remark}")
+            return code
     except HerringboneError as error:
         say(f"herringbone: {error}")
         if options.debug:
@@ -65,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_CODES[OutcomeKind.INTERRUPTED]
 
 
-def _housing(options: argparse.Namespace) -> AbstractContextManager:
+def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
     """How the command's foreign FMUs are housed."""
     return housing_of_strangers(
         in_process=getattr(options, "in_process", None),
@@ -131,6 +134,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
     add_replacements(sub)
+    add_cells(sub)
     add_start_values(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"
