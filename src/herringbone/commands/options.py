@@ -45,11 +45,12 @@ def add_cells(sub: argparse.ArgumentParser) -> None:
     housed = sub.add_mutually_exclusive_group()
     housed.add_argument(
         "--cells", dest="in_process", action="store_false", default=None,
-        help="run each foreign FMU in a child process of its own (Linux), which may crash",
+        help="run each foreign FMU in a child process of its own, which may crash: the default "
+        "on Linux",
     )  # fmt: skip
     housed.add_argument(
         "--in-process", action="store_true", default=None,
-        help="load foreign FMUs into this process, as is done if neither is given",
+        help="load foreign FMUs into this process",
     )  # fmt: skip
     sub.add_argument(
         "--call-deadline", type=float, metavar="SECONDS",

@@ -14,7 +14,7 @@ from herringbone.cosim.cell.system_calls import FUTEX
 if TYPE_CHECKING:
     from herringbone.cosim.cell.process import Cell
 
-BY_DEFAULT = False
+BY_DEFAULT = True
 """Whether foreign FMUs run in cells where nobody says."""
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
@@ -71,16 +71,20 @@ def housing_of_strangers(
     """Context in which foreign FMUs are opened so.
 
     Args:
-        in_process: in this process; None: see `BY_DEFAULT`.
-        deadline: longest time of a call [s]; `DEADLINE` if not given.
+        in_process: in this process; None: as around this context, or else see `BY_DEFAULT`.
+        deadline: longest time of a call [s]; if not given as around this context, or `DEADLINE`.
 
     Raises:
         ParameterError: the deadline is not positive.
     """
     if deadline is not None and not deadline > 0.0:
         raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
-    in_process = not BY_DEFAULT if in_process is None else in_process
-    found = Policy(in_process, DEADLINE if deadline is None else deadline, idle={})
+    outer = policy()
+    found = Policy(
+        outer.in_process if in_process is None else in_process,
+        outer.deadline if deadline is None else deadline,
+        idle={},
+    )
     token = _policy.set(found)
     try:
         yield found
