@@ -1,16 +1,23 @@
 """Misbehaviour of foreign FMUs stays in their cells: the master, which is this process, lives."""
 
+import ctypes
 import os
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
-from support.hostile import ENDS, SEEN, Place, hostile_fmu
+from support.hostile import ENDS, SEEN, Deed, Place, hostile_fmu
 
 import herringbone as hb
+from herringbone.commands.main import main
 from herringbone.core import FmuError
+from herringbone.cosim.fmu.instance import new_part
+from herringbone.cosim.loops.calls import do_step
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="cells need Linux")
 ROWS = 51
@@ -25,7 +32,8 @@ CALLS = {
     Place.FREE: "free",
 }
 EVERY = [(fmi, place, deed) for fmi in (2, 3) for place in CALLS for deed in (*ENDS, *SEEN)]
-QUICK = [EVERY[k] for k in range(0, len(EVERY), 9)]
+CASES = EVERY if "EVERY_MISBEHAVIOUR" in os.environ else [EVERY[9 * k % 350] for k in range(40)]
+"""All 350 take five minutes; 40 of them meet every place and every deed."""
 
 
 @pytest.fixture(scope="module")
@@ -116,12 +124,77 @@ def cells():
     return found
 
 
-@pytest.mark.parametrize(("fmi", "place", "deed"), QUICK)
+@pytest.mark.parametrize(("fmi", "place", "deed"), CASES)
 def test_misbehaviour(systems, monkeypatch, tmp_path, fmi, place, deed):
     check(systems[fmi], monkeypatch, tmp_path, place, deed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("fmi", "place", "deed"), [case for case in EVERY if case not in QUICK])
-def test_every_misbehaviour(systems, monkeypatch, tmp_path, fmi, place, deed):
-    check(systems[fmi], monkeypatch, tmp_path, place, deed)
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_crash_in_trials_is_an_outcome_of_the_run(systems, monkeypatch, fmi):
+    """What trials do not survive, the run does not survive either; it says so."""
+    monkeypatch.setenv("HOSTILE", f"{int(Place.SET)} {int(Deed.CRASH)}")
+    result = hb.run(systems[fmi][1], step=1e-5, t_end=1e-3, algorithm="jacobi:order=0")
+    assert (result.outcome.kind, result.outcome.culprit) == (
+        hb.OutcomeKind.PART_FAILED, "stranger"
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("place", [Place.INSTANTIATE, Place.LATE_STEP])
+def test_check_survives(systems, monkeypatch, capsys, tmp_path, place):
+    """The file has the name by which the FMU is hostile."""
+    file = shutil.copy(systems[2][0] / "hostile.fmu", tmp_path / "stranger.fmu")
+    monkeypatch.setenv("HOSTILE", f"{int(place)} {int(Deed.CRASH)}")
+    assert main(["check", str(file)]) == 1
+    assert "signal 11 (SIGSEGV) in " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("deed", [Deed.ROUND, Deed.FLUSH])
+def test_modes_of_floating_point_are_restored_in_process(systems, monkeypatch, fmi, deed):
+    """After each call: those from Python, and those of compiled code."""
+    monkeypatch.setenv("HOSTILE", f"{int(Place.INITIALISE)} {int(deed)}")
+    part = new_part("stranger", systems[fmi][0] / "hostile.fmu")
+    part.enter_initialization(0.0, 1.0)
+    assert modes() == (0, True)
+    part.exit_initialization()
+    monkeypatch.setenv("HOSTILE", f"{int(Place.STEP)} {int(deed)}")
+    at = part.addresses
+    assert do_step(at.do_step, at.component, 0.0, 1e-3) == 0
+    assert modes() == (0, True)
+    part.close()
+
+
+def modes():
+    """Rounding mode, and whether denormal numbers are there."""
+    return ctypes.CDLL(None).fegetround(), sys.float_info.min / np.float64(2.0) > 0.0
+
+
+SLAVE = """from pythonfmu import Fmi2Slave, Fmi2Causality, Real
+from own_gain import GAIN
+
+class Gain(Fmi2Slave):
+    def __init__(self, **options):
+        super().__init__(**options)
+        self.y = 0.0
+        self.register_variable(Real("y", causality=Fmi2Causality.output))
+
+    def do_step(self, current_time, step_size):
+        self.y = GAIN
+        return True
+"""
+
+
+def test_python_fmus_have_modules_of_their_own(tmp_path):
+    """Two FMUs with the same names of all modules; in one process the first would serve both."""
+    lines = []
+    for name, gain in (("first", 2.0), ("second", 3.0)):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "gain.py").write_text(SLAVE)
+        (folder / "own_gain.py").write_text(f"GAIN = {gain}\n")
+        command = [sys.executable, "-m", "pythonfmu", "build", "-f", "gain.py", "own_gain.py"]
+        subprocess.run(command, cwd=folder, check=True, capture_output=True)
+        lines.append(f'{name}.fmu = "{name}/Gain.fmu"')
+    (tmp_path / "system.toml").write_text("\n".join(["[parts]", *lines]))
+    last = hb.run(tmp_path, step=1e-3, t_end=2e-3, probe=False).data.iloc[-1]
+    assert (last["first.y"], last["second.y"]) == (2.0, 3.0)

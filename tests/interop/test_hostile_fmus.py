@@ -13,6 +13,8 @@ import pandas as pd
 import pytest
 from support.hostile import Deed, Place, hostile_fmu
 
+from herringbone.core.paths import cache_root
+
 cells = pytest.mark.skipif(sys.platform != "linux", reason="cells need Linux")
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")
 
@@ -160,6 +162,30 @@ def test_a_signal_keeps_what_was_computed(system, tmp_path, number):
         process.send_signal(number)
         process.communicate(timeout=60)
     assert process.returncode == 130
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["outcome"] == "interrupted"
+    assert (tmp_path / "out" / "results.csv").is_file()
+
+
+@cells
+def test_ctrl_c_is_for_the_master(system, tmp_path):
+    """The terminal sends it to all processes of the group, and this test to the cell itself."""
+    say = ["--set", f"stranger.place={int(Place.LATE_STEP)}", "--set"]
+    say += [f"stranger.deed={int(Deed.SAY)}", "--cells"]
+    options = ["--t-end", "1000", "--record-step", "0.1", "-o", "out", *say]
+    with subprocess.Popen(
+        command(system, *options), cwd=tmp_path, start_new_session=True, stderr=subprocess.DEVNULL
+    ) as process:
+        logs = cache_root() / "cell-logs"
+        assert wait_for(lambda: list(logs.glob(f"stranger-{process.pid}-*.log")))
+        (cell,) = children(process.pid)
+        os.kill(int(cell), signal.SIGINT)
+        time.sleep(0.1)
+        assert children(process.pid) == [cell]
+        os.killpg(process.pid, signal.SIGINT)
+        process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert not Path(f"/proc/{cell}").exists()
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["outcome"] == "interrupted"
     assert (tmp_path / "out" / "results.csv").is_file()

@@ -198,6 +198,7 @@ class Cell:
 
 _NAMES = {
     "open": "instantiate",
+    "apply": "trials",
     "enter_initialization": "initialise",
     "exit_initialization": "initialise",
     "put_values": "set",
