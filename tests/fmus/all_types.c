@@ -311,18 +311,5 @@ EXPORT Status fmi3FreeFMUState(void *c, void **state) {
     *state = NULL;
     return OK;
 }
-/* What it has not, but fmpy wants to find. */
-#define ABSENT(name) \
-    EXPORT Status fmi3##name(void) { return ERROR; }
-ABSENT(InstantiateModelExchange) ABSENT(InstantiateScheduledExecution) ABSENT(GetClock)
-ABSENT(SetClock) ABSENT(GetNumberOfVariableDependencies) ABSENT(GetVariableDependencies)
-ABSENT(SerializedFMUStateSize) ABSENT(SerializeFMUState) ABSENT(DeserializeFMUState)
-ABSENT(GetDirectionalDerivative) ABSENT(GetAdjointDerivative) ABSENT(GetIntervalDecimal)
-ABSENT(GetIntervalFraction) ABSENT(GetShiftDecimal) ABSENT(GetShiftFraction)
-ABSENT(SetIntervalDecimal) ABSENT(SetIntervalFraction) ABSENT(SetShiftDecimal)
-ABSENT(SetShiftFraction) ABSENT(EvaluateDiscreteStates) ABSENT(EnterContinuousTimeMode)
-ABSENT(CompletedIntegratorStep) ABSENT(SetTime) ABSENT(SetContinuousStates)
-ABSENT(GetContinuousStateDerivatives) ABSENT(GetEventIndicators) ABSENT(GetContinuousStates)
-ABSENT(GetNominalsOfContinuousStates) ABSENT(GetNumberOfEventIndicators)
-ABSENT(GetNumberOfContinuousStates) ABSENT(ActivateModelPartition) ABSENT(Reset)
-ABSENT(GetOutputDerivatives) ABSENT(SetDebugLogging)
+
+#include "absent3.h"

@@ -47,7 +47,11 @@ TOP = {"__init__", "__main__", "commands"}
 ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
     "llvmlite": {
+        "cosim/cell/atomics.py",
+        "cosim/cell/code.py",
+        "cosim/cell/loading.py",
         "cosim/loops/calls.py",
+        "cosim/loops/float_modes.py",
         "cosim/fmu/fmi3_steps.py",
         "fmi/native/objects.py",
         "kernels/linking.py",

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from herringbone.commands.options import add_cells
 from herringbone.commands.output import show
 from herringbone.core import FmuError, ParameterError
 
@@ -33,6 +34,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
     )
     sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
+    add_cells(sub)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -85,10 +87,10 @@ def _refuse_wrong(options: argparse.Namespace) -> None:
 
 def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
-    from herringbone.commands.contract import own_step  # noqa: PLC0415 (numba)
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415
+    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415 (numba)
+    from herringbone.running.foreign.started import own_step  # noqa: PLC0415
 
     try:
         with many_of(fmu.stem, fmu) as make:

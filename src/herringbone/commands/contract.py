@@ -16,7 +16,7 @@ from herringbone.commands.output import show
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
-from herringbone.running.foreign.started import started
+from herringbone.running.foreign.started import own_step, started
 
 ROLES = {
     "housing": Role.HOUSING,
@@ -63,14 +63,6 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
         step = options.step or own_step(fmu)
         flanges = options.flange or ()
         return check_flanges(make, role, step=step, flanges=flanges, progress=progress), step
-
-
-def own_step(fmu: Path) -> float:
-    """Step that an FMU proposes for experiments [s], or that of trials."""
-    from herringbone.cosim.fmu.file import read_fmu  # noqa: PLC0415
-
-    experiment = read_fmu(fmu).defaultExperiment
-    return float(experiment.stepSize) if experiment and experiment.stepSize else 1e-4
 
 
 def _static(against: Path) -> np.ndarray:

@@ -4,6 +4,7 @@ import argparse
 import re
 import traceback
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, NoReturn
@@ -19,6 +20,7 @@ from herringbone.commands import template as template_command
 from herringbone.commands.gear import command as gear_command
 from herringbone.commands.housing import command as housing_command
 from herringbone.commands.options import (
+    add_cells,
     add_command,
     add_kind,
     add_replacements,
@@ -42,6 +44,7 @@ from herringbone.core import (
     OutcomeKind,
     one_line,
 )
+from herringbone.cosim.cell.policy import Policy, housing_of_strangers
 
 BAD_INPUT = 2
 
@@ -50,8 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        with terminable(), logged(), seldom_collected():
-            return options.command(options)
+        with terminable(), logged(), seldom_collected(), _housing(options) as housing:
+            code = options.command(options)
+            for remark in housing.remarks:  # a run has told its own
+                say(f"note: {remark}")
+            return code
     except HerringboneError as error:
         say(f"herringbone: {error}")
         if options.debug:
@@ -60,6 +66,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         say("herringbone: interrupted")
         return EXIT_CODES[OutcomeKind.INTERRUPTED]
+
+
+def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
+    """How the command's foreign FMUs are housed."""
+    return housing_of_strangers(
+        in_process=getattr(options, "in_process", None),
+        deadline=getattr(options, "call_deadline", None),
+    )
 
 
 class _Parser(argparse.ArgumentParser):
@@ -92,6 +106,7 @@ def _parser() -> argparse.ArgumentParser:
     _comparison_options(sub)
     stability_command.add_options(sub)
     add_replacements(sub)
+    add_cells(sub)
     add_start_values(sub)
     bench_command.add_options(add("bench", _bench, "measure speed and size, side by side"))
     sub = add("export", _export, "export a system as .ssp for other masters, or as one native FMU")
@@ -119,6 +134,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
     add_replacements(sub)
+    add_cells(sub)
     add_start_values(sub)
     sub.add_argument(
         "-o", "--output", type=Path, help="folder; results/chart-SYSTEM-SCENE if not given"

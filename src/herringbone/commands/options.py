@@ -40,6 +40,24 @@ def add_kind(sub: argparse.ArgumentParser) -> None:
     )
 
 
+def add_cells(sub: argparse.ArgumentParser) -> None:
+    """Declare how foreign FMUs are housed."""
+    housed = sub.add_mutually_exclusive_group()
+    housed.add_argument(
+        "--cells", dest="in_process", action="store_false", default=None,
+        help="run each foreign FMU in a child process of its own, which may crash: the default "
+        "on Linux",
+    )  # fmt: skip
+    housed.add_argument(
+        "--in-process", action="store_true", default=None,
+        help="load foreign FMUs into this process",
+    )  # fmt: skip
+    sub.add_argument(
+        "--call-deadline", type=float, metavar="SECONDS",
+        help="longest time that a call of an FMU in a child process may take; 60 s if not given",
+    )  # fmt: skip
+
+
 def add_start_values(sub: argparse.ArgumentParser) -> None:
     """Declare start values, gears and housings; see `start_values`, `files_of_parts`."""
     sub.add_argument(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
+    add_cells,
     add_kind,
     add_replacements,
     add_scene,
@@ -48,6 +49,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     add_kind(sub)
     add_replacements(sub)
+    add_cells(sub)
     add_start_values(sub)
     sub.add_argument(
         "--no-probe", action="store_true",
@@ -90,6 +92,8 @@ def run(options: argparse.Namespace) -> OutcomeKind:
             housing=files.housing,
             slow=_multiples(options.slow),
             probe=not options.no_probe,
+            in_process=options.in_process,
+            call_deadline=options.call_deadline,
             reference=options.reference,
             verify=options.verify,
             progress=bar.show,
@@ -114,6 +118,7 @@ class _Report:
         self._start = Path.cwd()  # FMUs may change it
         self._shown = Path()
         self._files: tuple[str, ...] = ()
+        self._said: tuple[Outcome, tuple[str, ...]] | None = None
 
     def write(self, result: "Result") -> None:
         """Write all files."""
@@ -123,6 +128,7 @@ class _Report:
         own = Path("results") / f"{name}-{result.info.scene}"
         self._shown = self._options.output or own
         self._bar.close()
+        self._said = result.outcome, result.info.notes
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
             say(f"{_ended(result.outcome)}, and are being written to {self._shown}")
         self._files = write_report(
@@ -139,7 +145,8 @@ class _Report:
         from herringbone.running.report import write_summary  # noqa: PLC0415 (pandas)
 
         result = replace(result, files=self._files)
-        if result.error or result.verification or result.info.why:
+        said = result.outcome, result.info.notes
+        if result.error or result.verification or result.info.why or said != self._said:
             write_summary(result, self._start / self._shown)
         return result
 

@@ -8,6 +8,7 @@ class OutcomeKind(StrEnum):
     """The ways in which a run ends."""
 
     COMPLETED = "completed"
+    PART_LOST_AT_END = "completed_part_lost"
     ENDED = "ended_by_part"
     INTERRUPTED = "interrupted"
     UNSTABLE = "unstable"
@@ -20,6 +21,7 @@ class OutcomeKind(StrEnum):
 EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
     OutcomeKind.ENDED: 0,
+    OutcomeKind.PART_LOST_AT_END: 1,
     OutcomeKind.UNSTABLE: 1,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
@@ -28,6 +30,7 @@ EXIT_CODES = {
     OutcomeKind.INTERRUPTED: 130,
 }
 """Exit code of a command whose run ended in one of these ways."""
+_REACHED_END = {OutcomeKind.COMPLETED, OutcomeKind.UNSTABLE, OutcomeKind.PART_LOST_AT_END}
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,7 @@ class Outcome:
     @property
     def reached_end(self) -> bool:
         """True if the run reached its end, with whatever values."""
-        return self.kind in {OutcomeKind.COMPLETED, OutcomeKind.UNSTABLE}
+        return self.kind in _REACHED_END
 
     @property
     def unstable(self) -> bool:

@@ -59,6 +59,14 @@ class Addresses(NamedTuple):
 
     The state functions are 0 if the part cannot save and restore its state; those of derivatives
     (fmi2SetRealInputDerivatives, fmi2GetRealOutputDerivatives) if it declares none.
+
+    A part outside of this process has two more, which save messages: get_later, as fmi2GetReal, but
+    the values come when finish(component, 1) has returned, which tells the status of all before it;
+    finish(component, 0) sends all that was called, and returns at once. A call of get_later
+    without references begins: no step is made until finish.
+
+    answers_later: 1 if what a step costs is paid when outputs are read, and other parts may step
+    meanwhile.
     """
 
     component: int
@@ -70,6 +78,9 @@ class Addresses(NamedTuple):
     free_state: int = 0
     set_derivatives: int = 0
     get_derivatives: int = 0
+    get_later: int = 0
+    finish: int = 0
+    answers_later: int = 0
 
     @property
     def can_restore(self) -> bool:

@@ -9,6 +9,7 @@ from fmpy.validation import validate_fmu
 
 from herringbone.core import FmuError
 from herringbone.cosim.fmu.file import read_fmu, require_file
+from herringbone.cosim.fmu.opening import applied
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
 
@@ -31,10 +32,19 @@ def check_fmu(path: str | Path) -> list[str]:
     path = Path(path)
     require_file(path)
     try:
-        description = read_fmu(path)
+        read_fmu(path)
     except FmuError as error:
         return [str(error)]
     problems = list(validate_fmu(str(path)))
+    try:
+        return problems + applied(path, trials)
+    except FmuError as error:
+        return [*problems, f"{path}: {error}"]
+
+
+def trials(path: Path) -> list[str]:
+    """Problems that an FMU shows when it is stepped, here."""
+    description, problems = read_fmu(path), []
     for check in (_default_run, _state_round_trip, _reset):
         try:
             problems += check(path, description)

@@ -9,6 +9,7 @@ from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm, with_tolerance
+from herringbone.cosim.cell.policy import housing_of_strangers
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
@@ -48,6 +49,8 @@ def run(
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: str | Path | Mapping[str, str | Path] | None = None,
     probe: bool = True,
+    in_process: bool | None = None,
+    call_deadline: float | None = None,
     reference: bool = False,
     verify: bool = False,
     progress: bool | Progress = False,
@@ -82,6 +85,10 @@ def run(
             housings: by path.
         probe: find out by trial steps what foreign FMUs are, see `running.foreign`; False:
             they are taken by what they declare.
+        in_process: True, the default: load foreign FMUs into this process, where their faults are
+            faults of the run; False: each runs in a child process, see `cosim.cell`.
+        call_deadline: longest time that a call of an FMU in a child process may take [s]; 60 s if
+            not given.
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
             apart both are, see `running.steps.verification`; for systems that have no twin.
@@ -102,33 +109,38 @@ def run(
     if verify:
         check_fixed_step(coupling, tolerance)
     wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
-    structure, chosen, notes = prepared(
-        system, scene, wishes, check=lambda scene: check_grid(scene.t_end, step, scene.record_step)
-    )
-    if reference:
-        refuse_foreign_parts(structure)
-    fmu, slower = choose_kind(fmu)
-    asked = Asked(
-        fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=(*notes, *slower)
-    )
-    aim = searched_tolerance(structure, asked)
-    if aim is not None:
-        found = searched(structure, chosen, asked, aim, progress, recorded)
-    else:
-        if coupling is not None and tolerance is not None:
-            asked = replace(asked, algorithm=with_tolerance(coupling, tolerance))
-        found = coupled(structure, chosen, asked, progress, recorded)
-    result = found.result
-    if reference:
-        result = compared(result, found.every, structure)
-    if verify and not found.recording.outcome.unstable:
-        result = verified(result, structure, chosen, found, asked, progress)
-    elif can_be_verified(structure, result, found, asked):
-        result = verified_by_longer_steps(result, structure, chosen, found, asked)
-    if _unstable(found.recording):
-        with activity(f"looking for what grows in {structure.name}, and for remedies"):
-            why_unstable = diagnose(structure, found.algorithm, found.recording.step)
-        result = replace(result, info=replace(result.info, why=why_unstable))
+    with housing_of_strangers(in_process=in_process, deadline=call_deadline):
+        structure, chosen, notes = prepared(
+            system,
+            scene,
+            wishes,
+            check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
+        )
+        if reference:
+            refuse_foreign_parts(structure)
+        fmu, slower = choose_kind(fmu)
+        said = (*notes, *slower)
+        asked = Asked(
+            fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=said
+        )
+        aim = searched_tolerance(structure, asked)
+        if aim is not None:
+            found = searched(structure, chosen, asked, aim, progress, recorded)
+        else:
+            if coupling is not None and tolerance is not None:
+                asked = replace(asked, algorithm=with_tolerance(coupling, tolerance))
+            found = coupled(structure, chosen, asked, progress, recorded)
+        result = found.result
+        if reference:
+            result = compared(result, found.every, structure)
+        if verify and not found.recording.outcome.unstable:
+            result = verified(result, structure, chosen, found, asked, progress)
+        elif can_be_verified(structure, result, found, asked):
+            result = verified_by_longer_steps(result, structure, chosen, found, asked)
+        if _unstable(found.recording):
+            with activity(f"looking for what grows in {structure.name}, and for remedies"):
+                why_unstable = diagnose(structure, found.algorithm, found.recording.step)
+            result = replace(result, info=replace(result.info, why=why_unstable))
     return result
 
 

@@ -18,6 +18,7 @@ from herringbone.cosim.algorithms import (
     start_step,
     with_tolerance,
 )
+from herringbone.cosim.cell.policy import remarks_of_cells
 from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
@@ -29,7 +30,7 @@ from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import decimated, judged, make_result
+from herringbone.running.run_result import decimated, judged, make_result, with_remarks
 from herringbone.running.steps.suited_step import suited_step
 from herringbone.scenes import Scene
 
@@ -103,6 +104,20 @@ def coupled(
     Raises:
         HerringboneError: a part cannot be used, or the algorithm not with these parts.
     """
+    with remarks_of_cells() as remarks:
+        found = _coupled(system, scene, asked, progress, recorded)
+    result, every = (with_remarks(each, remarks) for each in (found.result, found.every))
+    return found._replace(result=result, every=every)
+
+
+def _coupled(
+    system: System,
+    scene: Scene,
+    asked: Asked,
+    progress: bool | Progress,
+    recorded: Callable[[Result], None] | None,
+) -> Coupled:
+    """See `coupled`; without what is found out when the parts are closed."""
     lines, algorithm = list(asked.notes), asked.algorithm
     with same_folder(), exit_guard(), closing_all(open_parts(system, asked.fmu)) as opened:
         parts: Sequence[Part] = opened

@@ -174,7 +174,7 @@ def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
         with _named(spec.name):
             return open_fmu(spec.name, spec.fmu)
     if str(spec.component) in files:
-        part = open_fmu(spec.name, files[str(spec.component)])
+        part = open_fmu(spec.name, files[str(spec.component)], own=True)
         declared = part_variables(str(spec.component))
         part.variables = {
             name: replace(v, rate=declared[name].rate) if name in declared else v

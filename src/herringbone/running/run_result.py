@@ -13,9 +13,10 @@ from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.figures.settling import unsettled
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
-from herringbone.core import ResourceError
+from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.cell.policy import Remark
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
@@ -97,6 +98,20 @@ def judged(result: Result, bond_frequency: float | None) -> Result:
         found, budget = (f"no error budget: {error}",), ()
     notes = (*result.info.notes, *found, *unsettled(even))
     return replace(result, info=replace(result.info, notes=notes), budget=budget)
+
+
+def with_remarks(result: Result, remarks: Sequence[Remark]) -> Result:
+    """The result with what cells found out about their FMUs, which may not survive their end."""
+    if not remarks:
+        return result
+    notes = (*result.info.notes, *dict.fromkeys(map(str, remarks)))
+    outcome = result.outcome
+    crashed = [remark for remark in remarks if remark.crashed]
+    if crashed and outcome.kind in {OutcomeKind.COMPLETED, OutcomeKind.ENDED}:
+        outcome = Outcome(
+            OutcomeKind.PART_LOST_AT_END, outcome.time, crashed[0].part, str(crashed[0])
+        )
+    return replace(result, outcome=outcome, info=replace(result.info, notes=notes))
 
 
 def compared(result: Result, every: Result, system: System) -> Result:

@@ -130,7 +130,7 @@ class PreparedNodes(PreparedRun):
         return NodeLayout(
             degree,
             unknown,
-            np.array(self._bodies, dtype=np.int64),
+            np.array(network.by_answer(self._bodies), dtype=np.int64),
             np.array(self._elements, dtype=np.int64),
             np.array(self._first, dtype=np.int64),
             *node_references(parts, self._outputs, node_degrees),

@@ -65,10 +65,11 @@ class Jacobi(Algorithm):
     def prepare(self, network: Network) -> Prepared:
         """Stages: sources; bodies; elements one after another."""
         if self.schedule == "parallel":
-            everything = tuple(range(len(network.parts)))
+            everything = network.by_answer(range(len(network.parts)))
             return prepare_stages(
                 network, [everything], self.order, self.convergence_order, parallel=True
             )
-        stages = [network.sources, network.bodies, *([e] for e in network.elements)]
+        bodies = network.by_answer(network.bodies)
+        stages = [network.sources, bodies, *([e] for e in network.elements)]
         used = [s for s in stages if s]
         return prepare_stages(network, used, self.order, self.convergence_order)

@@ -105,9 +105,9 @@ class Fmu2Part(FmuPart):
         self._log.add(_DISCARD, said.encode())
         return None
 
-    def close(self) -> None:
-        """Terminate and free the instance; see `FmuPart.close`."""
-        super().close()
+    def free(self) -> None:
+        """Free the instance; see `FmuPart.free`."""
+        super().free()
         _logs.pop(self._key, None)
 
 

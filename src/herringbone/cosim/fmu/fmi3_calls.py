@@ -13,9 +13,9 @@ The kernels view memory as arrays of given types, which numba compiles with coun
 import numpy as np
 from numba import carray, types
 
-from herringbone.cosim.fmu.fmi3_memory import ELEMENT, POINTER
-from herringbone.cosim.fmu.fmi3_steps import any_discrete, enter_events, leave_events
-from herringbone.cosim.loops.calls import at_address, c_call, state_call
+from herringbone.cosim.fmu.fmi3_memory import ELEMENT
+from herringbone.cosim.fmu.fmi3_steps import POINTER, any_discrete, enter_events, leave_events
+from herringbone.cosim.loops.calls import at_address, c_call, of_state
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.fmi_calls import OK
 from herringbone.kernels.jit import allocating, c_function
@@ -128,7 +128,7 @@ def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2GetFMUstate."""
     part = carray(memory, 1)[0]
     part.saved = part.ended
-    return state_call(part.get_state, part.instance, handle)
+    return of_state(part.get_state, (part.instance, handle))
 
 
 @c_function(_STATE)
@@ -136,7 +136,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2SetFMUstate; inputs that are arrays are remembered as the state has them."""
     whole = carray(memory, 1)
     part = whole[0]
-    status = state_call(part.set_state, part.instance, state)
+    status = of_state(part.set_state, (part.instance, state))
     part.ended = part.saved
     if status == OK and part.array_count > 0:
         arrays = carray(at_address(part.arrays), part.array_count, np.uint32)
@@ -148,7 +148,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
 def free_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2FreeFMUstate."""
     part = carray(memory, 1)[0]
-    return state_call(part.free_state, part.instance, handle)
+    return of_state(part.free_state, (part.instance, handle))
 
 
 @c_function(_DERIVATIVES)

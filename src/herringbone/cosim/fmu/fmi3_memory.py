@@ -1,7 +1,6 @@
 """What the FMI 2.0 functions in front of an FMU 3.0 know of it, see `fmi3_calls`."""
 
 import numpy as np
-from numba import from_dtype, types
 
 MEMORY = np.dtype(
     [
@@ -55,6 +54,3 @@ number of the last call that exchanged the variable; discrete: 1 if it changes a
 RUNS, ENDED, EARLY, STUCK = 0, 1, 2, 3
 """It goes on; it asked to end the simulation; it returned early without leave, or again and again;
 its discrete states never settle."""
-
-POINTER = types.CPointer(from_dtype(MEMORY))
-"""Of the memory, in the functions' signatures."""

@@ -10,11 +10,12 @@ from fmpy.fmi3 import FMU3Slave
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import STRUCTURE, Addresses, Given, Value
-from herringbone.cosim.fmu import fmi3_calls, fmi3_memory, fmi3_steps
+from herringbone.cosim.fmu import fmi3_memory
+from herringbone.cosim.fmu.float_modes import keeping_modes
+from herringbone.cosim.fmu.fmi3_adapters import adapter
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
-from herringbone.cosim.fmu.variables import Element, read_elements, read_variables
-from herringbone.kernels.linking import CFunction
+from herringbone.cosim.fmu.variables import Element, read_elements, resized
 
 _WARNING = 1
 _MOST_EVENTS = 1000
@@ -127,12 +128,12 @@ class Fmu3Part(FmuPart):
 
         FMI 3.0 has no input derivatives.
         """
-        functions = [fmi3_calls.set_real, fmi3_calls.get_real, fmi3_steps.do_step]
+        functions = ["set_real", "get_real", "do_step"]
         if self.model.coSimulation.canGetAndSetFMUstate:
-            functions += [fmi3_calls.get_state, fmi3_calls.set_state, fmi3_calls.free_state]
-        found = Addresses(self._memory.ctypes.data, *(f.address for f in functions))
+            functions += ["get_state", "set_state", "free_state"]
+        found = Addresses(self._memory.ctypes.data, *map(adapter, functions))
         if int(self.model.coSimulation.maxOutputDerivativeOrder) > 0:
-            found = found._replace(get_derivatives=fmi3_calls.get_derivatives.address)
+            found = found._replace(get_derivatives=adapter("get_derivatives"))
         return found
 
     def set(self, name: str, value: Given) -> None:
@@ -158,17 +159,12 @@ class Fmu3Part(FmuPart):
 
     def _resize(self, name: str, size: int) -> None:
         """Arrays whose size is a structural parameter have another one now."""
-        changed = next(v for v in self.model.modelVariables if v.name == name)
-        changed.start = str(size)
-        for v in self.model.modelVariables:
-            v.shape = tuple(
-                int(d.start if d.variable is None else d.variable.start) for d in v.dimensions
-            )
-        self.variables = read_variables(self.model)
+        self.variables = resized(self.model, name, size)
         self._others = OtherValues(self.model)
         self._make_memory(read_elements(self.model))
         self._connect_memory()
 
+    @keeping_modes
     def _put(self, values: Mapping[str, Value]) -> None:
         if not self._memory["events"][0]:
             super()._put(values)
@@ -196,23 +192,23 @@ class Fmu3Part(FmuPart):
     def _write(self, references: list[int], values: list[float]) -> None:
         numbers = (c_uint32 * len(references))(*references)
         content = (c_double * len(values))(*values)
-        self._exchange(fmi3_calls.set_real, "fmi3SetFloat64", numbers, content)
+        self._exchange("set_real", "fmi3SetFloat64", numbers, content)
 
     def _read(self, references: list[int]) -> list[float]:
         count = len(references)
         values = (c_double * count)()
         numbers = (c_uint32 * count)(*references)
-        self._exchange(fmi3_calls.get_real, "fmi3GetFloat64", numbers, values)
+        self._exchange("get_real", "fmi3GetFloat64", numbers, values)
         return list(values)
 
     def _exchange(
         self,
-        adapter: CFunction,
+        kind: str,
         function: str,
         references: Array[c_uint32],
         values: Array[c_double],
     ) -> None:
-        call = _EXCHANGE(adapter.address)
+        call = _EXCHANGE(adapter(kind))
         status = call(self._memory.ctypes.data, references, len(references), values)
         if status > _WARNING:
             raise FMICallException(function=function, status=status)
@@ -224,6 +220,7 @@ class Fmu3Part(FmuPart):
         if arrays.size:  # a size that was set makes other start values
             self._read(arrays.tolist())
 
+    @keeping_modes
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""
         super().exit_initialization()

@@ -6,16 +6,18 @@ handled here, and the rest of the step follows.
 
 import numpy as np
 from llvmlite import ir
-from numba import carray, types
+from numba import carray, from_dtype, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from herringbone.cosim.fmu.fmi3_memory import EARLY, ELEMENT, ENDED, POINTER, RUNS, STUCK
+from herringbone.cosim.fmu.fmi3_memory import EARLY, ELEMENT, ENDED, MEMORY, RUNS, STUCK
 from herringbone.cosim.loops.calls import at_address, c_call
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.fmi_calls import DISCARD
 from herringbone.kernels.jit import allocating, c_function
 
+POINTER = types.CPointer(from_dtype(MEMORY))
+"""Of the memory, in the functions' signatures."""
 _STEP = types.int32(POINTER, types.float64, types.float64, types.int32)
 _EVENT, _TERMINATE, _EARLY = 256, 512, 1024  # added to the status of a step
 _MOST_EVENTS = 1000

@@ -1,42 +1,111 @@
-"""Opening an FMU of any FMI version that the master knows."""
+"""Opening an FMU: in a cell, or in this process if it was built by this installation."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
+from fmpy.model_description import ModelDescription
+
+from herringbone.core.caching.built import is_built
 from herringbone.core.temporary import remove_temporary_folder
-from herringbone.cosim.fmu.file import extract_fmu, is_fmi3, read_fmu
-from herringbone.cosim.fmu.fmi2_part import Fmu2Part
-from herringbone.cosim.fmu.fmi3_part import Fmu3Part
+from herringbone.cosim.cell.part import CellPart, cell_for, give_back
+from herringbone.cosim.cell.part import applied as applied_in_cell
+from herringbone.cosim.cell.policy import Remark, cells_work, policy
+from herringbone.cosim.cell.process import Cell
+from herringbone.cosim.fmu.file import extract_fmu, read_fmu
+from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
+T = TypeVar("T")
 
-def open_fmu(name: str, file: str | Path) -> FmuPart:
+
+def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | CellPart:
     """Instantiate an FMU 2.0 or 3.0 for co-simulation.
 
     Args:
         name: instance name.
         file: the FMU.
+        own: this installation built it; else its content tells.
 
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
     file = Path(file)
     model = read_fmu(file)
-    return (Fmu3Part if is_fmi3(model) else Fmu2Part)(name, file, model)
+    if own or not _needs_cell(name, file):
+        return new_part(name, file, model=model)
+    folder = extract_fmu(file)
+    try:
+        cell = cell_for(name, file, model, folder)
+        return CellPart(name, file, model, folder, cell, owned=True)
+    except BaseException:
+        remove_temporary_folder(folder)
+        raise
+
+
+def applied(file: Path, function: Callable[[Path], T]) -> T:
+    """What a function, which opens an FMU, finds about it, where this FMU belongs.
+
+    Args:
+        file: the FMU.
+        function: of a module; what it finds is made of numbers, texts, lists and dictionaries.
+
+    Raises:
+        FmuError: the file cannot be used, or ends the process that it is opened in.
+    """
+    if not _needs_cell(file.stem, file):
+        return function(file)
+    return applied_in_cell(file.stem, file, read_fmu(file), function)
 
 
 @contextmanager
-def many_of(name: str, file: str | Path) -> Iterator[Callable[[], FmuPart]]:
+def many_of(name: str, file: str | Path) -> Iterator[Callable[[], FmuPart | CellPart]]:
     """A function that makes instances of an FMU, which is extracted once for all of them.
 
-    All must be closed before the context ends. See `open_fmu` for arguments and errors.
+    All must be closed before the context ends. They share one cell, if they need one, until it is
+    lost. See `open_fmu` for arguments and errors.
     """
     file = Path(file)
     model = read_fmu(file)
-    kind = Fmu3Part if is_fmi3(model) else Fmu2Part
+    housed = _needs_cell(name, file)
     folder = extract_fmu(file)
     try:
-        yield lambda: kind(name, file, model, folder)
+        if housed:
+            with _instances(name, file, model, folder) as make:
+                yield make
+        else:
+            yield lambda: new_part(name, file, folder, model)
     finally:
         remove_temporary_folder(folder)
+
+
+@contextmanager
+def _instances(
+    name: str, file: Path, model: ModelDescription, folder: Path
+) -> Iterator[Callable[[], CellPart]]:
+    cells: list[Cell] = []
+
+    def make() -> CellPart:
+        if not cells or cells[-1].lost:
+            cells.append(cell_for(name, file, model, folder))
+        return CellPart(name, file, read_fmu(file), folder, cells[-1], owned=False)
+
+    try:
+        yield make
+    finally:
+        for cell in cells:
+            give_back(cell)
+
+
+def _needs_cell(name: str, file: Path) -> bool:
+    """True if an FMU belongs into a cell."""
+    chosen = policy()
+    if chosen.in_process or is_built(file):
+        return False
+    if cells_work():
+        return True
+    remark = Remark(name, "runs in this process, because cells need Linux; a crash of it is one")
+    if remark not in chosen.remarks:
+        chosen.remarks.append(remark)
+    return False

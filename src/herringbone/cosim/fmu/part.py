@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
@@ -15,11 +15,14 @@ from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
 from herringbone.core.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
+from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.values import as_value, as_values
 from herringbone.cosim.fmu.variables import read_variables
-from herringbone.cosim.signature.signature import Signature
+
+if TYPE_CHECKING:  # a cell starts quicker without
+    from herringbone.cosim.signature.signature import Signature
 
 _SHOWN = 8
 _CALCULATED = {
@@ -44,6 +47,7 @@ class FmuPart(ABC):
         FmuError: the file cannot be used, or does not instantiate.
     """
 
+    @keeping_modes
     def __init__(
         self,
         name: str,
@@ -166,6 +170,7 @@ class FmuPart(ABC):
             what = ", ".join(f"{self.name}.{name} = {value!r}" for name, value in values.items())
             raise FmuError(self._refusal(what, error)) from error
 
+    @keeping_modes
     def _put(self, values: Mapping[str, Value]) -> None:
         """Set variables of any types, in as few calls as possible; raises FMICallException."""
         reals = [name for name in values if self.variables[name].is_real]
@@ -175,6 +180,7 @@ class FmuPart(ABC):
         others = {name: value for name, value in values.items() if name not in reals}
         self._others.write(self.slave, others)
 
+    @keeping_modes
     def get_values(self, names: Sequence[str]) -> list[Value]:
         """Values of variables of other types than real; raises FmuError."""
         if self._log.fatal:
@@ -193,6 +199,7 @@ class FmuPart(ABC):
     def _refusal(self, what: str, error: Exception) -> str:
         return f"{what}: {'; '.join(self.messages()) or error}"
 
+    @keeping_modes
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of real variables; raises FmuError."""
         if self._log.fatal:
@@ -204,6 +211,7 @@ class FmuPart(ABC):
                 self._refusal(f"{self.name}: reading {', '.join(names)}", error)
             ) from error
 
+    @keeping_modes
     def enter_initialization(self, start_time: float, stop_time: float) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""
         try:
@@ -211,6 +219,7 @@ class FmuPart(ABC):
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 
+    @keeping_modes
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""
         try:
@@ -229,10 +238,20 @@ class FmuPart(ABC):
 
     def close(self) -> None:
         """Terminate and free the instance, unless it has failed, and remove the extracted files."""
+        self.terminate()
+        self.free()
+
+    @keeping_modes
+    def terminate(self) -> None:
+        """Terminate the instance if it runs."""
         if self._running and not self._log.fatal:
             self._running = False
             with contextlib.suppress(FMICallException):  # its results are there, and stay
                 self.slave.terminate()
+
+    @keeping_modes
+    def free(self) -> None:
+        """Free the instance, unless it has failed for good, and remove the extracted files."""
         if not self._log.fatal:
             self.slave.freeInstance()
         self._remove_files()

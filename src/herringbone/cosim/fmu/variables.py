@@ -107,6 +107,17 @@ def read_variables(model: ModelDescription) -> dict[str, PartVariable]:
     }
 
 
+def resized(model: ModelDescription, name: str, size: int) -> dict[str, PartVariable]:
+    """Variables after the size of arrays was set by a structural parameter; `model` changes."""
+    changed = next(v for v in model.modelVariables if v.name == name)
+    changed.start = str(size)
+    for v in model.modelVariables:
+        v.shape = tuple(
+            int(d.start if d.variable is None else d.variable.start) for d in v.dimensions
+        )
+    return read_variables(model)
+
+
 def _as_inputs(variable: ModelVariable) -> list[str]:
     """Names of what an output depends on; the nodes of a signal stay one array."""
     return [variable.name] if variable.name.endswith(_NODES) else _element_names(variable)

@@ -1,4 +1,7 @@
-"""Calling C functions by their address from compiled code."""
+"""Calling C functions by their address from compiled code.
+
+Those of FMUs leave rounding and flushing to zero as they were for whoever calls them.
+"""
 
 from collections.abc import Callable
 
@@ -8,6 +11,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from herringbone.cosim.loops.float_modes import keep_modes
 from herringbone.kernels.jit import kernel
 
 _INT32 = ir.IntType(32)
@@ -52,16 +56,22 @@ def at_address(typing_context, address):  # noqa: ANN001, ANN201
     return types.voidptr(types.int64), generate
 
 
-_exchange = c_call("address", "address", "count", "address")
-_derivatives = c_call("address", "address", "count", "address", "address")
-_step = c_call("address", "real", "real", "flag")
-_state = c_call("address", "address")
+set_or_get = c_call("address", "address", "count", "address")
+"""fmi2SetReal or fmi2GetReal."""
+set_or_get_derivatives = c_call("address", "address", "count", "address", "address")
+"""fmi2SetRealInputDerivatives or fmi2GetRealOutputDerivatives."""
+step_once = c_call("address", "real", "real", "flag")
+"""fmi2DoStep."""
+of_state = c_call("address", "address")
+"""fmi2GetFMUstate, fmi2SetFMUstate or fmi2FreeFMUstate."""
 
 
 @kernel
 def exchange_reals(address: int, component: int, references: int, count: int, values: int) -> int:
     """fmi2SetReal or fmi2GetReal at `address`; the others are addresses too. FMI status."""
-    return _exchange(address, (component, references, count, values))
+    status = set_or_get(address, (component, references, count, values))
+    keep_modes()
+    return status
 
 
 @kernel
@@ -69,16 +79,22 @@ def exchange_derivatives(
     address: int, component: int, references: int, count: int, orders: int, values: int
 ) -> int:
     """fmi2SetRealInputDerivatives or fmi2GetRealOutputDerivatives at `address`. FMI status."""
-    return _derivatives(address, (component, references, count, orders, values))
+    status = set_or_get_derivatives(address, (component, references, count, orders, values))
+    keep_modes()
+    return status
 
 
 @kernel
 def do_step(address: int, component: int, time: float, step: float) -> int:
     """fmi2DoStep at `address`, with noSetFMUStatePriorToCurrentPoint true. FMI status."""
-    return _step(address, (component, time, step, np.int32(1)))
+    status = step_once(address, (component, time, step, np.int32(1)))
+    keep_modes()
+    return status
 
 
 @kernel
 def state_call(address: int, component: int, state: int) -> int:
     """Get or free an FMU state (`state`: address of its handle), or set it (the handle). Status."""
-    return _state(address, (component, state))
+    status = of_state(address, (component, state))
+    keep_modes()
+    return status

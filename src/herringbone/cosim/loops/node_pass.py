@@ -132,7 +132,9 @@ def _step_group(
             buffers.counts[2] = status
             return p
     for p in group:
-        if _get_to_nodes(layout, nodes, buffers, p, h) > LAST_GOOD:
+        status = _get_to_nodes(layout, nodes, buffers, p, h)
+        if status > LAST_GOOD:  # of a part in a cell this may be that of its step
+            buffers.counts[2] = status
             return p
     return -1
 

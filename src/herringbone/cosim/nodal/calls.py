@@ -38,17 +38,17 @@ _STEP = types.int32(MEMORY_POINTER, types.float64, types.float64, types.int32)
 _STATE = types.int32(MEMORY_POINTER, types.int64)
 _UNKNOWN_SIZE = 1  # bounds are not checked
 _START = int(Given.START)
+_BYTES = 8
 
 
 @allocating
-def _read(memory: np.ndarray) -> int:
-    """Outputs of the part, as they are; FMI status."""
+def _read(memory: np.ndarray, later: bool) -> int:
+    """Outputs of the part, as they are, now or when it has answered; FMI status."""
     part = memory[0]
     if part.outputs == 0:
         return 0
-    return exchange_reals(
-        part.get_real, part.component, part.output_references, part.outputs, part.raw
-    )
+    function = part.get_later if later else part.get_real
+    return exchange_reals(function, part.component, part.output_references, part.outputs, part.raw)
 
 
 @allocating
@@ -109,10 +109,76 @@ def _keep(memory: np.ndarray, node: int, end: float, length: float) -> None:
         values[j * STRIDE] = value
 
 
+@allocating
+def _at_node(memory: np.ndarray, node: int) -> None:
+    """What is held, and what is read, is that of a node now."""
+    part = memory[0]
+    memory[0].held = part.all_held + _BYTES * 2 * part.inputs * (node - 1)
+    memory[0].raw = part.all_raw + _BYTES * part.outputs * (node - 1)
+
+
+@allocating
+def _take(memory: np.ndarray, time: float, step: float, later: bool) -> int:
+    """Step the part from node to node; FMI status."""
+    part = memory[0]
+    nodes = max(1, part.degree)
+    length = step / (nodes * part.pieces)
+    for node in range(1, nodes + 1):
+        _at_node(memory, node)
+        hold(memory, (node - 1) / nodes, node / nodes, step)
+        if part.once:
+            make_up(memory, step)
+        for piece in range(part.pieces):
+            status = _give(memory, piece)
+            if status > LAST_GOOD:
+                return status
+            begin = time + ((node - 1) * part.pieces + piece) * length
+            status = step_part(part.do_step, part.component, begin, length)
+            if status > LAST_GOOD:
+                return status
+        status = _read(memory, later)
+        if status > LAST_GOOD:
+            return status
+    return 0
+
+
+@allocating
+def _end(memory: np.ndarray, time: float, step: float) -> None:
+    """The outputs of a step are there: signals, and what is remembered."""
+    part = memory[0]
+    nodes = max(1, part.degree)
+    length = step / (nodes * part.pieces)
+    for node in range(1, nodes + 1):
+        _at_node(memory, node)
+        if part.watched:
+            compare(memory, node, time, step)
+        _keep(memory, node, node / nodes, length)
+    memory[0].seen_piece, memory[0].stepped, memory[0].state_time = length, 1, time + step
+    if part.once:
+        remember(memory, time, step)
+
+
+@allocating
+def _settle(memory: np.ndarray) -> int:
+    """Wait for the outputs of the last step, if they have not come; FMI status."""
+    part = memory[0]
+    if part.pending == 0:
+        return 0
+    memory[0].pending = 0
+    status = state_call(part.finish, part.component, 1)
+    if status <= LAST_GOOD:
+        _end(memory, part.pending_time, part.pending_step)
+    return status
+
+
 @c_function(_EXCHANGE)
 def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed by _EXCHANGE)
     """fmi2SetReal, of inputs at nodes."""
-    part = carray(memory, 1)[0]
+    whole = carray(memory, 1)
+    status = _settle(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
+    part = whole[0]
     reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
     given = carray(at_address(part.given), part.inputs * STRIDE, np.float64)
     driven = carray(at_address(part.driven), part.inputs, np.int64)
@@ -129,9 +195,12 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     part = whole[0]
     reference, value = carray(references, _UNKNOWN_SIZE), carray(values, _UNKNOWN_SIZE)
     kept = carray(at_address(part.values), part.outputs * STRIDE, np.float64)
-    status = 0
+    whole[0].read = 1
+    status = _settle(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
     if part.stepped == 0:
-        status = _read(whole)
+        status = _read(whole, False)
         raw = carray(at_address(part.raw), part.outputs, np.float64)
         for j in range(part.outputs):
             kept[j * STRIDE] = raw[j]
@@ -142,56 +211,59 @@ def get_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
 
 @c_function(_STEP)
 def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed by _STEP)
-    """fmi2DoStep, from node to node."""
+    """fmi2DoStep, from node to node.
+
+    Of a part that answers later the outputs come when they are read, if they were after the last
+    step; then, too, it is said whether this one failed.
+    """
     whole = carray(memory, 1)
+    status = _settle(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
     part = whole[0]
-    nodes = max(1, part.degree)
     if part.once and part.taken_time == time and part.taken_step == step:
         answer(whole)
         return types.int32(0)
     _expand(whole)
-    length = step / (nodes * part.pieces)
-    for node in range(1, nodes + 1):
-        hold(whole, (node - 1) / nodes, node / nodes, step)
-        if part.once:
-            make_up(whole, step)
-        for piece in range(part.pieces):
-            status = _give(whole, piece)
-            if status > LAST_GOOD:
-                return types.int32(status)
-            begin = time + ((node - 1) * part.pieces + piece) * length
-            status = step_part(part.do_step, part.component, begin, length)
-            if status > LAST_GOOD:
-                return types.int32(status)
-        status = _read(whole)
-        if status > LAST_GOOD:
-            return types.int32(status)
-        if part.watched:
-            compare(whole, node, time, step)
-        _keep(whole, node, node / nodes, length)
-    whole[0].seen_piece, whole[0].stepped, whole[0].state_time = length, 1, time + step
-    if part.once:
-        remember(whole, time, step)
-    return types.int32(0)
+    later = part.finish != 0
+    if later:
+        exchange_reals(part.get_later, part.component, 0, 0, 0)
+    status = _take(whole, time, step, later)
+    if status > LAST_GOOD:
+        return types.int32(status)
+    if not later:
+        _end(whole, time, step)
+        return types.int32(0)
+    whole[0].pending, whole[0].pending_time, whole[0].pending_step = 1, time, step
+    read, whole[0].read = part.read, 0
+    if read:
+        return types.int32(state_call(part.finish, part.component, 0))
+    return types.int32(_settle(whole))
 
 
 @c_function(_STATE)
 def get_state(memory, handle):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2GetFMUstate, before a step; the adapter itself has no state: a step sets all it knows."""
     whole = carray(memory, 1)
+    status = _settle(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
     part = whole[0]
     measure_if_suspected(whole)
     whole[0].saved_time = part.state_time
-    return state_call(part.get_state, part.component, handle)
+    return types.int32(state_call(part.get_state, part.component, handle))
 
 
 @c_function(_STATE)
 def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     """fmi2SetFMUstate, of the state that was saved last."""
     whole = carray(memory, 1)
+    status = _settle(whole)
+    if status > LAST_GOOD:
+        return types.int32(status)
     part = whole[0]
     whole[0].state_time = part.saved_time
-    return state_call(part.set_state, part.component, state)
+    return types.int32(state_call(part.set_state, part.component, state))
 
 
 @c_function(_STATE)

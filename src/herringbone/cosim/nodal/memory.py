@@ -12,6 +12,14 @@ MEMORY = np.dtype(
         ("get_state", np.int64),
         ("set_state", np.int64),
         ("free_state", np.int64),
+        ("get_later", np.int64),
+        ("finish", np.int64),
+        ("pending", np.int64),
+        ("read", np.int64),
+        ("pending_time", np.float64),
+        ("pending_step", np.float64),
+        ("all_held", np.int64),
+        ("all_raw", np.int64),
         ("inputs", np.int64),
         ("outputs", np.int64),
         ("degree", np.int64),
@@ -56,12 +64,15 @@ MEMORY = np.dtype(
 )
 """What an adapter knows.
 
-component, and the addresses of the part's functions; numbers of inputs n and outputs m; degree of
+component, and the addresses of the part's functions, see `Addresses`; pending: 1 if the outputs of
+a step have not come yet; read: 1 if outputs were read since the last step; pending_time,
+pending_step: of that step [s]; numbers of inputs n and outputs m; degree of
 the signals; pieces: steps from node to node, 1 or 2; at_end: 1 for a part without memory; stepped:
 1 after the first step. Addresses: value references of the part's inputs and outputs (uint32);
 given: signals of the inputs (n, STRIDE); driven: 1 for inputs that were set (int64); coefficients
 (n, STRIDE); order (n, int64): of the inputs, those that are rates first; held (2, n): in each
-piece; packed and packed_references: of driven inputs; raw (m) outputs of the part; values: signals
+piece, and raw (m): outputs of the part, at the present node, of all_held (STRIDE, 2, n) and
+all_raw (STRIDE, m); packed and packed_references: of driven inputs; values: signals
 of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; rate (n, int64):
 number of an input's rate, or -1.
 

@@ -15,7 +15,7 @@ from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.signature import Kind, Signature
 from herringbone.kernels.signals import STRIDE
 
-_ADDRESSES = Addresses._fields[:7]
+_ADDRESSES = {*Addresses._fields[:7], "get_later", "finish"}
 
 
 class NodalPart(PartAdapter):
@@ -66,10 +66,10 @@ class NodalPart(PartAdapter):
             "driven": np.zeros(n, np.int64),
             "coefficients": np.zeros((n, STRIDE)),
             "order": _rates_first(rate),
-            "held": np.zeros((2, n)),
+            "all_held": np.zeros((STRIDE, 2, n)),
             "packed": np.zeros(n),
             "packed_references": np.zeros(n, np.uint32),
-            "raw": np.zeros(m),
+            "all_raw": np.zeros((STRIDE, m)),
             "values": np.zeros((m, STRIDE)),
             "feedthrough": np.nan_to_num(self.signature.feedthrough),
             "place": np.array(self.signature.given or [0] * n, np.int64),
@@ -94,6 +94,7 @@ class NodalPart(PartAdapter):
         memory["once"] = self.answers_again
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
+        memory["held"], memory["raw"] = memory["all_held"], memory["all_raw"]
         for name, address in self.part.addresses._asdict().items():
             if name in _ADDRESSES:
                 memory[name] = address
@@ -122,7 +123,8 @@ class NodalPart(PartAdapter):
         functions = [calls.set_real, calls.get_real, calls.do_step]
         if not self.answers_again:
             functions += [calls.get_state, calls.set_state, calls.free_state]
-        return Addresses(self._memory.ctypes.data, *(f.address for f in functions))
+        found = Addresses(self._memory.ctypes.data, *(f.address for f in functions))
+        return found._replace(answers_later=int(self.part.addresses.finish != 0))
 
     def set(self, name: str, value: Given) -> None:
         """Set a variable of the part, or the degree of the signals."""

@@ -1,6 +1,6 @@
 """A system's connections, resolved on its parts' variables and checked."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
@@ -51,6 +51,10 @@ class Network:
         """Parts that are neither elements, sources nor slow, in the system's order."""
         other = {*self.elements, *self.sources, *self.slow}
         return tuple(i for i in range(len(self.parts)) if i not in other)
+
+    def by_answer(self, group: Iterable[int]) -> tuple[int, ...]:
+        """Parts that do not see each other, those first that step while others do."""
+        return tuple(sorted(group, key=lambda p: not self.parts[p].addresses.answers_later))
 
     @property
     def _that_can_be_slow(self) -> str:

@@ -13,6 +13,7 @@ from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.units import calls
 
 _SIGNALS = {"input", "output"}
+_ADDRESSES = Addresses._fields[:9]
 
 
 def in_si_units(part: Part) -> Part:
@@ -78,7 +79,8 @@ class SiPart(PartAdapter):
         for name, array in self._arrays.items():
             memory[name] = array.ctypes.data
         for name, address in self.part.addresses._asdict().items():
-            memory[name] = address
+            if name in _ADDRESSES:
+                memory[name] = address
         return memory
 
     @property
@@ -87,9 +89,9 @@ class SiPart(PartAdapter):
         has = self.part.addresses
         found = {
             name: getattr(calls, name).address if getattr(has, name) else 0
-            for name in Addresses._fields[1:]
+            for name in _ADDRESSES[1:]
         }
-        return Addresses(self._memory.ctypes.data, **found)
+        return Addresses(self._memory.ctypes.data, **found, answers_later=has.answers_later)
 
     def set(self, name: str, value: Given) -> None:
         """Set a variable; signals in SI units."""

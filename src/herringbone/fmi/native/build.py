@@ -6,6 +6,7 @@ from pathlib import Path
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
+from herringbone.core.caching.built import note_built
 from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.paths import cache_folder
@@ -74,7 +75,9 @@ def build_models(
     missing = [model for model in models if not is_stored(fmus[model.name])]
     for model in missing:
         with activity(f"building the native FMU of {model.name}", "only when its code has changed"):
-            store(fmus[model.name], _built(model, chosen, fmi))
+            content = _built(model, chosen, fmi)
+            note_built(content)
+            store(fmus[model.name], content)
     return fmus
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import FmuError
 from herringbone.core.activity import activity
+from herringbone.core.caching.built import note_built
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import packed_key
 from herringbone.core.paths import cache_folder
@@ -36,7 +37,9 @@ def build_python_fmus(names: Iterable[str] | None = None) -> dict[str, Path]:
         with said, temporary_folder() as scratch:
             _pack(missing, scratch)
             for name in missing:
-                store(fmus[name], (scratch / f"{name}.fmu").read_bytes())
+                content = (scratch / f"{name}.fmu").read_bytes()
+                note_built(content)
+                store(fmus[name], content)
     return fmus
 
 

@@ -15,6 +15,7 @@ from herringbone.core.activity import activity
 from herringbone.core.declaration import INTERFACE_DEGREE, is_node
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.adapter import PartAdapter, WithoutStates
+from herringbone.cosim.cell.part import CellPart
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
@@ -146,7 +147,7 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
     if part.addresses.set_derivatives or signature.tick or _loops_without_end(part, signature):
         part.has_states = signature.kind is not Kind.ELEMENT
         part.variables = _measured(part.variables, signature)
-        if isinstance(part, FmuPart | PartAdapter):
+        if isinstance(part, FmuPart | CellPart | PartAdapter):
             part.signature = signature
         return part, lines
     nodal = NodalPart(part, signature)

@@ -17,10 +17,8 @@ from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
 from herringbone.cosim.signature.rotation import Given
 from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
-from herringbone.running.foreign.started import started
+from herringbone.running.foreign.started import own_step, started
 
-STEP = 1e-4
-"""Step of the first trials [s], unless the FMU has one."""
 _TRIED = (1e-4, 1e-3)
 """Steps of further trials [s], while the model is too far from the FMU."""
 
@@ -77,8 +75,7 @@ def hosted_flange(
         _check(found, host)
         torque, motion = [found.tau], [name for name in (found.phi, found.w) if name]
         inputs, outputs = (torque, motion) if found.takes_torque else (motion, torque)
-        experiment = part.model.defaultExperiment
-        step = float(experiment.stepSize) if experiment and experiment.stepSize else STEP
+        step = own_step(fmu)
         takes_derivatives = bool(part.addresses.set_derivatives)
         with activity(f"identifying {found.tau} of {fmu.name}"):
             start = start_inputs(part, inputs)

@@ -1,9 +1,13 @@
-"""Instances of one FMU with start values set, for trials of it alone."""
+"""One FMU in trials of it alone: instances with start values set, and its step."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.part import Part
+from herringbone.cosim.fmu.file import read_fmu
+
+_STEP = 1e-4
 
 
 def started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], Part]:
@@ -31,3 +35,9 @@ def started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], 
         return part
 
     return make
+
+
+def own_step(fmu: Path) -> float:
+    """Step that an FMU proposes for experiments [s], or that of trials."""
+    experiment = read_fmu(fmu).defaultExperiment
+    return float(experiment.stepSize) if experiment and experiment.stepSize else _STEP

@@ -1,0 +1,30 @@
+"""Which FMUs this installation built itself, known again by their content."""
+
+import contextlib
+import hashlib
+from pathlib import Path
+
+from herringbone.core.caching.files import write_file
+from herringbone.core.paths import cache_root
+
+_FOLDER = "built-fmus"
+
+
+def note_built(content: bytes) -> None:
+    """Remember an FMU that was built here."""
+    with contextlib.suppress(OSError):  # it is a stranger then, which costs little
+        write_file(cache_root() / _FOLDER / hashlib.sha256(content).hexdigest(), b"")
+
+
+def content_of(file: Path) -> str:
+    """What tells a file's content from others; "" if it cannot be read."""
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
+def is_built(file: Path) -> bool:
+    """True if the content of a file was built here, whatever its name."""
+    content = content_of(file)
+    return bool(content) and (cache_root() / _FOLDER / content).is_file()

@@ -1,0 +1,264 @@
+"""An FMU in a cell, as participant."""
+
+import ctypes
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from fmpy.model_description import ModelDescription
+
+from herringbone.core import FmuError, HerringboneError
+from herringbone.core.caching.built import content_of
+from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
+from herringbone.core.temporary import remove_temporary_folder, temporary_folder
+from herringbone.cosim.cell import calls, derivative_calls, state_calls
+from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits, room
+from herringbone.cosim.cell.policy import Remark, policy
+from herringbone.cosim.cell.process import Cell, CellLost
+from herringbone.cosim.fmu.variables import read_variables, resized
+
+if TYPE_CHECKING:
+    from herringbone.cosim.signature.signature import Signature
+
+T = TypeVar("T")
+_LAST_GOOD = 1
+_FUNCTIONS = {
+    "set_real": calls.set_real,
+    "get_real": calls.get_real,
+    "do_step": calls.do_step,
+    "get_state": state_calls.get_state,
+    "set_state": state_calls.set_state,
+    "free_state": state_calls.free_state,
+    "set_derivatives": derivative_calls.set_derivatives,
+    "get_derivatives": derivative_calls.get_derivatives,
+}
+_SEND = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
+
+
+def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Cell:
+    """A cell of the FMU that is idle, or a new one with room for its signals; raises FmuError."""
+    content, idle = content_of(file), policy().idle or {}
+    if idle.get(content):
+        cell = idle[content].pop()
+        cell.name = name
+        return cell
+    known = read_variables(model)
+    sized = any(v.causality == STRUCTURE for v in known.values())
+    return Cell(name, content, room(len(known), sized=sized), folder)
+
+
+def give_back(cell: Cell) -> None:
+    """Keep a cell for the next time, or end it if its FMU did anything to it."""
+    idle = policy().idle
+    if idle is not None and _is_as_new(cell):
+        idle.setdefault(cell.content, []).append(cell)
+    else:
+        cell.close()
+
+
+def applied(name: str, file: Path, model: ModelDescription, function: Callable[[Path], T]) -> T:
+    """What a function of a module finds about an FMU, in a cell.
+
+    Raises:
+        CellLost: the cell does not survive that.
+        HerringboneError: what the function raised.
+    """
+    with temporary_folder() as folder:
+        cell = cell_for(name, file, model, folder)
+        asked = function.__module__, function.__name__, str(file.absolute()), str(folder)
+        try:
+            return cell.ask("apply", -1, *asked)
+        finally:
+            cell.close()
+            if said := cell.log.described():
+                policy().remarks.append(Remark(name, said))
+
+
+def _is_as_new(cell: Cell) -> bool:
+    """True if its FMU did nothing to a cell that shows."""
+    try:
+        if cell.lost or cell.ask("changed", -1):
+            return False
+    except HerringboneError:
+        return False
+    cell.log.settle()
+    return cell.log.size == 0
+
+
+class CellPart:
+    """An FMU 2.0 or 3.0 in a cell; see `FmuPart`, which it is there.
+
+    Args:
+        name: instance name.
+        file: the FMU.
+        model: its model description.
+        folder: where it is extracted.
+        cell: in which it is instantiated.
+        owned: cell and folder belong to the part, and end with it.
+
+    Raises:
+        FmuError: it does not instantiate, or the cell does not survive that.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        file: Path,
+        model: ModelDescription,
+        folder: Path,
+        cell: Cell,
+        *,
+        owned: bool,
+    ) -> None:
+        self.name, self.file, self.model = name, file, model
+        self.has_states: bool | None = None
+        self.signature: Signature | None = None
+        self.variables: Mapping[str, PartVariable] = read_variables(model)
+        abilities = model.coSimulation
+        self.once = bool(abilities.canBeInstantiatedOnlyOncePerProcess)
+        self.one_step = not abilities.canHandleVariableCommunicationStepSize
+        self._cell, self._folder, self._owned = cell, folder, owned
+        self._remarks = policy().remarks
+        self._number = cell.new_instance()
+        self._memory = np.zeros(1, INSTANCE)
+        self._closed = self._failed = False
+        try:
+            has = cell.ask("open", self._number, name, str(file.absolute()), str(folder))
+        except HerringboneError:
+            self._leave()
+            raise
+        self._has = dict(zip(Addresses._fields, has, strict=True))
+        self._make_memory()
+
+    def _make_memory(self) -> None:
+        """What the adapters know."""
+        words = int(self._cell.side.record["capacity"][0])
+        self._arrays: dict[str, np.ndarray] = {
+            "words": np.zeros(words, np.int64),
+            "known": np.zeros(KINDS, np.uint8),
+            "slots": np.zeros(STATES, np.uint8),
+            "references": np.zeros(words, np.uint32),
+            "found": np.zeros(words),
+            "rates": np.zeros(words, np.uint32),
+            "orders": np.zeros(words, np.int32),
+            "rate_found": np.zeros(words),
+            "wanted": np.zeros(3 * READS, np.int64),
+        }
+        self._memory["side"] = self._cell.side.address
+        self._memory["number"] = self._number
+        for name, array in self._arrays.items():
+            self._memory[name] = array.ctypes.data
+
+    @property
+    def addresses(self) -> Addresses:
+        """Addresses of the adapters, of what the FMU has; the component is their memory."""
+        found = {name: f.address for name, f in _FUNCTIONS.items() if self._has[name]}
+        found |= {"get_later": calls.get_later.address, "finish": calls.finish.address}
+        return Addresses(self._memory.ctypes.data, **found, answers_later=1)
+
+    def new_state(self) -> int:
+        """0: the adapters number the states."""
+        return 0
+
+    def _ask(self, call: str, *arguments: object) -> object:
+        """Call a function of the part in the cell; raises HerringboneError."""
+        if _SEND(calls.send.address)(self._memory.ctypes.data) > _LAST_GOOD and not self._cell.lost:
+            said = "; ".join(self._cell.ask("messages", self._number))
+            raise FmuError(f"{self.name} refuses a step, a value or a state: {said}")
+        return self._cell.ask(call, self._number, *arguments)
+
+    def set(self, name: str, value: Given) -> None:
+        """See `FmuPart.set`."""
+        self._ask("set", name, value)
+        known = self.variables.get(name)
+        if known is not None and known.causality == STRUCTURE:
+            self.variables = resized(self.model, name, int(float(value)))  # type: ignore[arg-type]
+            if not fits(len(self.variables), int(self._cell.side.record["capacity"][0])):
+                raise FmuError(
+                    f"{self.name}.{name} = {value!r}: too many signals for a cell; use --in-process"
+                )
+
+    def get(self, names: Sequence[str]) -> list[float]:
+        """Values of real variables; raises FmuError."""
+        return self._ask("get", list(names))  # type: ignore[return-value]  # numbers
+
+    def put_values(self, values: Mapping[str, Value]) -> None:
+        """Set variables at a communication point; raises FmuError."""
+        self._ask("put_values", dict(values))
+
+    def get_values(self, names: Sequence[str]) -> list[Value]:
+        """Values of variables of other types than real; raises FmuError."""
+        return self._ask("get_values", list(names))  # type: ignore[return-value]
+
+    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+        """Set up the experiment and enter initialisation mode; raises FmuError."""
+        self._ask("enter_initialization", float(start_time), float(stop_time))
+
+    def exit_initialization(self) -> None:
+        """Go to step mode; raises FmuError."""
+        self._ask("exit_initialization")
+
+    def failed(self) -> None:
+        """A step failed: FMI then allows no call but fmi2FreeInstance."""
+        self._failed = True
+        self._memory["used"] = self._memory["waiting"] = 0
+        if not self._cell.lost:
+            self._ask("failed")
+
+    def ended(self) -> float | None:
+        """Time at which the FMU asked to end the simulation [s]; None if it did not."""
+        if self._cell.lost:
+            return None
+        try:
+            return self._ask("ended")  # type: ignore[return-value]
+        except CellLost:
+            return None
+
+    def messages(self) -> list[str]:
+        """Warnings and errors logged since the last call, or why the cell is lost."""
+        try:
+            if not self._cell.lost:
+                return self._ask("messages")  # type: ignore[return-value]
+        except CellLost:
+            pass
+        return [self._cell.why]
+
+    def close(self) -> None:
+        """Terminate and free the instance; what happens there is a remark, see `policy`."""
+        if self._closed:
+            return
+        if not self._cell.lost:
+            self._end()
+        self._leave()
+
+    def _end(self) -> None:
+        try:
+            if not self._failed:
+                _SEND(calls.send.address)(self._memory.ctypes.data)
+            for call in ("terminate", "free"):
+                self._cell.ask(call, self._number)
+            if self._owned:
+                changed = self._cell.ask("changed", self._number)
+                if changed:
+                    self._remark(f"changed {', '.join(changed)} of its process; the cell held it")
+        except CellLost:
+            why = f"did not survive its end: {self._cell.why}; the results are complete"
+            self._remark(why, crashed=True)
+        except HerringboneError as error:
+            self._remark(f"did not end well: {error}")
+
+    def _remark(self, text: str, *, crashed: bool = False) -> None:
+        if self._owned:
+            self._remarks.append(Remark(self.name, text, crashed))
+
+    def _leave(self) -> None:
+        """Give back the cell, and what belongs to the part."""
+        self._closed = True
+        self._cell.forget(self._number, self._memory.ctypes.data)
+        if not self._owned:
+            return
+        give_back(self._cell)
+        if said := self._cell.log.described():
+            self._remark(said)
+        remove_temporary_folder(self._folder)

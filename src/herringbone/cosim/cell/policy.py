@@ -1,0 +1,117 @@
+"""Which FMUs run in cells, and what came of those that did."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from herringbone.core import ParameterError
+from herringbone.cosim.cell.system_calls import FUTEX
+
+if TYPE_CHECKING:
+    from herringbone.cosim.cell.process import Cell
+
+BY_DEFAULT = True
+"""Whether foreign FMUs run in cells where nobody says."""
+DEADLINE = 60.0
+"""Longest time that a call of an FMU takes, unless something else is asked for [s]."""
+_SPIN = 20e-6
+
+
+@dataclass(frozen=True)
+class Remark:
+    """What a cell found out about an FMU, besides its results.
+
+    Attributes:
+        part: name of the instance.
+        text: what, to be read after the name.
+        crashed: it did not survive its end.
+    """
+
+    part: str
+    text: str
+    crashed: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.part} {self.text}"
+
+
+@dataclass(frozen=True)
+class Policy:
+    """How foreign FMUs are housed.
+
+    Attributes:
+        in_process: in this process, as those that were built here.
+        deadline: longest time that a call of an FMU in a cell takes [s].
+        remarks: what was found out.
+        idle: cells by their FMU that may be used again; None: each is used once.
+    """
+
+    in_process: bool = not BY_DEFAULT
+    deadline: float = DEADLINE
+    remarks: list[Remark] = field(default_factory=list)
+    idle: dict[str, list["Cell"]] | None = None
+
+
+_policy: ContextVar[Policy | None] = ContextVar("cell_policy", default=None)
+
+
+def policy() -> Policy:
+    """The policy of this context."""
+    return _policy.get() or Policy()
+
+
+@contextmanager
+def housing_of_strangers(
+    *, in_process: bool | None = None, deadline: float | None = None
+) -> Iterator[Policy]:
+    """Context in which foreign FMUs are opened so.
+
+    Args:
+        in_process: in this process; None: as around this context, or else see `BY_DEFAULT`.
+        deadline: longest time of a call [s]; if not given as around this context, or `DEADLINE`.
+
+    Raises:
+        ParameterError: the deadline is not positive.
+    """
+    if deadline is not None and not deadline > 0.0:
+        raise ParameterError(f"call_deadline = {deadline:g} s: it must be positive")
+    outer = policy()
+    found = Policy(
+        outer.in_process if in_process is None else in_process,
+        outer.deadline if deadline is None else deadline,
+        idle={},
+    )
+    token = _policy.set(found)
+    try:
+        yield found
+    finally:
+        _policy.reset(token)
+        for cell in (cell for cells in (found.idle or {}).values() for cell in cells):
+            cell.close()
+
+
+@contextmanager
+def remarks_of_cells() -> Iterator[list[Remark]]:
+    """Context with the policy as it is, and the remarks on the FMUs that are opened in it."""
+    found = replace(policy(), remarks=[])
+    token = _policy.set(found)
+    try:
+        yield found.remarks
+    finally:
+        _policy.reset(token)
+
+
+def cells_work() -> bool:
+    """True where there are cells: on Linux, on processors whose system calls are known."""
+    return sys.platform == "linux" and FUTEX > 0 and hasattr(os, "pidfd_open")
+
+
+def spin_time(cells: int) -> float:
+    """Time to spin [s], with so many cells of this process; 0 where cores are scarce."""
+    if sys.platform != "linux":
+        return 0.0
+    return _SPIN if 1 + cells <= len(os.sched_getaffinity(0)) else 0.0
