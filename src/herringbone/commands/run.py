@@ -2,7 +2,6 @@
 
 import argparse
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,11 +16,12 @@ from herringbone.commands.options import (
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
-from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
 from herringbone.running.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
+    from herringbone.running.output.run_output import RunOutput
 
 _SLOW = "INSTANCE=N,..."
 
@@ -58,7 +58,13 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--verify", action="store_true", help="errors against a run with half the step"
     )
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
-    sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
+    sub.add_argument(
+        "-o", "--output", type=Path,
+        help="folder; results/SYSTEM-SCENE if not given, with a number if that holds another run",
+    )  # fmt: skip
+    sub.add_argument(
+        "--overwrite", action="store_true", help="overwrite results of other settings in the folder"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -69,6 +75,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
     from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
     from herringbone.running.summary import summary_text  # noqa: PLC0415
 
     check_writable(options.output or Path("results"))
@@ -78,24 +85,34 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         if (value := getattr(options, name)) is not None
     }
     files = files_of_parts(options)
-    with closing(Bar(always=False)) as bar:
-        report = _Report(options, bar)
-        result = api.run(
-            options.system,
-            **optional,
-            fmu=options.fmu,
-            replace_parts=replacements(options),
-            values=start_values(options.set),
-            gear=files.gear,
-            housing=files.housing,
-            slow=_multiples(options.slow),
-            probe=not options.no_probe,
-            reference=options.reference,
-            verify=options.verify,
-            progress=bar.show,
-            recorded=report.write,
-        )
-    result = report.complete(result)
+    output = RunOutput(
+        options.output,
+        overwrite=options.overwrite,
+        parquet=options.parquet,
+        system=Path(options.system).stem,
+    )
+    with closing(Bar(always=False)) as bar, closing(output):
+        report = _Report(output, bar)
+        try:
+            result = api.run(
+                options.system,
+                **optional,
+                fmu=options.fmu,
+                replace_parts=replacements(options),
+                values=start_values(options.set),
+                gear=files.gear,
+                housing=files.housing,
+                slow=_multiples(options.slow),
+                probe=not options.no_probe,
+                reference=options.reference,
+                verify=options.verify,
+                progress=bar.show,
+                recorded=report.write,
+                output=output,
+            )
+        except HerringboneError as error:
+            raise output.cut_off(error) from error
+        result = output.complete(result)
     show(result.to_json() if options.json else summary_text(result))
     if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
         say(_ended(result.outcome))
@@ -109,39 +126,18 @@ def _ended(outcome: Outcome) -> str:
 class _Report:
     """The files of a run: written when it ends, before anything more is found out about it."""
 
-    def __init__(self, options: argparse.Namespace, bar: Bar) -> None:
-        self._options, self._bar = options, bar
-        self._start = Path.cwd()  # FMUs may change it
-        self._shown = Path()
-        self._files: tuple[str, ...] = ()
+    def __init__(self, output: "RunOutput", bar: Bar) -> None:
+        self._output, self._bar = output, bar
 
     def write(self, result: "Result") -> None:
         """Write all files."""
-        from herringbone.running.report import write_report  # noqa: PLC0415 (pandas)
-
-        name = Path(self._options.system).stem
-        own = Path("results") / f"{name}-{result.info.scene}"
-        self._shown = self._options.output or own
         self._bar.close()
+        shown = self._output.shown
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
-            say(f"{_ended(result.outcome)}, and are being written to {self._shown}")
-        self._files = write_report(
-            result,
-            self._start / self._shown,
-            parquet=self._options.parquet,
-            shown=self._shown,
-        ).files
+            say(f"{_ended(result.outcome)}, and are being written to {shown}")
+        self._output.write(result)
         if result.outcome.unstable:
-            self._bar.tell(f"results are in {self._shown}; looking for what grows, and remedies")
-
-    def complete(self, result: "Result") -> "Result":
-        """Add to the summary what was found out since; returns the result with its files."""
-        from herringbone.running.report import write_summary  # noqa: PLC0415 (pandas)
-
-        result = replace(result, files=self._files)
-        if result.error or result.verification or result.info.why:
-            write_summary(result, self._start / self._shown)
-        return result
+            self._bar.tell(f"results are in {shown}; looking for what grows, and remedies")
 
 
 def _multiples(text: str | None) -> dict[str, int]:

@@ -12,7 +12,7 @@ from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs, record_names
+from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
 from herringbone.cosim.loops.adaptive import STEP_LIMIT
 from herringbone.cosim.loops.common import (
     BOUND,
@@ -25,8 +25,9 @@ from herringbone.cosim.loops.common import (
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
+from herringbone.cosim.run_rows import RunRows
+from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.units import in_own_units, own_unit
 from herringbone.cosim.wrapped_angles import wrapped_angles
 
 CHUNK_SECONDS = 0.05
@@ -52,6 +53,7 @@ class Run:
         watch: of the energy.
         notes: on how signals travel.
         others: signals of other types than real.
+        streaming: where rows go while it goes on; None: they stay in memory.
     """
 
     def __init__(
@@ -62,19 +64,14 @@ class Run:
         watch: EnergyWatch,
         notes: Sequence[str],
         others: OtherSignals,
+        streaming: Streaming | None = None,
     ) -> None:
         self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
         self.others = others
         self._refusal = ""
         self.grid = grid = prepared.grid(grid)
-        names = record_names(network)
-        self.names = tuple(
-            f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
-        )
-        self._recorded = [
-            part.variables[n] for part, ns in zip(network.parts, names, strict=True) for n in ns
-        ]
-        self.record = prepared.record(grid, len(self.names))
+        self.rows = RunRows(network, prepared, grid, others, streaming)
+        self.record = self.rows.record
         self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
         self.start_offsets: Mapping[tuple[int, str], float] = {}
@@ -107,10 +104,12 @@ class Run:
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
                 before, started = done, time.perf_counter()
-                count = self._until_others(done, min(chunk, self.grid.count - done))
+                most = min(chunk, self.grid.count - done, self.record.room(done))
+                count = self._until_others(done, most)
                 status, done, culprit = self._advance(done, count)
                 if status == DONE and done > before:
                     status = self._exchange_others(done)
+                self.rows.flush_in_time(done)
                 rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
@@ -154,8 +153,9 @@ class Run:
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
         grid = self.grid
         chunk = Chunk(
-            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor
-        )
+            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor,
+            self.record.first,
+        )  # fmt: skip
         return self.prepared.run(self.history, chunk)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
@@ -234,24 +234,17 @@ class Run:
         return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
-        times = self.record.times(done)
-        values = self.record.values[: times.size]
-        if outcome.kind is OutcomeKind.ENDED and len(self.network.parts) == 1:
-            times, values = self._with_end(times, values, outcome.time)
-        elif not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
-            rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
-            times, values = times[:rows], values[:rows]
-        if self.others.recorded:
-            times, values = times[: self.others.rows], values[: self.others.rows]
-        notes = wrapped_angles(self.names, self._recorded, times, values)
+        kept, record_step = self.rows.finish(done, outcome)
+        rows = self.rows
+        notes = wrapped_angles(rows.names, rows.recorded, kept.time, kept.values)
         return Recording(
-            times,
-            in_own_units(self._recorded, values),
-            self.names,
-            tuple(own_unit(v) for v in self._recorded),
+            kept.time,
+            kept.values,
+            rows.names,
+            rows.units,
             outcome,
             self._step(done),
-            self.record.step(times),
+            record_step,
             self.prepared.macro_steps(done),
             dict(
                 zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
@@ -262,20 +255,9 @@ class Run:
             self.prepared.steps,
             self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
-            self.others.columns(times.size),
+            kept.others,
             self.others.units,
         )
-
-    def _with_end(
-        self, times: np.ndarray, values: np.ndarray, end: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The rows, and the state in which the only part ended between communication points."""
-        part = self.network.parts[0]
-        if end <= times[-1]:
-            return times, values
-        self.others.sample(times.size + 1)
-        last = np.array(part.get([v.name for v in self._recorded]), dtype=float)
-        return np.append(times, end), np.vstack([values, last])
 
     def _step(self, done: int) -> float:
         """Macro step, or its mean [s]."""

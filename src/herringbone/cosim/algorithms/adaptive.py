@@ -100,10 +100,10 @@ class PreparedAdaptive(PreparedNodes):
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
         return Grid(self._tick, self._last, every)
 
-    def record(self, grid: Grid, columns: int) -> GrowingRecord:
+    def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
         """Rows as the steps come."""
         del grid
-        self._record = GrowingRecord(columns)
+        self._record = GrowingRecord(columns, window)
         return self._record
 
     def macro_steps(self, done: int) -> int:
@@ -188,6 +188,7 @@ class PreparedAdaptive(PreparedNodes):
         while True:
             self._record.make_room()
             self._adaptive = self._adaptive._replace(times=self._record.row_times)
+            self._adaptive.state[ROWS] = self._record.rows
             status, done, culprit = run_adaptive(
                 self.layout,
                 self.nodes,

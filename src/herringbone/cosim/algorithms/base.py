@@ -168,9 +168,9 @@ class PreparedRun(ABC):
         """The grid in the units in which `run` counts."""
         return grid
 
-    def record(self, grid: Grid, columns: int) -> Record:
-        """Where the rows of a run go."""
-        return UniformRecord(grid, columns)
+    def record(self, grid: Grid, columns: int, window: int | None = None) -> Record:
+        """Where the rows of a run go; with a window they are dropped in between."""
+        return UniformRecord(grid, columns, window)
 
     def macro_steps(self, done: int) -> int:
         """Macro steps in so many units of the grid."""

@@ -1,0 +1,45 @@
+"""What a results folder holds; see `docs/results_folder.md`."""
+
+from enum import StrEnum
+from pathlib import Path
+
+FORMAT = 1
+"""Version of the folder's format; readers take this one and older ones."""
+RUN, ROWS, OTHERS, CHECKPOINT = "run.json", "results.npy", "others.jsonl", "checkpoint"
+TABLE, UNITS, PARQUET = "results.csv", "units.csv", "results.parquet"
+SUMMARY, TEXT = "summary.json", "summary.txt"
+OLD = ".before"
+"""Ends the name of the last checkpoint but one."""
+PART = ".part"
+"""Ends the name of a file that is not written to its end."""
+_OWN = (RUN, ROWS, OTHERS, CHECKPOINT, CHECKPOINT + OLD, TABLE, UNITS, PARQUET, SUMMARY, TEXT)
+_PICTURES = (
+    "overview", "bearing_forces", "seat_velocities", "spectra", "torques", "radiated_power",
+)  # fmt: skip
+
+
+class State(StrEnum):
+    """How far a folder is."""
+
+    RUNNING = "running"
+    ROWS = "rows complete"
+    COMPLETE = "complete"
+
+
+def remove_results(folder: Path) -> None:
+    """Remove what a run has written into a folder, and nothing else; raises OSError.
+
+    `run.json` goes first: without it, rows belong to no run.
+    """
+    for name in _OWN:
+        (folder / name).unlink(missing_ok=True)
+    for picture in _PICTURES:
+        for file in (folder / f"{picture}.png", *folder.glob(f"{picture}.*.png")):
+            file.unlink(missing_ok=True)
+    remove_parts(folder)
+
+
+def remove_parts(folder: Path) -> None:
+    """Remove files that were not written to their end; raises OSError."""
+    for file in folder.glob(f".*{PART}"):
+        file.unlink(missing_ok=True)
