@@ -1,11 +1,12 @@
 """The command `run`: a system, from its options to the report."""
 
 import argparse
-from contextlib import closing
+from contextlib import chdir, closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
+    ANY_KIND,
     add_kind,
     add_replacements,
     add_scene,
@@ -17,18 +18,22 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
+from herringbone.core.files import is_folder
 from herringbone.running.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
+    from herringbone.running.output.resumed import Resumed
     from herringbone.running.output.run_output import RunOutput
 
 _SLOW = "INSTANCE=N,..."
+_NOT_KEPT = frozenset({"command", "debug", "json", "output", "overwrite", "resume"})
+"""What is not kept for `--resume`."""
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
-    add_scene(sub)
+    add_scene(sub, optional=True)
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
@@ -65,6 +70,9 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--overwrite", action="store_true", help="overwrite results of other settings in the folder"
     )
+    sub.add_argument(
+        "--resume", type=Path, metavar="FOLDER", help="go on with a run that was cut off"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -74,9 +82,21 @@ def run(options: argparse.Namespace) -> OutcomeKind:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
+    from herringbone.running.summary import summary_text  # noqa: PLC0415
+
+    if options.resume is None and options.system is None:
+        raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")
+    result = _ran(options) if options.resume is None else _resumed(options)
+    show(result.to_json() if options.json else summary_text(result))
+    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+        say(_ended(result.outcome))
+    return result.outcome.kind
+
+
+def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":
+    """The result of a run, with its files."""
     from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
-    from herringbone.running.summary import summary_text  # noqa: PLC0415
 
     check_writable(options.output or Path("results"))
     optional = {
@@ -89,10 +109,11 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         options.output,
         overwrite=options.overwrite,
         parquet=options.parquet,
+        asked={k: v for k, v in vars(options).items() if k not in _NOT_KEPT},
         system=Path(options.system).stem,
+        resumed=resumed,
     )
     with closing(Bar(always=False)) as bar, closing(output):
-        report = _Report(output, bar)
         try:
             result = api.run(
                 options.system,
@@ -107,16 +128,46 @@ def run(options: argparse.Namespace) -> OutcomeKind:
                 reference=options.reference,
                 verify=options.verify,
                 progress=bar.show,
-                recorded=report.write,
+                recorded=_Report(output, bar).write,
                 output=output,
             )
         except HerringboneError as error:
-            raise output.cut_off(error) from error
+            output.explain(error)
+            raise
         result = output.complete(result)
-    show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
-        say(_ended(result.outcome))
-    return result.outcome.kind
+    for note in output.notes:
+        say(f"herringbone: {note}")
+    return result
+
+
+def _resumed(options: argparse.Namespace) -> "Result":
+    """The result of a run that goes on where it was cut off.
+
+    Raises:
+        HerringboneError: it cannot be resumed.
+    """
+    from herringbone.result.folder.checked_store import ReplayError  # noqa: PLC0415
+    from herringbone.running.output.resumed import Resumed, to_resume  # noqa: PLC0415
+
+    given = [k for k, v in vars(options).items() if k not in _NOT_KEPT and v and v != ANY_KIND]
+    if given or options.output or options.overwrite:
+        raise ParameterError("--resume takes all options but --json from the folder; drop the rest")
+    folder = options.resume.absolute()
+    found = to_resume(folder)
+    if not isinstance(found, Resumed):
+        return found
+    kept = {**found.run.asked, "output": folder, "resume": None}
+    wanted = argparse.Namespace(**{**vars(options), **kept})
+    if not is_folder(Path(found.run.folder)):
+        raise ParameterError(f"the run was started in {found.run.folder}, which is not there")
+    with chdir(found.run.folder):
+        try:
+            return _ran(wanted, found)
+        except ReplayError:
+            if found.state is None:
+                raise
+            say("herringbone: the last checkpoint does not repeat the rows; from the start again")
+            return _ran(wanted, found.replayed())
 
 
 def _ended(outcome: Outcome) -> str:

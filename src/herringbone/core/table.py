@@ -59,6 +59,9 @@ class RowSink(Protocol):
     def cut(self, rows: int) -> None:
         """Keep the first rows of the run only."""
 
+    def checkpoint(self, state: Mapping[str, np.ndarray]) -> None:
+        """Keep the state of the run after the rows so far; raises HerringboneError."""
+
     def read(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """All rows again: times and values, piece by piece."""
 

@@ -57,6 +57,12 @@ class Record(Protocol):
     def drop(self, done: int) -> None:
         """Forget the complete rows: they have been taken elsewhere."""
 
+    def saved(self) -> np.ndarray:
+        """What a checkpoint holds of a record whose complete rows have been dropped."""
+
+    def put(self, saved: np.ndarray) -> None:
+        """Go on from a checkpoint."""
+
     def step(self, last: float, rows: int) -> float:
         """Time between so many rows, or its mean [s]; the last one is at `last` [s]."""
 
@@ -117,6 +123,14 @@ class UniformRecord:
         """Begin with the next row."""
         self.first = self.complete(done)
 
+    def saved(self) -> np.ndarray:
+        """The first row."""
+        return np.array(self.first)
+
+    def put(self, saved: np.ndarray) -> None:
+        """Begin with that row."""
+        self.first = int(saved)
+
     def step(self, last: float, rows: int) -> float:
         """Time between rows [s]."""
         del last, rows
@@ -166,6 +180,15 @@ class GrowingRecord:
         last = self.rows - 1
         self.values[0], self.row_times[0] = self.values[last], self.row_times[last]
         self.first, self.rows = self.first + last, 1
+
+    def saved(self) -> np.ndarray:
+        """The first row's number and time, and its values."""
+        return np.concatenate([[self.first, self.row_times[0]], self.values[0]])
+
+    def put(self, saved: np.ndarray) -> None:
+        """Begin with that row."""
+        self.first, self.rows = int(saved[0]), 1
+        self.row_times[0], self.values[0] = saved[1], saved[2:]
 
     def step(self, last: float, rows: int) -> float:
         """Mean time between rows [s]; 0 with one row."""

@@ -10,6 +10,7 @@ from herringbone.core import FmuError, HerringboneError, Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.checkpoint.checkpoints import Checkpoints
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
@@ -72,6 +73,7 @@ class Run:
         self.grid = grid = prepared.grid(grid)
         self.rows = RunRows(network, prepared, grid, others, streaming)
         self.record = self.rows.record
+        self.checkpoint = streaming.checkpoint if streaming else None
         self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
         self.start_offsets: Mapping[tuple[int, str], float] = {}
@@ -98,23 +100,30 @@ class Run:
         self._first_row()
         self._correct_start()
         self.history[1:] = self.history[0]
-        done, status, culprit, chunk = 0, DONE, -1, 1
+        done, status, culprit, chunk, before = 0, DONE, -1, 1, 0.0
         self._advance(0, 0)  # compiles the loop, or loads it from the cache
-        begin = time.perf_counter()
+        checkpoints = Checkpoints(self)
+        if self.checkpoint is not None:
+            done, before = checkpoints.take_up(self.checkpoint)
+        begin = time.perf_counter() - before
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
-                before, started = done, time.perf_counter()
+                earlier, started = done, time.perf_counter()
                 most = min(chunk, self.grid.count - done, self.record.room(done))
                 count = self._until_others(done, most)
                 status, done, culprit = self._advance(done, count)
-                if status == DONE and done > before:
+                if status == DONE and done > earlier:
                     status = self._exchange_others(done)
                 self.rows.flush_in_time(done)
-                rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
+                if status == DONE:
+                    checkpoints.take_in_time(done, time.perf_counter() - begin)
+                rate = max(done - earlier, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
                     progress(done * self.grid.step, self.grid.count * self.grid.step)
         wall = time.perf_counter() - begin
+        if status == DONE and done < self.grid.count:
+            checkpoints.take(done, wall)
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
 

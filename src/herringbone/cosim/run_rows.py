@@ -50,6 +50,11 @@ class RunRows:
         )
 
     @property
+    def leave(self) -> bool:
+        """True if rows leave the memory while the run goes on."""
+        return not self._keeps_all
+
+    @property
     def units(self) -> tuple[str, ...]:
         """Unit of each column, "" if not declared."""
         return tuple(own_unit(v) for v in self.recorded)

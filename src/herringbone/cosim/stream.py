@@ -1,7 +1,7 @@
 """The rows of a run on their way out while it goes on."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,11 +24,13 @@ class Streaming(NamedTuple):
         sink: takes them.
         every: so many records make a row of the sink.
         keeps_all: the record keeps all rows as well.
+        checkpoint: from which the run goes on; None: from its start.
     """
 
     sink: RowSink
     every: int = 1
     keeps_all: bool = False
+    checkpoint: Mapping[str, np.ndarray] | None = None
 
     def window(self, columns: int) -> int | None:
         """Rows that the record has room for; None for all."""

@@ -12,7 +12,7 @@ OLD = ".before"
 """Ends the name of the last checkpoint but one."""
 PART = ".part"
 """Ends the name of a file that is not written to its end."""
-_OWN = (RUN, ROWS, OTHERS, CHECKPOINT, CHECKPOINT + OLD, TABLE, UNITS, PARQUET, SUMMARY, TEXT)
+_REPORT = (TABLE, UNITS, PARQUET, SUMMARY, TEXT)
 _PICTURES = (
     "overview", "bearing_forces", "seat_velocities", "spectra", "torques", "radiated_power",
 )  # fmt: skip
@@ -31,15 +31,17 @@ def remove_results(folder: Path) -> None:
 
     `run.json` goes first: without it, rows belong to no run.
     """
-    for name in _OWN:
+    for name in (RUN, ROWS, OTHERS, CHECKPOINT, CHECKPOINT + OLD):
+        (folder / name).unlink(missing_ok=True)
+    remove_reports(folder)
+
+
+def remove_reports(folder: Path) -> None:
+    """Remove what was made from rows, and what was not written to its end; raises OSError."""
+    for name in _REPORT:
         (folder / name).unlink(missing_ok=True)
     for picture in _PICTURES:
         for file in (folder / f"{picture}.png", *folder.glob(f"{picture}.*.png")):
             file.unlink(missing_ok=True)
-    remove_parts(folder)
-
-
-def remove_parts(folder: Path) -> None:
-    """Remove files that were not written to their end; raises OSError."""
     for file in folder.glob(f".*{PART}"):
         file.unlink(missing_ok=True)

@@ -1,18 +1,20 @@
 """A results folder that is being written."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from herringbone.core import OutcomeKind
 from herringbone.core.table import KeptRows, TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State
 from herringbone.result.folder.others import OtherFile
 from herringbone.result.folder.result_file import stored_result
 from herringbone.result.folder.rows import RowFile
 from herringbone.result.folder.run_file import RunFile, write_run_file
+from herringbone.result.folder.state_file import remove_states, write_state
 from herringbone.result.folder.stored_table import StoredTable
 from herringbone.result.result import TIME, Result
 
@@ -37,16 +39,17 @@ class Store:
 
     def begin(self, columns: TableColumns) -> None:
         """See `RowSink`; raises HerringboneError."""
-        names = (TIME, *columns.names)
-        units = dict(zip(names, ("s", *columns.units), strict=True)) | dict(columns.other_units)
-        self.run = replace(self.run, columns=names, units=units, others=dict(columns.others))
-        self._open()
-        write_run_file(self.folder, self.run)
-
-    def _open(self) -> None:
+        self.run = self._described(columns)
         self._rows = RowFile(self.folder / ROWS, len(self.run.columns))
         if self.run.others:
             self._others = OtherFile(self.folder / OTHERS)
+        write_run_file(self.folder, self.run)
+
+    def _described(self, columns: TableColumns) -> RunFile:
+        """What is known of the run, with its columns."""
+        names = (TIME, *columns.names)
+        units = dict(zip(names, ("s", *columns.units), strict=True)) | dict(columns.other_units)
+        return replace(self.run, columns=names, units=units, others=dict(columns.others))
 
     @property
     def rows(self) -> int:
@@ -77,6 +80,11 @@ class Store:
         """The rows that are there."""
         return StoredTable(self.folder, self.run.columns, self.run.others, self.rows)
 
+    def checkpoint(self, state: Mapping[str, np.ndarray]) -> None:
+        """See `RowSink`; the rows so far are on the disk before. Raises HerringboneError."""
+        self._file.sync()
+        write_state(self.folder, state)
+
     def read(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """See `RowSink`; raises HerringboneError."""
         for piece in self.table.reals():
@@ -95,6 +103,8 @@ class Store:
         self._file.sync()
         self.run = replace(self.run, state=state, result=stored_result(result))
         write_run_file(self.folder, self.run)
+        if result.outcome.kind is not OutcomeKind.INTERRUPTED:
+            remove_states(self.folder)
 
     def close(self) -> None:
         """Close the files."""

@@ -8,12 +8,14 @@ from typing import Any
 from herringbone.core import HerringboneError
 from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.system import System
+from herringbone.result.folder.checked_store import ReplayError
 from herringbone.result.folder.names import State, remove_results
 from herringbone.result.folder.run_file import RunFile
 from herringbone.result.folder.store import Store
 from herringbone.result.folder.writing import refused
 from herringbone.result.result import Result
 from herringbone.running.output.claim import Claim, FolderLock, claimed
+from herringbone.running.output.resumed import Resumed
 from herringbone.running.output.settings import key_of, settings_of
 from herringbone.running.report import finish_report, store_result, write_summary
 from herringbone.scenes import Scene
@@ -29,6 +31,7 @@ class RunOutput:
         parquet: write results.parquet as well.
         asked: options of the command, for `--resume`.
         system: what the default folder calls the system.
+        resumed: the run in the folder goes on.
 
     Attributes:
         shown: the folder, as it was given.
@@ -40,6 +43,7 @@ class RunOutput:
     parquet: bool = False
     asked: Mapping[str, Any] = field(default_factory=dict)
     system: str = ""
+    resumed: Resumed | None = None
 
     def __post_init__(self) -> None:
         self._start = Path.cwd()  # FMUs may change it
@@ -63,6 +67,10 @@ class RunOutput:
         """
         settings = settings_of(system, scene, options)
         key = key_of(settings)
+        if self.resumed is not None:
+            self.resumed.check(settings)
+            self._lock, self._run = FolderLock(self.path), self.resumed.run
+            return
         wanted = self.folder or Path("results") / f"{self.system or system.name}-{scene.name}"
         named = self.folder is not None
         found = claimed(Claim(self._start / wanted, named, key, settings, self.overwrite))
@@ -89,6 +97,10 @@ class RunOutput:
         Raises:
             HerringboneError: the folder cannot be written.
         """
+        if self.resumed is not None:
+            state = None if keeps_all else self.resumed.state
+            self._store = self.resumed.store(start, state)
+            return Streaming(self._store, every, keeps_all, state)
         self._empty()
         self._store = Store(self.path, self._run, start)
         return Streaming(self._store, every, keeps_all)
@@ -149,12 +161,17 @@ class RunOutput:
         if self._lock is not None:
             self._lock.release()
 
-    def cut_off(self, error: HerringboneError) -> HerringboneError:
-        """What is said of a run that could not go on writing."""
-        if self._store is None or not self._store.rows:
-            return error
-        last = float(self._store.table.last(1).iloc[0, 0])
-        return HerringboneError(
-            f"{error}; {self._store.rows} records up to {last:.6g} s are in {self.shown}, and "
-            "--resume goes on from there"
-        )
+    def explain(self, error: HerringboneError) -> None:
+        """Say of a run that could not go on writing what is there.
+
+        Raises:
+            HerringboneError: that says so, in place of the error, if there is something.
+        """
+        store = self._store
+        if store is None or not store.rows or isinstance(error, ReplayError):
+            return
+        last = float(store.table.last(1).iloc[0, 0])
+        raise HerringboneError(
+            f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}, and --resume "
+            "goes on from there"
+        ) from error
