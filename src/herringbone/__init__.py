@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from herringbone.core.roles import Role
     from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
     from herringbone.cosim.structure.system import System
+    from herringbone.result.folder.load import load
     from herringbone.result.result import Result
     from herringbone.running.api import run
     from herringbone.scenes import Scene
@@ -36,12 +37,14 @@ __all__ = [
     "Role",
     "Scene",
     "System",
+    "load",
     "radiated_power",
     "run",
 ]
 
 _WHERE = {
     "run": "herringbone.running.api",
+    "load": "herringbone.result.folder.load",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

@@ -47,7 +47,7 @@ def rows(folder, outcome="completed"):
     """Rows of the results; the summary is there, too."""
     summary = json.loads((folder / "out" / "summary.json").read_text())
     assert summary["outcome"] == outcome
-    return len(pd.read_csv(folder / "out" / "results.csv", comment="#"))
+    return len(pd.read_csv(folder / "out" / "results.csv"))
 
 
 @pytest.mark.parametrize("place", [Place.TERMINATE, Place.FREE])

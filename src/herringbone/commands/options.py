@@ -12,6 +12,9 @@ _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
 
+ANY_KIND = "auto"
+"""Of FMUs, if none is asked for."""
+
 
 def add_command(
     commands: Any,  # noqa: ANN401 (argparse's type is private)
@@ -25,9 +28,12 @@ def add_command(
     return sub
 
 
-def add_scene(sub: argparse.ArgumentParser) -> None:
-    """Declare what is run."""
-    sub.add_argument("system", help="name of a shipped system, folder, or .ssp file")
+def add_scene(sub: argparse.ArgumentParser, *, optional: bool = False) -> None:
+    """Declare what is run; optional where a folder may tell it."""
+    sub.add_argument(
+        "system", nargs="?" if optional else None,
+        help="name of a shipped system, folder, or .ssp file",
+    )  # fmt: skip
     sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
 
 
@@ -35,7 +41,7 @@ def add_kind(sub: argparse.ArgumentParser) -> None:
     """Declare the kind of the parts' FMUs."""
     sub.add_argument(
         "--fmu",
-        default="auto",
+        default=ANY_KIND,
         help="native, python, in-process, or auto (default): native if there is a C compiler",
     )
 

@@ -1,12 +1,12 @@
 """The command `run`: a system, from its options to the report."""
 
 import argparse
-from contextlib import closing
-from dataclasses import replace
+from contextlib import chdir, closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
+    ANY_KIND,
     add_cells,
     add_kind,
     add_replacements,
@@ -18,18 +18,23 @@ from herringbone.commands.options import (
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
-from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
+from herringbone.core.files import is_folder
 from herringbone.running.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
+    from herringbone.running.output.resumed import Resumed
+    from herringbone.running.output.run_output import RunOutput
 
 _SLOW = "INSTANCE=N,..."
+_NOT_KEPT = frozenset({"command", "debug", "json", "output", "overwrite", "resume"})
+"""What is not kept for `--resume`."""
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
-    add_scene(sub)
+    add_scene(sub, optional=True)
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )
@@ -60,7 +65,16 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--verify", action="store_true", help="errors against a run with half the step"
     )
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
-    sub.add_argument("-o", "--output", type=Path, help="folder; results/SYSTEM-SCENE if not given")
+    sub.add_argument(
+        "-o", "--output", type=Path,
+        help="folder; results/SYSTEM-SCENE if not given, with a number if that holds another run",
+    )  # fmt: skip
+    sub.add_argument(
+        "--overwrite", action="store_true", help="overwrite results of other settings in the folder"
+    )
+    sub.add_argument(
+        "--resume", type=Path, metavar="FOLDER", help="go on with a run that was cut off"
+    )
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -70,8 +84,21 @@ def run(options: argparse.Namespace) -> OutcomeKind:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.running.summary import summary_text  # noqa: PLC0415
+
+    if options.resume is None and options.system is None:
+        raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")
+    result = _ran(options) if options.resume is None else _resumed(options)
+    show(result.to_json() if options.json else summary_text(result))
+    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+        say(_ended(result.outcome))
+    return result.outcome.kind
+
+
+def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":
+    """The result of a run, with its files."""
+    from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
 
     check_writable(options.output or Path("results"))
     optional = {
@@ -80,30 +107,71 @@ def run(options: argparse.Namespace) -> OutcomeKind:
         if (value := getattr(options, name)) is not None
     }
     files = files_of_parts(options)
-    with closing(Bar(always=False)) as bar:
-        report = _Report(options, bar)
-        result = api.run(
-            options.system,
-            **optional,
-            fmu=options.fmu,
-            replace_parts=replacements(options),
-            values=start_values(options.set),
-            gear=files.gear,
-            housing=files.housing,
-            slow=_multiples(options.slow),
-            probe=not options.no_probe,
-            in_process=options.in_process,
-            call_deadline=options.call_deadline,
-            reference=options.reference,
-            verify=options.verify,
-            progress=bar.show,
-            recorded=report.write,
-        )
-    result = report.complete(result)
-    show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
-        say(_ended(result.outcome))
-    return result.outcome.kind
+    output = RunOutput(
+        options.output,
+        overwrite=options.overwrite,
+        parquet=options.parquet,
+        asked={k: v for k, v in vars(options).items() if k not in _NOT_KEPT},
+        system=Path(options.system).stem,
+        resumed=resumed,
+    )
+    with closing(Bar(always=False)) as bar, closing(output):
+        try:
+            result = api.run(
+                options.system,
+                **optional,
+                fmu=options.fmu,
+                replace_parts=replacements(options),
+                values=start_values(options.set),
+                gear=files.gear,
+                housing=files.housing,
+                slow=_multiples(options.slow),
+                probe=not options.no_probe,
+                in_process=options.in_process,
+                call_deadline=options.call_deadline,
+                reference=options.reference,
+                verify=options.verify,
+                progress=bar.show,
+                recorded=_Report(output, bar).write,
+                output=output,
+            )
+        except HerringboneError as error:
+            output.explain(error)
+            raise
+        result = output.complete(result)
+    for note in output.notes:
+        say(f"herringbone: {note}")
+    return result
+
+
+def _resumed(options: argparse.Namespace) -> "Result":
+    """The result of a run that goes on where it was cut off.
+
+    Raises:
+        HerringboneError: it cannot be resumed.
+    """
+    from herringbone.result.folder.checked_store import ReplayError  # noqa: PLC0415
+    from herringbone.running.output.resumed import Resumed, to_resume  # noqa: PLC0415
+
+    given = [k for k, v in vars(options).items() if k not in _NOT_KEPT and v and v != ANY_KIND]
+    if given or options.output or options.overwrite:
+        raise ParameterError("--resume takes all options but --json from the folder; drop the rest")
+    folder = options.resume.absolute()
+    found = to_resume(folder)
+    if not isinstance(found, Resumed):
+        return found
+    kept = {**found.run.asked, "output": folder, "resume": None}
+    wanted = argparse.Namespace(**{**vars(options), **kept})
+    if not is_folder(Path(found.run.folder)):
+        raise ParameterError(f"the run was started in {found.run.folder}, which is not there")
+    with chdir(found.run.folder):
+        try:
+            return _ran(wanted, found)
+        except ReplayError:
+            if found.state is None:
+                raise
+            say("herringbone: the last checkpoint does not repeat the rows; from the start again")
+            return _ran(wanted, found.replayed())
 
 
 def _ended(outcome: Outcome) -> str:
@@ -113,42 +181,18 @@ def _ended(outcome: Outcome) -> str:
 class _Report:
     """The files of a run: written when it ends, before anything more is found out about it."""
 
-    def __init__(self, options: argparse.Namespace, bar: Bar) -> None:
-        self._options, self._bar = options, bar
-        self._start = Path.cwd()  # FMUs may change it
-        self._shown = Path()
-        self._files: tuple[str, ...] = ()
-        self._said: tuple[Outcome, tuple[str, ...]] | None = None
+    def __init__(self, output: "RunOutput", bar: Bar) -> None:
+        self._output, self._bar = output, bar
 
     def write(self, result: "Result") -> None:
         """Write all files."""
-        from herringbone.running.report import write_report  # noqa: PLC0415 (pandas)
-
-        name = Path(self._options.system).stem
-        own = Path("results") / f"{name}-{result.info.scene}"
-        self._shown = self._options.output or own
         self._bar.close()
-        self._said = result.outcome, result.info.notes
+        shown = self._output.shown
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
-            say(f"{_ended(result.outcome)}, and are being written to {self._shown}")
-        self._files = write_report(
-            result,
-            self._start / self._shown,
-            parquet=self._options.parquet,
-            shown=self._shown,
-        ).files
+            say(f"{_ended(result.outcome)}, and are being written to {shown}")
+        self._output.write(result)
         if result.outcome.unstable:
-            self._bar.tell(f"results are in {self._shown}; looking for what grows, and remedies")
-
-    def complete(self, result: "Result") -> "Result":
-        """Add to the summary what was found out since; returns the result with its files."""
-        from herringbone.running.report import write_summary  # noqa: PLC0415 (pandas)
-
-        result = replace(result, files=self._files)
-        said = result.outcome, result.info.notes
-        if result.error or result.verification or result.info.why or said != self._said:
-            write_summary(result, self._start / self._shown)
-        return result
+            self._bar.tell(f"results are in {shown}; looking for what grows, and remedies")
 
 
 def _multiples(text: str | None) -> dict[str, int]:

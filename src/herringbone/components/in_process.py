@@ -122,6 +122,17 @@ class InProcessPart:
         self._states[-1][0] = count
         return self._states[-1].ctypes.data
 
+    def state_bytes(self) -> bytes:
+        """The state in step mode, for a checkpoint: what steps change."""
+        return self.instance.block[: self.declaration.mutable_size].tobytes()
+
+    def set_state_bytes(self, state: bytes) -> None:
+        """Take back a state of an instance with the same parameters; raises ParameterError."""
+        values = np.frombuffer(state)
+        if values.size != self.declaration.mutable_size:
+            raise ParameterError(f"{self.name}: the checkpoint is of another version of it")
+        self.instance.block[: values.size] = values
+
     def set(self, name: str, value: Given) -> None:
         """Set a variable; raises ParameterError."""
         if not isinstance(value, float | int | str):

@@ -1,5 +1,7 @@
 """Values that are not finite, or beyond all bounds: where, and whether the coupling made them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from herringbone.core import HerringboneError
@@ -37,14 +39,14 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
     return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
 
-def is_sudden(values: np.ndarray) -> bool:
-    """True if records end without having grown: then a part, and not the coupling, made it so.
+def is_sudden(sizes: Sequence[tuple[int, np.ndarray]]) -> bool:
+    """True if records end without having grown: then a part, and not the coupling, ends them so.
 
     Args:
-        values: (times, outputs) recorded; rows that are not finite are left out.
+        sizes: numbers of rows, ascending, and the magnitudes of all outputs in or up to these.
     """
-    sizes = np.abs(values[np.isfinite(values).all(axis=1)])
-    if len(sizes) < _FEWEST:
+    if not sizes or sizes[-1][0] + 1 < _FEWEST:
         return False
-    before = sizes[: len(sizes) // 2].max(axis=0)
-    return bool((sizes[-1] <= _AS_BEFORE * before).all())
+    number, last = sizes[-1]
+    before = [size for k, size in sizes if 2 * k <= number] or [sizes[0][1]]
+    return bool((last <= _AS_BEFORE * np.max(before, axis=0)).all())

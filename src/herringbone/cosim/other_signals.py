@@ -28,6 +28,7 @@ class OtherSignals:
         self._parts, self._connections = network.parts, network.others
         self._recorded = [_outputs(part) for part in network.parts]
         self._rows: list[list[Value]] = []
+        self._dropped = 0
         self.asked = ""
         self._given: dict[int, dict[str, Value]] = {}
 
@@ -97,30 +98,42 @@ class OtherSignals:
 
     def sample(self, rows: int) -> None:
         """Read the recorded outputs, if there are fewer than so many rows; raises FmuError."""
-        if not self.recorded or len(self._rows) >= rows:
+        if not self.recorded or self.rows >= rows:
             return
         row = [v for p, names in enumerate(self._recorded) if names for v in self._values(p, names)]
-        self._rows += [row] * (rows - len(self._rows))
+        self._rows += [row] * (rows - self.rows)
 
     @property
     def rows(self) -> int:
-        """Rows that were read."""
-        return len(self._rows)
+        """Rows of the run that were read."""
+        return self._dropped + len(self._rows)
+
+    def drop(self, rows: int) -> None:
+        """Forget so many rows of the run: they have been taken elsewhere."""
+        del self._rows[: rows - self._dropped]
+        self._dropped = max(rows, self._dropped)
+
+    def between(self, first: int, last: int) -> list[list[Value]]:
+        """Rows first ... last - 1 of the run, bytes as hexadecimal digits."""
+        return [
+            [value.hex() if isinstance(value, bytes) else value for value in row]
+            for row in self._rows[first - self._dropped : last - self._dropped]
+        ]
+
+    @property
+    def types(self) -> dict[str, np.dtype]:
+        """Types of the columns of recorded outputs."""
+        pairs = zip(self._parts, self._recorded, strict=True)
+        kinds = [column_type(part.variables[name].type) for part, names in pairs for name in names]
+        return dict(zip(self.names, kinds, strict=True))
 
     def columns(self, rows: int) -> dict[str, np.ndarray]:
         """Recorded outputs (rows,) by name, of their own types; bytes as hexadecimal digits."""
-        kinds = [
-            part.variables[name].type
-            for part, names in zip(self._parts, self._recorded, strict=True)
-            for name in names
-        ]
-        found = {}
-        for k, (name, kind) in enumerate(zip(self.names, kinds, strict=True)):
-            values = [row[k] for row in self._rows[:rows]]
-            if kind == "Binary":
-                values = [value.hex() if isinstance(value, bytes) else "" for value in values]
-            found[name] = np.array(values, dtype=column_type(kind))
-        return found
+        found = self.between(0, rows)
+        return {
+            name: np.array([row[k] for row in found], dtype=kind)
+            for k, (name, kind) in enumerate(self.types.items())
+        }
 
 
 def _outputs(part: Part) -> list[str]:

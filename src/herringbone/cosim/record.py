@@ -1,6 +1,7 @@
 """Rows of recorded outputs, at communication points."""
 
 import os
+import sys
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -8,6 +9,9 @@ import numpy as np
 from herringbone.core import ParameterError
 
 _ROWS = 1024
+_WINDOW = 4 << 20
+"""Bytes of rows that are not yet taken elsewhere."""
+_FEWEST = 16
 _GIB = 2.0**30
 _SHARE = 0.25
 """Of the memory: the rows are copied into a table, and again where errors are taken."""
@@ -28,21 +32,44 @@ class Grid(NamedTuple):
 
 
 class Record(Protocol):
-    """Where the loop writes rows."""
+    """Where the loop writes rows: all of a run, or those that have not been dropped yet.
+
+    Attributes:
+        values: rows by columns.
+        first: row of the run with which `values` begins.
+    """
 
     values: np.ndarray
+    first: int
 
     def times(self, done: int) -> np.ndarray:
-        """Times [s] of the rows that are complete after `done` units of the grid."""
+        """Times [s] of the rows in `values` that are complete after `done` units of the grid."""
 
     def complete(self, done: int) -> int:
-        """Number of these rows."""
+        """Number of rows of the run that are complete then."""
 
     def until_row(self, done: int) -> int:
         """Units of the grid in which no row but at their end is completed."""
 
-    def step(self, times: np.ndarray) -> float:
-        """Time between rows, or its mean [s]."""
+    def room(self, done: int) -> int:
+        """Units of the grid for whose rows there is room."""
+
+    def drop(self, done: int) -> None:
+        """Forget the complete rows: they have been taken elsewhere."""
+
+    def saved(self) -> np.ndarray:
+        """What a checkpoint holds of a record whose complete rows have been dropped."""
+
+    def put(self, saved: np.ndarray) -> None:
+        """Go on from a checkpoint."""
+
+    def step(self, last: float, rows: int) -> float:
+        """Time between so many rows, or its mean [s]; the last one is at `last` [s]."""
+
+
+def window_rows(columns: int) -> int:
+    """Rows of a record that is emptied while the run goes on."""
+    return max(_FEWEST, _WINDOW // (8 * max(columns, 1)))
 
 
 def _check_room(rows: int, columns: int, grid: Grid) -> None:
@@ -63,20 +90,22 @@ class UniformRecord:
     Args:
         grid: of the run.
         columns: recorded outputs.
+        window: rows at a time; None for all rows of the run.
 
     Raises:
         ParameterError: the rows do not fit into the memory of this machine.
     """
 
-    def __init__(self, grid: Grid, columns: int) -> None:
-        self._grid = grid
+    def __init__(self, grid: Grid, columns: int, window: int | None = None) -> None:
+        self._grid, self.first = grid, 0
         rows = grid.count // grid.every + 1
-        _check_room(rows, columns, grid)
-        self.values = np.full((rows, columns), np.nan)
+        if window is None:
+            _check_room(rows, columns, grid)
+        self.values = np.full((rows if window is None else min(rows, window), columns), np.nan)
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows after `done` macro steps."""
-        return np.arange(self.complete(done)) * self.step(np.empty(0))
+        return np.arange(self.first, self.complete(done)) * self.step(0.0, 0)
 
     def complete(self, done: int) -> int:
         """Number of rows after `done` macro steps."""
@@ -86,9 +115,25 @@ class UniformRecord:
         """Macro steps up to the next row."""
         return self._grid.every - done % self._grid.every
 
-    def step(self, times: np.ndarray) -> float:
+    def room(self, done: int) -> int:
+        """Macro steps before the row that has no room."""
+        return (self.first + len(self.values)) * self._grid.every - 1 - done
+
+    def drop(self, done: int) -> None:
+        """Begin with the next row."""
+        self.first = self.complete(done)
+
+    def saved(self) -> np.ndarray:
+        """The first row."""
+        return np.array(self.first)
+
+    def put(self, saved: np.ndarray) -> None:
+        """Begin with that row."""
+        self.first = int(saved)
+
+    def step(self, last: float, rows: int) -> float:
         """Time between rows [s]."""
-        del times
+        del last, rows
         return self._grid.every * self._grid.step
 
 
@@ -97,12 +142,17 @@ class GrowingRecord:
 
     Args:
         columns: recorded outputs.
+        window: rows for which there is room at first; None if none are dropped.
+
+    Attributes:
+        row_times: times of `values` [s].
+        rows: in `values`. When rows are dropped, the last one stays: the loop looks at its time.
     """
 
-    def __init__(self, columns: int) -> None:
-        self.values = np.empty((_ROWS, columns))
-        self.row_times = np.zeros(_ROWS)
-        self.rows = 1
+    def __init__(self, columns: int, window: int | None = None) -> None:
+        room = _ROWS if window is None else window
+        self.values, self.row_times = np.empty((room, columns)), np.zeros(room)
+        self.rows, self.first = 1, 0
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows written."""
@@ -112,16 +162,37 @@ class GrowingRecord:
     def complete(self, done: int) -> int:
         """Number of rows written."""
         del done
-        return self.rows
+        return self.first + self.rows
 
     def until_row(self, done: int) -> int:
         """One: any step may complete a row."""
         del done
         return 1
 
-    def step(self, times: np.ndarray) -> float:
+    def room(self, done: int) -> int:
+        """As much as is wanted: `make_room` makes it."""
+        del done
+        return sys.maxsize
+
+    def drop(self, done: int) -> None:
+        """Begin with the last row."""
+        del done
+        last = self.rows - 1
+        self.values[0], self.row_times[0] = self.values[last], self.row_times[last]
+        self.first, self.rows = self.first + last, 1
+
+    def saved(self) -> np.ndarray:
+        """The first row's number and time, and its values."""
+        return np.concatenate([[self.first, self.row_times[0]], self.values[0]])
+
+    def put(self, saved: np.ndarray) -> None:
+        """Begin with that row."""
+        self.first, self.rows = int(saved[0]), 1
+        self.row_times[0], self.values[0] = saved[1], saved[2:]
+
+    def step(self, last: float, rows: int) -> float:
         """Mean time between rows [s]; 0 with one row."""
-        return float(times[-1]) / (times.size - 1) if times.size > 1 else 0.0
+        return last / (rows - 1) if rows > 1 else 0.0
 
     def make_room(self) -> None:
         """Twice the room, if all is used."""

@@ -10,13 +10,13 @@ from herringbone.core import FmuError, Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.divergence import diverged, is_sudden
+from herringbone.cosim.checkpoint.checkpoints import Checkpoints
+from herringbone.cosim.divergence import diverged
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs, record_names
+from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
 from herringbone.cosim.loops.adaptive import STEP_LIMIT
 from herringbone.cosim.loops.common import (
-    BOUND,
     COUPLING_FAILED,
     DONE,
     NOT_FINITE,
@@ -26,8 +26,9 @@ from herringbone.cosim.loops.common import (
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
+from herringbone.cosim.run_rows import RunRows
+from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.units import in_own_units, own_unit
 from herringbone.cosim.wrapped_angles import wrapped_angles
 
 CHUNK_SECONDS = 0.05
@@ -53,6 +54,7 @@ class Run:
         watch: of the energy.
         notes: on how signals travel.
         others: signals of other types than real.
+        streaming: where rows go while it goes on; None: they stay in memory.
     """
 
     def __init__(
@@ -63,19 +65,15 @@ class Run:
         watch: EnergyWatch,
         notes: Sequence[str],
         others: OtherSignals,
+        streaming: Streaming | None = None,
     ) -> None:
         self.network, self.prepared, self.watch, self.notes = network, prepared, watch, notes
         self.others = others
         self._refusal = ""
         self.grid = grid = prepared.grid(grid)
-        names = record_names(network)
-        self.names = tuple(
-            f"{part.name}.{n}" for part, ns in zip(network.parts, names, strict=True) for n in ns
-        )
-        self._recorded = [
-            part.variables[n] for part, ns in zip(network.parts, names, strict=True) for n in ns
-        ]
-        self.record = prepared.record(grid, len(self.names))
+        self.rows = RunRows(network, prepared, grid, others, streaming)
+        self.record = self.rows.record
+        self.checkpoint = streaming.checkpoint if streaming else None
         self.history = np.zeros((HISTORY, prepared.layout.output_reference.size))
         self.loop_notes: tuple[str, ...] = ()
         self.start_offsets: Mapping[tuple[int, str], float] = {}
@@ -102,21 +100,30 @@ class Run:
         self._first_row()
         self._correct_start()
         self.history[1:] = self.history[0]
-        done, status, culprit, chunk = 0, DONE, -1, 1
+        done, status, culprit, chunk, before = 0, DONE, -1, 1, 0.0
         self._advance(0, 0)  # compiles the loop, or loads it from the cache
-        begin = time.perf_counter()
+        checkpoints = Checkpoints(self)
+        if self.checkpoint is not None:
+            done, before = checkpoints.take_up(self.checkpoint)
+        begin = time.perf_counter() - before
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
-                before, started = done, time.perf_counter()
-                count = self._until_others(done, min(chunk, self.grid.count - done))
+                earlier, started = done, time.perf_counter()
+                most = min(chunk, self.grid.count - done, self.record.room(done))
+                count = self._until_others(done, most)
                 status, done, culprit = self._advance(done, count)
-                if status == DONE and done > before:
+                if status == DONE and done > earlier:
                     status = self._exchange_others(done)
-                rate = max(done - before, 1) / max(time.perf_counter() - started, 1e-9)
+                self.rows.flush_in_time(done)
+                if status == DONE:
+                    checkpoints.take_in_time(done, time.perf_counter() - begin)
+                rate = max(done - earlier, 1) / max(time.perf_counter() - started, 1e-9)
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
                     progress(done * self.grid.step, self.grid.count * self.grid.step)
         wall = time.perf_counter() - begin
+        if status == DONE and done < self.grid.count:
+            checkpoints.take(done, wall)
         outcome = self._outcome(done, status, culprit)
         return self._recording(done, outcome, wall)
 
@@ -155,8 +162,9 @@ class Run:
     def _advance(self, start: int, count: int) -> tuple[int, int, int]:
         grid = self.grid
         chunk = Chunk(
-            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor
-        )
+            0.0, grid.step, start, count, self.record.values, grid.every, self.watch.monitor,
+            self.record.first,
+        )  # fmt: skip
         return self.prepared.run(self.history, chunk)
 
     def _outcome(self, done: int, status: int, culprit: int) -> Outcome:
@@ -185,8 +193,7 @@ class Run:
         if status == NOT_FINITE or where:
             where = where or part.name
             how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
-            rows = self.record.values[: self.record.complete(done)]
-            if not math.isfinite(value) and is_sudden(rows):
+            if not math.isfinite(value) and self.rows.are_sudden(done):
                 message = f"{where} {how} at {reached:g} s, and nothing has grown before"
                 return Outcome(OutcomeKind.PART_FAILED, reached, where, message)
             message = (
@@ -221,24 +228,17 @@ class Run:
         return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
-        times = self.record.times(done)
-        values = self.record.values[: times.size]
-        if outcome.kind is OutcomeKind.ENDED and len(self.network.parts) == 1:
-            times, values = self._with_end(times, values, outcome.time)
-        elif not (outcome.reached_end or outcome.kind is OutcomeKind.INTERRUPTED):
-            rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
-            times, values = times[:rows], values[:rows]
-        if self.others.recorded:
-            times, values = times[: self.others.rows], values[: self.others.rows]
-        notes = wrapped_angles(self.names, self._recorded, times, values)
+        kept, record_step = self.rows.finish(done, outcome)
+        rows = self.rows
+        notes = wrapped_angles(rows.names, rows.recorded, kept.time, kept.values)
         return Recording(
-            times,
-            in_own_units(self._recorded, values),
-            self.names,
-            tuple(own_unit(v) for v in self._recorded),
+            kept.time,
+            kept.values,
+            rows.names,
+            rows.units,
             outcome,
             self._step(done),
-            self.record.step(times),
+            record_step,
             self.prepared.macro_steps(done),
             dict(
                 zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
@@ -249,20 +249,9 @@ class Run:
             self.prepared.steps,
             self.watch.report() if done else None,
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
-            self.others.columns(times.size),
+            kept.others,
             self.others.units,
         )
-
-    def _with_end(
-        self, times: np.ndarray, values: np.ndarray, end: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The rows, and the state in which the only part ended between communication points."""
-        part = self.network.parts[0]
-        if end <= times[-1]:
-            return times, values
-        self.others.sample(times.size + 1)
-        last = np.array(part.get([v.name for v in self._recorded]), dtype=float)
-        return np.append(times, end), np.vstack([values, last])
 
     def _step(self, done: int) -> float:
         """Macro step, or its mean [s]."""

@@ -14,6 +14,7 @@ from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.run import Progress, Run
 from herringbone.cosim.start_values import start_offsets
+from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives
@@ -67,6 +68,7 @@ def simulate(
     *,
     bond_frequency: float | None = None,
     slow: Mapping[str, int] | None = None,
+    streaming: Streaming | None = None,
 ) -> Recording:
     """Run a system of instantiated parts, whose start values have been set.
 
@@ -82,6 +84,7 @@ def simulate(
             five of its periods.
         slow: bodies that step once in several macro steps, and in how many; the step is shortened
             so that the end is a communication point of all.
+        streaming: where rows go while the run goes on; None: they stay in memory.
 
     Raises:
         StructureError: the connections are wrong.
@@ -101,7 +104,7 @@ def simulate(
     others = OtherSignals(network)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others)
     notes = [*settle_derivatives(network, prepared), *others.notes]
-    run = Run(network, prepared, grid, watch, notes, others)
+    run = Run(network, prepared, grid, watch, notes, others, streaming)
     run.start_offsets = start_offsets(network)
     if loop is None:
         run.loop_notes = tuple(

@@ -89,8 +89,8 @@ def _torque_and_speed(axes: Axes, result: Result) -> None:
     if speed is None or result.outcome.unstable:
         return
     right = axes.twinx()
-    time = result.data[TIME].to_numpy()
-    draw_line(right, time, result.data[speed].to_numpy() * _R_MIN, color=COLOURS[2])
+    data = result.over_time
+    draw_line(right, data[TIME].to_numpy(), data[speed].to_numpy() * _R_MIN, color=COLOURS[2])
     right.set_ylabel("pinion speed [r/min]", color=COLOURS[2])
     right.tick_params(axis="y", colors=COLOURS[2])
     right.spines["right"].set_visible(True)

@@ -94,9 +94,9 @@ def time_panel(
     axes.set_xlabel("time [s]" if rows is None else "time [ms]")
     if result.data.empty:
         return
-    shown = slice(None) if rows is None else rows
-    time = result.data[TIME].to_numpy()[shown] * (1.0 if rows is None else 1e3)
-    values = result.data[list(columns.values())].to_numpy() * factor
+    shown, data = (slice(None), result.over_time) if rows is None else (rows, result.data)
+    time = data[TIME].to_numpy()[shown] * (1.0 if rows is None else 1e3)
+    values = data[list(columns.values())].to_numpy() * factor
     entries = [half_name(name) for name in columns]
     if mean and not diverged:
         part = steady_part(result)

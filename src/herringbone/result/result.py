@@ -1,6 +1,5 @@
 """Result of a run: a table of recorded outputs, units, outcome, and how it was computed."""
 
-import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -12,7 +11,7 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
-from herringbone.core import HerringboneError, Outcome, ParameterError
+from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
 from herringbone.core.energy_report import Diagnosis, EnergyReport
 from herringbone.core.facts import Facts
@@ -20,13 +19,13 @@ from herringbone.core.names import matches_any, shown
 from herringbone.core.part_path import PartPath, endings
 from herringbone.core.roles import Role
 from herringbone.result.budget import BudgetRow
+from herringbone.result.tables import pieces_of, write_csv, write_parquet
 from herringbone.result.verification import Verification
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TIME = "time"
-_CSV_ROWS = 4096
 _SPLINE_ROWS = 4
 
 
@@ -92,6 +91,8 @@ class Result(Facts):
         verification: error by half the step, if it was asked for.
         files: files that were written, if any.
         budget: how far the run may be from the gearbox that is meant, by source of error.
+        whole: of a long run, of which `data` has only the last records: smallest and largest
+            values of pieces of all of it, by turns; columns of reals.
     """
 
     data: pd.DataFrame
@@ -103,6 +104,12 @@ class Result(Facts):
     verification: Verification | None = None
     files: tuple[str, ...] = ()
     budget: tuple[BudgetRow, ...] = ()
+    whole: pd.DataFrame | None = None
+
+    @property
+    def over_time(self) -> pd.DataFrame:
+        """What shows the whole run: the table; of a long run `whole`."""
+        return self.data if self.whole is None else self.whole
 
     def columns(self, *patterns: str) -> list[str]:
         """Columns that match any of the patterns (`*`, `?`), in the order of the table.
@@ -191,22 +198,16 @@ class Result(Facts):
 
         return plot_columns(self, *patterns) if patterns else overview(self)
 
-    def to_csv(self, file: str | Path) -> None:
-        """Write the table: a `#` line with units, a header row, rows that read back bit by bit."""
+    def to_csv(self, file: str | Path, *, units: bool = False) -> None:
+        """Write the table: a header row, and rows that read back bit by bit.
+
+        Args:
+            file: to be written.
+            units: begin with a line `# units: ...`.
+        """
         with Path(file).open("w", encoding="utf-8", newline="") as stream:
-            units = ", ".join(f"{name} {self.units[name] or '1'}" for name in self.data.columns)
-            stream.write(f"# units: {units}\n")
-            writer = csv.writer(stream, lineterminator="\n")
-            writer.writerow(self.data.columns)
-            plain = len(self.signals) + 1 == self.data.shape[1]
-            for first in range(0, len(self.data), _CSV_ROWS):
-                part = self.data.iloc[first : first + _CSV_ROWS]
-                if plain:
-                    rows = part.to_numpy(dtype=float).tolist()
-                    stream.write("".join([",".join(map(repr, row)) + "\n" for row in rows]))
-                else:
-                    columns = [part[name].tolist() for name in part.columns]
-                    writer.writerows(zip(*columns, strict=True))
+            told = self.units if units else None
+            write_csv(stream, list(self.data.columns), pieces_of(self.data), told)
 
     def to_parquet(self, file: str | Path) -> None:
         """Write the table as Parquet; needs the extra `tables`.
@@ -214,12 +215,7 @@ class Result(Facts):
         Raises:
             HerringboneError: pyarrow is not installed.
         """
-        try:
-            self.data.to_parquet(file, index=False)
-        except ImportError as error:
-            raise HerringboneError(
-                "Parquet needs pyarrow; install it with: pip install 'herringbone[tables]'"
-            ) from error
+        write_parquet(file, pieces_of(self.data))
 
     def summary(self) -> dict[str, Any]:
         """The JSON summary of the run."""

@@ -18,6 +18,7 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, coupled
+from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.progress import Progress
@@ -55,6 +56,7 @@ def run(
     verify: bool = False,
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
+    output: RunOutput | None = None,
 ) -> Result:
     """Run a system.
 
@@ -96,6 +98,8 @@ def run(
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and
             why a run is unstable, are found after that, and are in the result that is returned.
+        output: folder that is claimed before the run, and into which its rows go while it goes on;
+            of a long run the result then has the last records only, see `docs/results_folder.md`.
 
     Returns:
         The result; a run that ends early or is unstable is an outcome of it, not an exception.
@@ -124,12 +128,14 @@ def run(
             fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=said
         )
         aim = searched_tolerance(structure, asked)
+        if output is not None:
+            output.claim(structure, chosen, replace(asked, notes=(), tolerance=aim or tolerance))
         if aim is not None:
             found = searched(structure, chosen, asked, aim, progress, recorded)
         else:
             if coupling is not None and tolerance is not None:
                 asked = replace(asked, algorithm=with_tolerance(coupling, tolerance))
-            found = coupled(structure, chosen, asked, progress, recorded)
+            found = coupled(structure, chosen, asked, progress, recorded, output)
         result = found.result
         if reference:
             result = compared(result, found.every, structure)

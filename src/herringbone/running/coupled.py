@@ -23,14 +23,22 @@ from herringbone.cosim.exit_guard import exit_guard
 from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
+from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
+from herringbone.running.output.run_output import RunOutput
 from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import decimated, judged, make_result, with_remarks
+from herringbone.running.run_result import (
+    decimated,
+    judged,
+    make_result,
+    start_of,
+    with_remarks,
+)
 from herringbone.running.steps.suited_step import suited_step
 from herringbone.scenes import Scene
 
@@ -92,6 +100,7 @@ def coupled(
     asked: Asked,
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
+    output: RunOutput | None = None,
 ) -> Coupled:
     """Run a prepared system.
 
@@ -100,12 +109,13 @@ def coupled(
         scene: with duration and record step.
         asked: of the coupling.
         progress, recorded: see `api.run`.
+        output: folder into which rows go while the run goes on; None: they stay in memory.
 
     Raises:
         HerringboneError: a part cannot be used, or the algorithm not with these parts.
     """
     with remarks_of_cells() as remarks:
-        found = _coupled(system, scene, asked, progress, recorded)
+        found = _coupled(system, scene, asked, progress, recorded, output)
     result, every = (with_remarks(each, remarks) for each in (found.result, found.every))
     return found._replace(result=result, every=every)
 
@@ -116,6 +126,7 @@ def _coupled(
     asked: Asked,
     progress: bool | Progress,
     recorded: Callable[[Result], None] | None,
+    output: RunOutput | None,
 ) -> Coupled:
     """See `coupled`; without what is found out when the parts are closed."""
     lines, algorithm = list(asked.notes), asked.algorithm
@@ -144,19 +155,33 @@ def _coupled(
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
+        start = start_of(system, scene, algorithm, asked.fmu, grid, lines)
+        streaming = _streaming(output, start, scene, step, asked) if output else None
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
-                system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow
-            )
+                system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
+                streaming=streaming,
+            )  # fmt: skip
         lines += _step_notes(asked.step, algorithm, recording)
         every = judged(make_result(system, scene, algorithm, asked.fmu, recording, lines), bond)
         _log_end(recording)
-        result = decimated(every, scene.record_step) if asked.all_points else every
+        if asked.all_points:
+            result = decimated(every, scene.record_step)
+        else:
+            result = every if output is None else output.seen(every)
         if recorded:
             recorded(result)
         once = any(part.once for part in opened)
         exchanged = exchanged_outputs(system, parts)
     return Coupled(result, every, recording, algorithm, once, exchanged)
+
+
+def _streaming(
+    output: RunOutput, start: Result, scene: Scene, step: float, asked: Asked
+) -> Streaming:
+    """Where rows go: those that the scene asks for."""
+    every = make_grid(scene.t_end, step, scene.record_step).every if asked.all_points else 1
+    return output.stream(start, every, keeps_all=asked.all_points)
 
 
 def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:

@@ -17,6 +17,7 @@ from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.cell.policy import Remark
+from herringbone.cosim.record import Grid
 from herringbone.cosim.recording import Recording
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
@@ -80,6 +81,18 @@ def make_result(
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
     units |= recording.other_units
     return Result(data, units, recording.outcome, info, system.channels)
+
+
+def start_of(
+    system: System, scene: Scene, algorithm: Algorithm, fmu: str, grid: Grid, notes: Sequence[str]
+) -> Result:
+    """All that is known of a result before there are rows: what is left of a run that is killed."""
+    outcome = Outcome(OutcomeKind.INTERRUPTED, 0.0)
+    nothing = Recording(
+        np.empty(0), np.empty((0, 0)), (), (), outcome, grid.step, grid.every * grid.step, 0, {}, 0,
+        0.0, (),
+    )  # fmt: skip
+    return make_result(system, scene, algorithm, fmu, nothing, notes)
 
 
 def judged(result: Result, bond_frequency: float | None) -> Result:

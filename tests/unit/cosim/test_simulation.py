@@ -165,9 +165,10 @@ def test_values_that_are_not_finite(algorithm, value):
 
 def test_values_that_are_not_finite_after_growth():
     """The coupling may be to blame: rows that grow tenfold from the first half on tell so."""
-    growing = np.exp(np.linspace(0.0, 2.0 * np.log(10.1), 20))[:, None] * np.ones(3)
-    assert not is_sudden(growing)
-    assert is_sudden(growing[:11])
+    growing = np.exp(np.linspace(0.0, 2.0 * np.log(10.1), 21))[:, None] * np.ones(3)
+    assert not is_sudden(list(enumerate(growing)))
+    assert is_sudden(list(enumerate(growing[:11])))
+    assert not is_sudden([(9, growing[9]), (20, growing[20])])
 
 
 def test_failure_in_the_first_step_keeps_the_start():

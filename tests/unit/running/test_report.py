@@ -143,20 +143,18 @@ def test_table_reads_back_bit_by_bit(rig, tmp_path):
     file = tmp_path / "table.csv"
     replace(rig, data=data).to_csv(file)
     lines = file.read_text(encoding="utf-8").splitlines()
-    assert [row.startswith("#") for row in lines[:3]] == [True, False, False]
-    assert lines[0].startswith("# units: time s, ")
-    assert lines[1].split(",") == list(data.columns)
-    assert len(lines) == 2 + len(data)
-    back = np.array([[float(x) for x in row.split(",")] for row in lines[2:]])
+    assert lines[0].split(",") == list(data.columns)
+    assert len(lines) == 1 + len(data)
+    back = np.array([[float(x) for x in row.split(",")] for row in lines[1:]])
     assert back.tobytes() == data.to_numpy().tobytes()
-    table = pd.read_csv(file, comment="#")
+    table = pd.read_csv(file)
     assert list(table.columns) == list(data.columns)
     assert table.shape == data.shape
 
 
 def test_units_line_names_every_column(rig, tmp_path):
     file = tmp_path / "table.csv"
-    rig.to_csv(file)
+    rig.to_csv(file, units=True)
     with file.open(encoding="utf-8") as stream:
         header = stream.readline().removeprefix("# units: ").rstrip("\n")
     pairs = dict(entry.rsplit(" ", 1) for entry in header.split(", "))
@@ -168,9 +166,11 @@ def test_report_writes_files_that_exist(tmp_path):
     names = [Path(file).name for file in result.files]
     assert names[:3] == ["results.csv", "summary.txt", "summary.json"]
     assert all(Path(file).stat().st_size > 0 for file in result.files)
-    assert len(names) == 9
+    assert names[3:6] == ["run.json", "results.npy", "units.csv"]
+    assert len(names) == 12
     summary = json.loads(Path(result.files[2]).read_text(encoding="utf-8"))
     assert summary["results"] == list(result.files)
+    assert summary["complete"]
     assert summary["parameters"] == {"gearbox.gear_mesh.pinion.number_of_teeth": 27.0}
     assert Path(result.files[1]).read_text(encoding="utf-8") == summary_text(result)
 

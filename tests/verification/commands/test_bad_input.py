@@ -328,11 +328,11 @@ def test_results_are_written_before_the_diagnosis(tmp_path, monkeypatch):
 
 def test_a_shortened_step_is_noted(tmp_path, capsys):
     command = ["run", "test_rig", "--t-end=1.5e-4", "--fmu=in-process", "--json"]
-    main([*command, "-o", str(tmp_path), "--step=4e-5"])
+    main([*command, "--overwrite", "-o", str(tmp_path), "--step=4e-5"])
     summary = json.loads(capsys.readouterr().out)
     assert summary["communication_step"] == pytest.approx(3.75e-5)
     assert any("step = 4e-05 s: shortened to 3.75e-05 s" in note for note in summary["notes"])
-    main([*command, "-o", str(tmp_path), "--step=3.75e-5"])
+    main([*command, "--overwrite", "-o", str(tmp_path), "--step=3.75e-5"])
     notes = json.loads(capsys.readouterr().out)["notes"]
     assert not any("shortened" in note for note in notes)
 

@@ -83,29 +83,27 @@ def test_reference(tmp_path, capsys):
     assert set(found["error"]) == {"bearing_force", "seat_velocity"}
     assert all(0.0 < error < 0.01 for error in found["error"].values())
     assert found["record_step"] == 2e-5
-    assert len(pd.read_csv(tmp_path / "results.csv", comment="#")) == 251
+    assert len(pd.read_csv(tmp_path / "results.csv")) == 251
 
 
 def test_results_csv(tmp_path, capsys):
     run(capsys, tmp_path, "--parquet", "--fmu", "in-process", *JACOBI)
     lines = (tmp_path / "results.csv").read_text().splitlines()
-    comments = [line for line in lines if line.startswith("#")]
-    assert comments == lines[:1]
-    header = lines[1].split(",")
+    header = lines[0].split(",")
     assert header[0] == "time"
     assert len(header) == len(set(header))
     assert set(header[1:]) == columns()
-    units = dict(item.rsplit(" ", 1) for item in comments[0].removeprefix("# units: ").split(", "))
+    units = dict(csv.reader((tmp_path / "units.csv").read_text().splitlines()[1:]))
     assert list(units) == header
     assert units["time"] == "s"
     assert units["gearbox.gear_mesh.pinion_left.s_y"] == "m"
-    rows = list(csv.reader(lines[2:]))
+    rows = list(csv.reader(lines[1:]))
     assert len(rows) == 251
     assert all(len(row) == len(header) for row in rows)
     assert (rows[0][0], float(rows[-1][0])) == ("0.0", 0.005)
     assert all(repr(float(x)) == x for row in rows[::50] for x in row)
     parquet = pd.read_parquet(tmp_path / "results.parquet")
-    table = pd.read_csv(tmp_path / "results.csv", comment="#", float_precision="round_trip")
+    table = pd.read_csv(tmp_path / "results.csv", float_precision="round_trip")
     pd.testing.assert_frame_equal(parquet, table, check_exact=True)
 
 
@@ -163,7 +161,7 @@ def test_interrupt(tmp_path, fmu):
     assert f"results so far are kept, and are being written to {tmp_path}" in said
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["outcome"] == "interrupted"
-    table = pd.read_csv(tmp_path / "results.csv", comment="#")
+    table = pd.read_csv(tmp_path / "results.csv")
     assert table.notna().all(axis=None)
     assert 0.0 < summary["t_reached"] < 60.0
     assert table["time"].iloc[-1] == pytest.approx(summary["t_reached"], abs=2e-5)

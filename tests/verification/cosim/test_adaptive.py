@@ -320,7 +320,7 @@ def test_a_strangers_fmu_with_state(tmp_path, capsys):
     command = [sys.executable, "-m", "pythonfmu", "build", "--handle-state"]
     subprocess.run([*command, "-f", str(script), "-d", str(tmp_path)], check=True)
     replace = f"--replace=modal_housing={tmp_path / 'SteppedHousing.fmu'}"
-    output = ["--json", "-o", str(tmp_path / "out")]
+    output = ["--json", "--overwrite", "-o", str(tmp_path / "out")]
     command = ["run", "test_rig", "--t-end=1e-3", replace, *output]
     assert main([*command, "--algorithm=li:tolerance=1e-2"]) == 0
     summary = json.loads(capsys.readouterr().out)
@@ -328,7 +328,7 @@ def test_a_strangers_fmu_with_state(tmp_path, capsys):
     assert set(steps) == {"accepted", "rejected", "shortest", "median", "longest"}
     assert steps["accepted"] == summary["macro_steps"]
     assert any("gearbox.modal_housing: a body by trial steps" in n for n in summary["notes"])
-    table = pd.read_csv(tmp_path / "out" / "results.csv", comment="#")
+    table = pd.read_csv(tmp_path / "out" / "results.csv")
     assert table["time"].diff().dropna().max() == pytest.approx(steps["longest"])
     assert main([*command, "--tolerance=1e-2"]) == 0
     summary = json.loads(capsys.readouterr().out)

@@ -1,5 +1,7 @@
 """A network laid out for `li` with an adaptive macro step."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from herringbone.core import ParameterError
@@ -10,6 +12,7 @@ from herringbone.cosim.algorithms.jacobian import (
     StepRefusedError,
     correction_matrix,
 )
+from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.adaptive import (
     ACCEPTED,
     BEFORE,
@@ -100,10 +103,10 @@ class PreparedAdaptive(PreparedNodes):
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
         return Grid(self._tick, self._last, every)
 
-    def record(self, grid: Grid, columns: int) -> GrowingRecord:
+    def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
         """Rows as the steps come."""
         del grid
-        self._record = GrowingRecord(columns)
+        self._record = GrowingRecord(columns, window)
         return self._record
 
     def macro_steps(self, done: int) -> int:
@@ -176,6 +179,29 @@ class PreparedAdaptive(PreparedNodes):
         update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, 0.0)
         return adaptive
 
+    def saved(self) -> Arrays:
+        """See `PreparedRun`; rows and their times are the record's."""
+        found = super().saved() | arrays_of("adaptive", self._adaptive)
+        del found["adaptive.times"]
+        texts = {"missing": self._missing, "culprit": self.culprit}
+        return (
+            found
+            | {f"sensitivity.{rung}": s for rung, s in self._sensitivities.items()}
+            | {name: np.frombuffer(text.encode(), np.uint8) for name, text in texts.items()}
+            | {"kept": np.array(self._kept)}
+        )
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """See `PreparedRun`."""
+        super().put(saved)
+        put_arrays("adaptive", self._adaptive, saved)
+        rungs = (name for name in saved if name.startswith("sensitivity."))
+        self._sensitivities = {int(n.partition(".")[2]): saved[n].copy() for n in rungs}
+        self._missing, self.culprit = (saved[n].tobytes().decode() for n in ("missing", "culprit"))
+        self._kept = float(saved["kept"])
+        if self._adaptive is not None:
+            self._adaptive = self._adaptive._replace(tolerance=self._kept)
+
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run up to the end of the chunk, which counts ticks; see `loops.stages.run_stages`."""
         if self._buffers is None or self._adaptive is None:
@@ -188,6 +214,7 @@ class PreparedAdaptive(PreparedNodes):
         while True:
             self._record.make_room()
             self._adaptive = self._adaptive._replace(times=self._record.row_times)
+            self._adaptive.state[ROWS] = self._record.rows
             status, done, culprit = run_adaptive(
                 self.layout,
                 self.nodes,

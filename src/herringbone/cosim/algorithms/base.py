@@ -8,7 +8,7 @@ The tests hold it to what it declares: order, passes, rollback, slow bodies, an 
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from itertools import product
 from typing import Any, ClassVar, NoReturn, Self
@@ -17,6 +17,7 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
+from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import NodeLayout
 from herringbone.cosim.record import Grid, Record, UniformRecord
@@ -168,9 +169,9 @@ class PreparedRun(ABC):
         """The grid in the units in which `run` counts."""
         return grid
 
-    def record(self, grid: Grid, columns: int) -> Record:
-        """Where the rows of a run go."""
-        return UniformRecord(grid, columns)
+    def record(self, grid: Grid, columns: int, window: int | None = None) -> Record:
+        """Where the rows of a run go; with a window they are dropped in between."""
+        return UniformRecord(grid, columns, window)
 
     def macro_steps(self, done: int) -> int:
         """Macro steps in so many units of the grid."""
@@ -198,6 +199,18 @@ class PreparedRun(ABC):
 
         The run is made ready for it; at 1 or more the coupling diverges at any step.
         """
+
+    def saved(self) -> Arrays:
+        """What a checkpoint must hold besides the history, as arrays by name."""
+        return arrays_of("slow", self.layout.slow)
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """Go on from a checkpoint, after a first `run` of no steps.
+
+        Raises:
+            ParameterError: it is of another run.
+        """
+        put_arrays("slow", self.layout.slow, saved)
 
     @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:

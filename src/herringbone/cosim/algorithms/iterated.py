@@ -1,6 +1,7 @@
 """What `fixed_point` and `li` share: a network laid out for passes with rollback."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from herringbone.cosim.algorithms.jacobian import (
     correction_matrix,
 )
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
+from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs, node_references
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
@@ -247,6 +249,20 @@ class PreparedNodes(PreparedRun):
             self.most = max(self.most, min(math.ceil(math.log(REST) / math.log(gain)), MOST_SWEEPS))
             self._downgrades += (f"up to {self.most} sweeps a macro step solve the loop",)
         return solved_growth(loop.matrix, [self.input_degree(c.target) == 0 for c in loop.forces])
+
+    def saved(self) -> Arrays:
+        """See `PreparedRun`; handles of saved states stay those of this process."""
+        found = super().saved() | arrays_of("buffers", self._buffers)
+        del found["buffers.states"]
+        counted = np.array([self._next_refresh, self.jacobians])
+        return found | {"correction": self._correction, "counted": counted}
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """See `PreparedRun`."""
+        super().put(saved)
+        put_arrays("buffers", self._buffers, saved)
+        self._correction = saved["correction"].copy()
+        self._next_refresh, self.jacobians = map(int, saved["counted"])
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""

@@ -13,6 +13,7 @@ belongs to the force at its predicted motion. Accelerations at the true motion w
 Schweizer, D. Lu, P. Li, Multibody Syst. Dyn. 36, 2016, 1-36, for predicted accelerations).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -23,6 +24,7 @@ from herringbone.core.part import has_nodes
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, extrapolated_growth
 from herringbone.cosim.algorithms.base import Algorithm, PreparedRun
 from herringbone.cosim.algorithms.staged import prepare_stages, refuse_mixed
+from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import (
     Chunk,
     Layout,
@@ -132,6 +134,15 @@ class PreparedPrediction(PreparedRun):
         """Growth by the extrapolation over a step, of a body that does not declare feedthrough."""
         degrees = [min(2, self.input_degree(c.target)) for c in loop.forces]
         return extrapolated_growth(loop.matrix, degrees, 0)
+
+    def saved(self) -> Arrays:
+        """See `PreparedRun`."""
+        return super().saved() | arrays_of("prediction", self._prediction)
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """See `PreparedRun`."""
+        super().put(saved)
+        put_arrays("prediction", self._prediction, saved)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""

@@ -60,9 +60,10 @@ class Chunk(NamedTuple):
     Attributes:
         t0, h: start of the run and macro step [s].
         start, count: first macro step and how many.
-        records: one row per `every` macro steps of the run, row 0 at t0.
+        records: one row per `every` macro steps of the run.
         every: macro steps per record.
         energy: watches what the coupling adds.
+        first_row: row of the run with which `records` begins; row 0 is at t0.
     """
 
     t0: float
@@ -72,6 +73,7 @@ class Chunk(NamedTuple):
     records: np.ndarray
     every: int
     energy: EnergyMonitor = NOTHING_WATCHED
+    first_row: int = 0
 
 
 def record_names(network: Network) -> list[list[str]]:

@@ -81,7 +81,7 @@ def start_step(history: np.ndarray) -> None:
 @inlined
 def record_row(chunk: Chunk, n: int) -> int:
     """Row of the records that macro step n fills, or -1."""
-    return (n + 1) // chunk.every if (n + 1) % chunk.every == 0 else -1
+    return (n + 1) // chunk.every - chunk.first_row if (n + 1) % chunk.every == 0 else -1
 
 
 @inlined

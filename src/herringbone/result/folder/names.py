@@ -1,0 +1,47 @@
+"""What a results folder holds; see `docs/results_folder.md`."""
+
+from enum import StrEnum
+from pathlib import Path
+
+FORMAT = 1
+"""Version of the folder's format; readers take this one and older ones."""
+RUN, ROWS, OTHERS, CHECKPOINT = "run.json", "results.npy", "others.jsonl", "checkpoint"
+TABLE, UNITS, PARQUET = "results.csv", "units.csv", "results.parquet"
+SUMMARY, TEXT = "summary.json", "summary.txt"
+OLD = ".before"
+"""Ends the name of the last checkpoint but one."""
+PART = ".part"
+"""Ends the name of a file that is not written to its end."""
+_REPORT = (TABLE, UNITS, PARQUET, SUMMARY, TEXT)
+_PICTURES = (
+    "overview", "bearing_forces", "seat_velocities", "spectra", "torques", "radiated_power",
+)  # fmt: skip
+
+
+class State(StrEnum):
+    """How far a folder is."""
+
+    RUNNING = "running"
+    ROWS = "rows complete"
+    COMPLETE = "complete"
+
+
+def remove_results(folder: Path) -> None:
+    """Remove what a run has written into a folder, and nothing else; raises OSError.
+
+    `run.json` goes first: without it, rows belong to no run.
+    """
+    for name in (RUN, ROWS, OTHERS, CHECKPOINT, CHECKPOINT + OLD):
+        (folder / name).unlink(missing_ok=True)
+    remove_reports(folder)
+
+
+def remove_reports(folder: Path) -> None:
+    """Remove what was made from rows, and what was not written to its end; raises OSError."""
+    for name in _REPORT:
+        (folder / name).unlink(missing_ok=True)
+    for picture in _PICTURES:
+        for file in (folder / f"{picture}.png", *folder.glob(f"{picture}.*.png")):
+            file.unlink(missing_ok=True)
+    for file in folder.glob(f".*{PART}"):
+        file.unlink(missing_ok=True)

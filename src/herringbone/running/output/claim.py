@@ -1,0 +1,125 @@
+"""Which folder a run may write into: nothing of another run is overwritten unasked."""
+
+import itertools
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from herringbone.core import HerringboneError, ResourceError
+from herringbone.core.errors import reason
+from herringbone.core.files import is_file
+from herringbone.result.folder.names import SUMMARY, State
+from herringbone.result.folder.run_file import read_run_file
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a run wants to write where.
+
+    Attributes:
+        folder: that was asked for.
+        named: by the user; else the folder may get a number.
+        key: of the run's settings.
+        settings: digests by name.
+        overwrite: whatever is there may be replaced.
+    """
+
+    folder: Path
+    named: bool
+    key: str
+    settings: Mapping[str, str]
+    overwrite: bool = False
+
+
+def claimed(claim: Claim) -> Path:
+    """The folder into which the run may write.
+
+    Raises:
+        HerringboneError: another run is there.
+    """
+    if claim.overwrite or not (why := _taken(claim.folder, claim)):
+        return claim.folder
+    if claim.named or why.own:
+        raise HerringboneError(f"{claim.folder} {why.text}")
+    for number in itertools.count(2):
+        folder = claim.folder.with_name(f"{claim.folder.name}-{number}")
+        why = _taken(folder, claim)
+        if not why:
+            return folder
+        if why.own:
+            raise HerringboneError(f"{folder} {why.text}")
+    raise AssertionError("there is always another number")
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """Why a folder is not to be overwritten; own: by a run of the same settings."""
+
+    text: str
+    own: bool = False
+
+
+def _taken(folder: Path, claim: Claim) -> _Taken | None:
+    """Why a folder is not to be overwritten; None if it may be."""
+    try:
+        found = read_run_file(folder)
+    except ResourceError as error:
+        return _Taken(
+            f"holds a run that cannot be read ({error}); use another folder, or --overwrite"
+        )
+    if found is None:
+        old = is_file(folder / SUMMARY)
+        what = "holds results of an older version; choose another folder with -o, or --overwrite"
+        return _Taken(what) if old else None
+    if found.key != claim.key:
+        names = [n for n, d in claim.settings.items() if found.settings.get(n) != d]
+        return _Taken(
+            f"holds a run of other settings ({', '.join(names)}); choose another folder with -o, "
+            "or overwrite it with --overwrite"
+        )
+    if found.state is State.RUNNING:
+        return _Taken(
+            "holds this run, but cut off; go on with --resume, or begin anew with --overwrite", True
+        )
+    return None
+
+
+class FolderLock:
+    """A folder that is made, and that one process writes into at a time.
+
+    Args:
+        folder: is made if it is not there.
+
+    Raises:
+        HerringboneError: it cannot be made, or another process writes into it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._descriptor = -1
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise HerringboneError(
+                f"cannot write {folder}: {reason(error)}; choose another folder"
+            ) from error
+        try:
+            import fcntl  # noqa: PLC0415 (not on Windows: no lock there)
+        except ImportError:
+            return
+        self._descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self.release()
+            raise HerringboneError(
+                f"another run is writing into {folder}; wait for it, or choose another folder"
+            ) from None
+        except OSError:  # a file system without locks
+            return
+
+    def release(self) -> None:
+        """Let others write."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1

@@ -1,0 +1,177 @@
+"""The folder of a run, from the claim before it starts to its last file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import HerringboneError
+from herringbone.cosim.stream import Streaming
+from herringbone.cosim.structure.system import System
+from herringbone.result.folder.checked_store import ReplayError
+from herringbone.result.folder.names import State, remove_results
+from herringbone.result.folder.run_file import RunFile
+from herringbone.result.folder.store import Store
+from herringbone.result.folder.writing import refused
+from herringbone.result.result import Result
+from herringbone.running.output.claim import Claim, FolderLock, claimed
+from herringbone.running.output.resumed import Resumed
+from herringbone.running.output.settings import key_of, settings_of
+from herringbone.running.report import finish_report, store_result, write_summary
+from herringbone.scenes import Scene
+
+
+@dataclass
+class RunOutput:
+    """Where a run goes.
+
+    Args:
+        folder: None: `results/SYSTEM-SCENE`.
+        overwrite: whatever is there may be replaced.
+        parquet: write results.parquet as well.
+        asked: options of the command, for `--resume`.
+        system: what the default folder calls the system.
+        resumed: the run in the folder goes on.
+
+    Attributes:
+        shown: the folder, as it was given.
+        notes: lines that the user should read.
+    """
+
+    folder: Path | None = None
+    overwrite: bool = False
+    parquet: bool = False
+    asked: Mapping[str, Any] = field(default_factory=dict)
+    system: str = ""
+    resumed: Resumed | None = None
+
+    def __post_init__(self) -> None:
+        self._start = Path.cwd()  # FMUs may change it
+        self.shown = self.folder or Path("results")
+        self.notes: list[str] = []
+        self._run = RunFile(State.RUNNING, (), {})
+        self._lock: FolderLock | None = None
+        self._store: Store | None = None
+        self._written: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> Path:
+        """The folder, wherever FMUs have gone."""
+        return self._start / self.shown
+
+    def claim(self, system: System, scene: Scene, options: object) -> None:
+        """Choose the folder, before anything is computed.
+
+        Raises:
+            HerringboneError: another run is there, or the folder cannot be made.
+        """
+        settings = settings_of(system, scene, options)
+        key = key_of(settings)
+        if self.resumed is not None:
+            self.resumed.check(settings)
+            self._lock, self._run = FolderLock(self.path), self.resumed.run
+            return
+        wanted = self.folder or Path("results") / f"{self.system or system.name}-{scene.name}"
+        named = self.folder is not None
+        found = claimed(Claim(self._start / wanted, named, key, settings, self.overwrite))
+        self.shown = wanted.with_name(found.name)
+        if self.shown != wanted:
+            self.notes.append(
+                f"results go to {self.shown}: {wanted} holds a run of other settings, or of an "
+                "older version; --overwrite overwrites it"
+            )
+        self._lock = FolderLock(self.path)
+        self._run = RunFile(
+            State.RUNNING, (), {}, key=key, settings=settings, asked=self.asked,
+            folder=str(self._start),
+        )  # fmt: skip
+
+    def stream(self, start: Result, every: int = 1, *, keeps_all: bool = False) -> Streaming:
+        """Where the rows of the run go; what another run has left there is removed.
+
+        Args:
+            start: all that is known of the result before there are rows.
+            every: so many records make a row.
+            keeps_all: all records stay in memory as well.
+
+        Raises:
+            HerringboneError: the folder cannot be written.
+        """
+        if self.resumed is not None:
+            state = None if keeps_all else self.resumed.state
+            self._store = self.resumed.store(start, state)
+            return Streaming(self._store, every, keeps_all, state)
+        self._empty()
+        self._store = Store(self.path, self._run, start)
+        return Streaming(self._store, every, keeps_all)
+
+    def _empty(self) -> None:
+        try:
+            remove_results(self.path)
+        except OSError as error:
+            raise refused(error, self.path) from error
+
+    def seen(self, result: Result) -> Result:
+        """The result of a long run, with an overview of it all, and a note on what is shown."""
+        if self._store is None or len(result.data) == self._store.rows:
+            return result
+        table = self._store.table
+        since, rows = float(result.data.iloc[0, 0]), len(result.data)
+        note = (
+            f"figures are taken from {since:.6g} s on, the last {rows} of {table.rows} records; "
+            f"{self.shown} has all"
+        )
+        info = replace(result.info, notes=(*result.info.notes, note))
+        return replace(result, info=info, whole=table.overview())
+
+    def write(self, result: Result) -> None:
+        """Write all files; a better run replaces the one before.
+
+        Raises:
+            HerringboneError: a file cannot be written.
+        """
+        if self._store is None:
+            self._empty()
+            self._store = store_result(result, self.path, self._run)
+        store, self._store = self._store, None
+        try:
+            self._written = finish_report(store, result, self.shown, parquet=self.parquet).files
+        finally:
+            store.close()
+        self._run = store.run
+
+    def complete(self, result: Result) -> Result:
+        """Add what was found out since, and say that nothing will follow.
+
+        Returns:
+            The result with its files.
+
+        Raises:
+            HerringboneError: a file cannot be written.
+        """
+        result = replace(result, files=self._written)
+        write_summary(result, self.path, self._run, complete=True)
+        self.close()
+        return result
+
+    def close(self) -> None:
+        """Let others write into the folder."""
+        if self._store is not None:
+            self._store.close()
+        if self._lock is not None:
+            self._lock.release()
+
+    def explain(self, error: HerringboneError) -> None:
+        """Say of a run that could not go on writing what is there.
+
+        Raises:
+            HerringboneError: that says so, in place of the error, if there is something.
+        """
+        store = self._store
+        if store is None or not store.rows or isinstance(error, ReplayError):
+            return
+        last = float(store.table.last(1).iloc[0, 0])
+        raise HerringboneError(
+            f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}, and --resume "
+            "goes on from there"
+        ) from error
