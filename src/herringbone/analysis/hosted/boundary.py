@@ -8,6 +8,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
 from herringbone.core.hosting import Given, Wanted
+from herringbone.core.part_path import PartPath
 from herringbone.core.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import PartSpec, System
 
@@ -153,7 +154,7 @@ def make_boundary(system: System, wanted: Wanted) -> Boundary:
     shafts = [f for f in flanges if f.shaft]
     whole = replace(
         system,
-        parts=(*system.parts, *(PartSpec(f.shaft, coupling) for f in shafts)),
+        parts=(*system.parts, *(PartSpec(PartPath(f.shaft), coupling) for f in shafts)),
         connections=(
             *system.connections,
             *((f.path, f"{f.shaft}.flange_b") for f in shafts),
