@@ -15,6 +15,14 @@ from herringbone.fmi.used_states import UsedStates
 
 EXPERIMENT: Final = Experiment(stop=0.01, step=1e-5)
 """Default experiment of components."""
+DISPLAY_UNITS: Final = {
+    "rad": ("deg", 180.0 / math.pi),
+    "rad/s": ("r/min", 30.0 / math.pi),
+    "N": ("kN", 1e-3),
+    "m/s": ("mm/s", 1e3),
+}
+"""What tools show instead of a unit, and the factor to it."""
+AUTHOR: Final = "herringbone developers"
 LOG_CATEGORIES: Final = {
     "logStatusWarning": "Log messages with fmi2Warning status.",
     "logStatusDiscard": "Log messages with fmi2Discard status.",
@@ -61,7 +69,9 @@ def model_description(component: Component, native: UsedStates | None = None) ->
         modelName=component.name,
         guid=identifier(component, native.built_with if native else ""),
         description=declaration.description,
+        author=AUTHOR,
         version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
         license="MIT",
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
@@ -98,6 +108,9 @@ def add_units(root: Element, declaration: Declaration, *further: str) -> None:
         exponents = base_exponents(name)
         if all(n == int(n) for n in exponents.values()):  # FMI knows no others
             SubElement(unit, "BaseUnit", {base: str(n) for base, n in exponents.items()})
+        if name in DISPLAY_UNITS:
+            shown, factor = DISPLAY_UNITS[name]
+            SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
 
 
 def add_log_categories(root: Element) -> None:
@@ -117,10 +130,12 @@ def add_experiment(root: Element, component: Component) -> None:
 
 
 def sizes(variable: Variable) -> dict[str, Any]:
-    """The attributes of a finite range, and of a nominal value."""
+    """The attributes of a finite range, of a nominal value, and of what tools show."""
     range_ = {"min": variable.minimum, "max": variable.maximum}
     found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
     known = variable.state or variable.nominal != 1.0
+    if variable.unit in DISPLAY_UNITS:
+        found["displayUnit"] = DISPLAY_UNITS[variable.unit][0]
     return found | ({"nominal": repr(float(variable.nominal))} if known else {})
 
 

@@ -14,6 +14,7 @@ from herringbone.core.declaration import node_name
 from herringbone.core.variable import NODES, Causality
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import (
+    AUTHOR,
     add_experiment,
     add_log_categories,
     add_units,
@@ -53,7 +54,9 @@ def model_description_3(used: UsedStates) -> Element:
         modelName=component.name,
         instantiationToken=identifier(component, used.built_with),
         description=declaration.description,
+        author=AUTHOR,
         version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
         license="MIT",
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",

@@ -2,6 +2,8 @@
 
 import math
 from functools import cache
+from xml.etree.ElementTree import fromstring
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -205,3 +207,23 @@ def test_what_is_no_gearbox_is_refused(tmp_path):
         export_fmu("test_rig", tmp_path / "rig.fmu", wanted=MOTION)
     with pytest.raises(ParameterError, match="has no flange 'shaft'"):
         export_fmu("gearbox", tmp_path / "g.fmu", wanted=Wanted({"shaft": Given.SPEED}))
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_what_lies_in_it(fmi, exported):
+    """Terminals of variables that exist, an icon, a licence, units as people read them."""
+    file = exported(2 if fmi == 3 else 0, fmi)
+    description = read_model_description(str(file))
+    names = {v.name for v in description.modelVariables}
+    with ZipFile(file) as archive:
+        terminals = fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+        page = archive.read("documentation/index.html").decode()
+        assert archive.read("terminalsAndIcons/icon.png").startswith(b"\x89PNG")
+        assert b"Permission" in archive.read("documentation/licenses/license.txt")
+    members = [m.get("variableName") for m in terminals.iter("TerminalMemberVariable")]
+    assert set(members) <= names
+    assert {t.get("name") for t in terminals.iter("Terminal")} >= {"pinion", "seat.wheel_left"}
+    assert all(f"<td>{n}</td>" in page for n in members)
+    shown = {v.name: v.displayUnit for v in description.modelVariables}
+    assert (shown["wheel.w"], shown["mesh_left.force"]) == ("r/min", "kN")
+    assert description.defaultExperiment.tolerance

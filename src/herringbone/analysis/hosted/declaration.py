@@ -14,7 +14,7 @@ from herringbone.analysis.twin.composite_parts import (
 from herringbone.core import Declaration, Instance, Variable, local, output, parameter, state
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.hosting import Given
-from herringbone.core.roles import Quantity
+from herringbone.core.roles import Port, PortKind, Quantity
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.kernels.adaptive import FIRST, adaptive_work
 
@@ -80,8 +80,21 @@ def host_declaration(
         vectors=vectors_of(parts.instances, parts.layout.block_first),
         tables=sum(i.component.declaration.size for i in parts.instances) + scratch,
         work=adaptive_work(own + parts.layout.state_first[-1], inputs),
+        ports=_ports(boundary, variables),
         hidden=hidden,
     )
+
+
+def _ports(boundary: Boundary, variables: list[Variable]) -> list[Port]:
+    """The flanges, and where forces of bearings and velocities of seats are shown."""
+    found = [Port(f.name, PortKind.FLANGE) for f in boundary.flanges]
+    kinds = {"bearing": PortKind.JOURNAL, "seat": PortKind.SEAT}
+    shown = (v.name.rpartition(".")[0] for v in variables if v.causality is Causality.OUTPUT)
+    for name in dict.fromkeys(shown):
+        kind, _, place = name.partition(".")
+        if kind in kinds and place:
+            found.append(Port(name, kinds[kind], place))
+    return found
 
 
 def _own_states(boundary: Boundary) -> Iterator[Variable]:
