@@ -1,4 +1,4 @@
-"""Check any FMI 2.0 or 3.0 co-simulation FMU: file, XML, a default run, state and reset."""
+"""Check any FMI 2.0 or 3.0 co-simulation FMU: file, XML, runs, state, reset, reference results."""
 
 import math
 from pathlib import Path
@@ -11,6 +11,7 @@ from herringbone.core import FmuError
 from herringbone.cosim.fmu.file import read_fmu, require_file
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
+from herringbone.fmi.reference import replay
 
 _STEPS = 10
 _STEP_SIZE = 1e-3
@@ -35,7 +36,7 @@ def check_fmu(path: str | Path) -> list[str]:
     except FmuError as error:
         return [str(error)]
     problems = validate_fmu(str(path)) + _without_unit(description)
-    for check in (_default_run, _state_round_trip, _reset):
+    for check in (_default_run, _state_round_trip, _reset, _reference_results):
         try:
             problems += check(path, description)
         except (FmuError, FMICallException) as error:
@@ -109,6 +110,11 @@ def _reset(path: Path, description: ModelDescription) -> list[str]:
         host.initialise(stop_time=_end(description))
         after = _advance(host, 0)
     return _differences(description, before, after, "a run after reset")
+
+
+def _reference_results(path: Path, description: ModelDescription) -> list[str]:
+    del description
+    return replay(path)
 
 
 def _differences(

@@ -14,6 +14,7 @@ from support.fmi2_host import Fmi2Host
 
 from herringbone.core import ParameterError
 from herringbone.core.hosting import Given, Wanted
+from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.system_fmu import export_fmu
 
@@ -227,3 +228,23 @@ def test_what_lies_in_it(fmi, exported):
     shown = {v.name: v.displayUnit for v in description.modelVariables}
     assert (shown["wheel.w"], shown["mesh_left.force"]) == ("r/min", "kN")
     assert description.defaultExperiment.tolerance
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_reference_results_are_replayed(fmi, exported, tmp_path):
+    file = exported(2 if fmi == 3 else 0, fmi)
+    assert check_fmu(file) == []
+    folder = "extra/org.fmi-standard.fmi-ls-ref"
+    with ZipFile(file) as archive:
+        content = {name: archive.read(name) for name in archive.namelist()}
+    head, *rows = content[f"{folder}/gearbox_out.csv"].decode().splitlines()
+    assert len(rows) == 21  # the start, and 20 steps
+    wrong = tmp_path / "gearbox.fmu"
+    rows[5] = ",".join([rows[5].split(",")[0], *["7.0"] * head.count(",")])
+    with ZipFile(wrong, "w") as archive:
+        content[f"{folder}/gearbox_out.csv"] = "\n".join([head, *rows]).encode()
+        for name, data in content.items():
+            archive.writestr(name, data)
+    problems = check_fmu(wrong)
+    assert len(problems) == head.count(",")
+    assert "reference results: wheel.w = 34.9" in "".join(problems)

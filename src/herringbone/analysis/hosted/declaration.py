@@ -111,6 +111,9 @@ def _of_parts(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
     depends = feedthrough_of(parts)
     speeds = {f"{f.shaft}.flange_a.phi" for f in boundary.flanges if f.given is Given.SPEED}
     carrying = set(_flanks(parts))
+    speeds_at_start = {
+        f"{f.shaft}.flange_a.w": _of_gear(f, parts, "w") for f in boundary.flanges if f.shaft
+    }
     for instance in parts.instances:
         declaration = instance.component.declaration
         for v in declaration.variables:
@@ -123,7 +126,7 @@ def _of_parts(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
                 yield replace(v, name=name, start=0.0)
             elif v.causality is Causality.INPUT:
                 if full in parts.open_inputs - speeds:
-                    start = float(instance.block[declaration.index[v.name]])
+                    start = speeds_at_start.get(full, instance[v.name])
                     yield replace(v, name=name, start=start)
             elif v.causality is Causality.LOCAL:
                 yield replace(v, name=name)
@@ -204,7 +207,7 @@ def _parameters(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
                 initial_torque(f),
                 "N.m",
                 f"torque of the shaft at {f.name} on the gearbox at the start",
-                _torque(f, parts),
+                _of_gear(f, parts, "tau"),
             )
 
 
@@ -222,10 +225,11 @@ def _speed(boundary: Boundary, parts: Parts) -> float:
     return _pair(boundary, parts)[f"der({rotation(boundary, parts)})"]
 
 
-def _torque(flange: HostFlange, parts: Parts) -> float:
+def _of_gear(flange: HostFlange, parts: Parts, variable: str) -> float:
+    """Start value of a variable of the gear's own flange."""
     part, _, port = flange.path.rpartition(".")
     gear = next(i for i in parts.instances if i.name == part)
-    return gear[f"{port}.tau"]
+    return gear[f"{port}.{variable}"]
 
 
 def _shown(boundary: Boundary, parts: Parts, variables: list[Variable]) -> Iterator[Variable]:

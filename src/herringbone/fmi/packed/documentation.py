@@ -26,8 +26,8 @@ _HOSTED = (
     "gives derivatives of phi, these alone count. tau_mean is the mean of tau over the last "
     "communication step: its product with the mean speed is the energy that was handed over. "
     "At the start the elastic coordinates are in equilibrium with the torques, and move as one "
-    "with the gears; start_mode = 0 leaves them undeformed. The tolerance that the host gives, or that "
-    "of the default experiment, decides inner steps: relative, of every state against its size."
+    "with the gears; start_mode = 0 leaves them undeformed. The tolerance that the host gives, or "
+    "that of the default experiment, decides inner steps: relative, of each state by its size."
 )
 
 
