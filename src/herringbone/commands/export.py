@@ -7,6 +7,16 @@ from pathlib import Path
 from herringbone.commands.build import add_platform_options, chosen_platforms, untested
 from herringbone.commands.options import add_scene, files_of_parts
 from herringbone.commands.output import check_writable
+from herringbone.core.hosting import Given, Wanted
+from herringbone.core.roles import GEARS
+
+_SHOWN = {
+    "internals": "all variables of its parts, as locals",
+    "nodes": "the signals' nodes, for masters that know them",
+    "parameters": "all parameters",
+    "me": "model exchange besides co-simulation",
+}
+"""Options that add variables."""
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -21,6 +31,21 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         metavar="INSTANCE",
         help="leave this instance out of the FMU; what it feeds becomes inputs",
     )
+    for gear in GEARS:
+        sub.add_argument(
+            f"--{gear}",
+            choices=[given.value for given in Given],
+            help=f"what the host gives at the {gear}'s flange; torque if not said",
+        )
+    sub.add_argument(
+        "--outputs",
+        nargs="+",
+        default=[],
+        metavar="PATTERN",
+        help="further outputs of a gearbox FMU, such as '*.deflection'",
+    )
+    for name, text in _SHOWN.items():
+        sub.add_argument(f"--{name}", action="store_true", help=f"a gearbox FMU with {text}")
     sub.add_argument("--native", action="store_true", help="an .ssp file with native FMUs")
     add_platform_options(sub)
     sub.add_argument(
@@ -59,10 +84,13 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
             housing=files.housing,
             platforms=platforms,
             fmi=options.fmi,
+            wanted=_wanted(options),
         )
         return [str(file), *untested(platforms)]
-    if options.outside or options.fmi != 2:
-        raise ParameterError("--outside and --fmi belong to one FMU; add --as-fmu")
+    if options.outside or options.fmi != 2 or _wanted(options) != Wanted():
+        raise ParameterError(
+            "--outside, --fmi, flanges and variables belong to one FMU; add --as-fmu"
+        )
     if platforms and not options.native:
         raise ParameterError("--platforms chooses among native FMUs; add --native or --as-fmu")
     file = export_ssp(
@@ -77,3 +105,16 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         platforms=platforms,
     )
     return [str(file), *untested(platforms)]
+
+
+def _wanted(options: argparse.Namespace) -> Wanted:
+    """What the host of a gearbox gives and wants to see."""
+    given = {gear: Given(getattr(options, gear)) for gear in GEARS if getattr(options, gear)}
+    return Wanted(
+        given,
+        tuple(options.outputs),
+        internals=options.internals,
+        nodes=options.nodes,
+        parameters=options.parameters,
+        exchange=options.me,
+    )

@@ -12,6 +12,7 @@ from herringbone.core.errors import (
     one_line,
     reason,
 )
+from herringbone.core.hosting import Experiment, Hosting, RunsOn
 from herringbone.core.instance import Instance
 from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 from herringbone.core.variable import (
@@ -32,14 +33,17 @@ __all__ = [
     "Component",
     "Declaration",
     "EquilibriumError",
+    "Experiment",
     "FmuError",
     "HerringboneError",
+    "Hosting",
     "Instance",
     "Kernels",
     "Outcome",
     "OutcomeKind",
     "ParameterError",
     "ResourceError",
+    "RunsOn",
     "StateVector",
     "StructureError",
     "Text",

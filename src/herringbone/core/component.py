@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from herringbone.core.declaration import Declaration
+from herringbone.core.hosting import Hosting
 from herringbone.core.pair_values import PairValues
 from herringbone.core.paths import component_folder
 
@@ -85,6 +86,7 @@ class Component:
             it, or none can.
         of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
             given the pair and the part's parameters, as they are without the pair. None: none do.
+        hosting: what it asks of its native FMU besides; None: nothing.
         folder: where script, README and golden result lie, and `resources`; that of its name if
             not given.
     """
@@ -104,6 +106,7 @@ class Component:
     longest_step: Callable[[np.ndarray], float] = unbounded
     freeze: Freeze | None = None
     of_pair: OfPair | None = None
+    hosting: Hosting | None = None
     folder: Path = field(default=Path())
 
     def __post_init__(self) -> None:

@@ -41,6 +41,7 @@ class Declaration:
         work: length of the work space that the kernels need.
         roles: what the component is for.
         ports: where it is joined to others.
+        hidden: names of variables, and of signals' nodes, that an FMU does not show.
 
     A component with inputs also gets the tunable parameter `interface_degree` (0 to 4).
 
@@ -61,6 +62,7 @@ class Declaration:
         work: int = 0,
         roles: Iterable[Role] = (),
         ports: Iterable[Port] = (),
+        hidden: Iterable[str] = (),
     ) -> None:
         self.name = check_name(name, "component")
         self.description = description
@@ -70,6 +72,7 @@ class Declaration:
         self.work = work
         self.roles = tuple(roles)
         self.ports = tuple(ports)
+        self.hidden = frozenset(hidden)
         self.variables = (
             *variables,
             parameter(

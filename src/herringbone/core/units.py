@@ -23,6 +23,7 @@ UNITS: Final[dict[str, dict[str, float]]] = {
     "N.m": {"kg": 1, "m": 2, "s": -2},
     "N.m/rad": {"kg": 1, "m": 2, "s": -2, "rad": -1},
     "N.m.s/rad": {"kg": 1, "m": 2, "s": -1, "rad": -1},
+    "N.m.s": {"kg": 1, "m": 2, "s": -1},
     "N.m/s": {"kg": 1, "m": 2, "s": -3},
     "W": {"kg": 1, "m": 2, "s": -3},
     "Hz": {"s": -1},
@@ -37,6 +38,7 @@ RATES: Final = {
     "rad": "rad/s",
     "rad/s": "rad/s2",
     "N.m": "N.m/s",
+    "N.m.s": "N.m",
     "kg^1/2.m": "kg^1/2.m/s",
     "kg^1/2.m/s": "kg^1/2.m/s2",
 }

@@ -16,3 +16,10 @@ def write_archive(target: Path, content: Mapping[str, bytes]) -> None:
             entry.create_system = 3
             entry.external_attr = _PERMISSIONS
             archive.writestr(entry, content[name], zipfile.ZIP_DEFLATED, compresslevel=9)
+
+
+def add_to_archive(target: Path, content: Mapping[str, bytes]) -> None:
+    """Write a zip file anew with further entries."""
+    with zipfile.ZipFile(target) as archive:
+        before = {name: archive.read(name) for name in archive.namelist()}
+    write_archive(target, {**before, **content})

@@ -1,4 +1,4 @@
-"""Check any FMI 2.0 or 3.0 co-simulation FMU: file, XML, a default run, state and reset."""
+"""Check any FMI 2.0 or 3.0 co-simulation FMU: file, XML, runs, state, reset, reference results."""
 
 import math
 from pathlib import Path
@@ -12,6 +12,7 @@ from herringbone.cosim.fmu.file import read_fmu, require_file
 from herringbone.cosim.fmu.opening import applied
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.fmi.host import Host, Host3, open_host
+from herringbone.fmi.reference import replay
 
 _STEPS = 10
 _STEP_SIZE = 1e-3
@@ -45,7 +46,7 @@ def check_fmu(path: str | Path) -> list[str]:
 def trials(path: Path) -> list[str]:
     """Problems that an FMU shows when it is stepped, here."""
     description, problems = read_fmu(path), []
-    for check in (_default_run, _state_round_trip, _reset):
+    for check in (_default_run, _state_round_trip, _reset, _reference_results):
         try:
             problems += check(path, description)
         except (FmuError, FMICallException) as error:
@@ -127,6 +128,11 @@ def _reset(path: Path, description: ModelDescription) -> list[str]:
         host.initialise(stop_time=_end(description))
         after = _advance(host, 0)
     return _differences(description, before, after, "a run after reset")
+
+
+def _reference_results(path: Path, description: ModelDescription) -> list[str]:
+    del description
+    return replay(path)
 
 
 def _differences(

@@ -14,6 +14,12 @@ from herringbone.core.variable import NODES, Causality, Variability
 
 def reals(declaration: Declaration) -> dict[int, Variable]:
     """The real variables by ascending value reference; the nodes of a signal are variables too."""
+    found = every_real(declaration)
+    return {i: v for i, v in found.items() if v.name not in declaration.hidden}
+
+
+def every_real(declaration: Declaration) -> dict[int, Variable]:
+    """As `reals`, with those that an FMU does not show."""
     index = declaration.index
     variables = {}
     for variable in declaration.variables:
@@ -36,12 +42,13 @@ def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
     names = []
     for name in variable.feedthrough:
         names += [name, *(node_name(name, node) for node in range(1, NODES + 1))]
-    return [name for name in names if name in declaration.index]
+    return [n for n in names if n in declaration.index and n not in declaration.hidden]
 
 
 def has_model_exchange(component: Component) -> bool:
     """True if native FMUs offer model exchange: the step does nothing but integrate states."""
-    return component.declaration.state_count > 0 and not component.samples
+    offered = component.hosting is None or component.hosting.exchange
+    return component.declaration.state_count > 0 and not component.samples and offered
 
 
 def visible_states(component: Component) -> dict[int, Variable]:

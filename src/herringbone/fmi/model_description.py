@@ -6,15 +6,23 @@ from importlib.metadata import version
 from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
-from herringbone.core import Component, Declaration, Text, Variable
+from herringbone.core import Component, Declaration, Experiment, Text, Variable
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.units import base_exponents
 from herringbone.core.variable import Causality
 from herringbone.fmi import interface
 from herringbone.fmi.used_states import UsedStates
 
-STEP_SIZE: Final = 1e-5
-"""Communication step size of the default experiment [s]."""
+EXPERIMENT: Final = Experiment(stop=0.01, step=1e-5)
+"""Default experiment of components."""
+DISPLAY_UNITS: Final = {
+    "rad": ("deg", 180.0 / math.pi),
+    "rad/s": ("r/min", 30.0 / math.pi),
+    "N": ("kN", 1e-3),
+    "m/s": ("mm/s", 1e3),
+}
+"""What tools show instead of a unit, and the factor to it."""
+AUTHOR: Final = "herringbone developers"
 LOG_CATEGORIES: Final = {
     "logStatusWarning": "Log messages with fmi2Warning status.",
     "logStatusDiscard": "Log messages with fmi2Discard status.",
@@ -61,7 +69,9 @@ def model_description(component: Component, native: UsedStates | None = None) ->
         modelName=component.name,
         guid=identifier(component, native.built_with if native else ""),
         description=declaration.description,
+        author=AUTHOR,
         version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
         license="MIT",
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
@@ -77,14 +87,14 @@ def model_description(component: Component, native: UsedStates | None = None) ->
     shown = (v.unit for v in (*states.values(), *(rate for _, rate in rates.values())))
     add_units(root, declaration, *shown)
     add_log_categories(root)
-    SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
+    add_experiment(root, component)
     variables = SubElement(root, "ModelVariables")
     reals = dict(sorted((interface.reals(declaration) | states).items()))
     for reference, variable in reals.items():
-        variables.append(_real(reference, variable))
+        variables.append(_real(reference, variable, settled=component.hosting is not None))
     for reference, text in interface.texts(declaration).items():
         variables.append(_string(reference, text))
-    _add_structure(root, declaration, list(reals.values()))
+    _add_structure(root, component, list(reals.values()))
     if rates:
         _add_derivatives(root, list(reals), rates)
     return root
@@ -98,6 +108,9 @@ def add_units(root: Element, declaration: Declaration, *further: str) -> None:
         exponents = base_exponents(name)
         if all(n == int(n) for n in exponents.values()):  # FMI knows no others
             SubElement(unit, "BaseUnit", {base: str(n) for base, n in exponents.items()})
+        if name in DISPLAY_UNITS:
+            shown, factor = DISPLAY_UNITS[name]
+            SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
 
 
 def add_log_categories(root: Element) -> None:
@@ -107,11 +120,22 @@ def add_log_categories(root: Element) -> None:
         SubElement(categories, "Category", name=name, description=description)
 
 
+def add_experiment(root: Element, component: Component) -> None:
+    """Add the default experiment; the same in FMI 2.0 and 3.0."""
+    experiment = component.hosting.experiment if component.hosting else EXPERIMENT
+    given = {"startTime": "0", "stopTime": repr(experiment.stop)}
+    if experiment.tolerance is not None:
+        given["tolerance"] = repr(experiment.tolerance)
+    SubElement(root, "DefaultExperiment", {**given, "stepSize": repr(experiment.step)})
+
+
 def sizes(variable: Variable) -> dict[str, Any]:
-    """The attributes of a finite range, and of a nominal value."""
+    """The attributes of a finite range, of a nominal value, and of what tools show."""
     range_ = {"min": variable.minimum, "max": variable.maximum}
     found = {name: repr(float(limit)) for name, limit in range_.items() if math.isfinite(limit)}
     known = variable.state or variable.nominal != 1.0
+    if variable.unit in DISPLAY_UNITS:
+        found["displayUnit"] = DISPLAY_UNITS[variable.unit][0]
     return found | ({"nominal": repr(float(variable.nominal))} if known else {})
 
 
@@ -128,15 +152,28 @@ def _scalar(
     )
 
 
-def _real(reference: int, variable: Variable) -> Element:
+def initial(variable: Variable, *, settled: bool) -> str:
+    """FMI's `initial` of what is no input.
+
+    Args:
+        variable: the variable.
+        settled: states are calculated in initialisation; what is set is where that begins.
+    """
+    if variable.causality is Causality.PARAMETER:
+        return "exact"
+    if variable.state:
+        return "approx" if settled else "exact"
+    return "calculated"
+
+
+def _real(reference: int, variable: Variable, *, settled: bool = False) -> Element:
     scalar = _scalar(
         reference, variable.name, variable.description, variable.variability, variable.causality
     )
-    exact = variable.state or variable.causality is Causality.PARAMETER
     if variable.causality is not Causality.INPUT:
-        scalar.set("initial", "exact" if exact else "calculated")
+        scalar.set("initial", initial(variable, settled=settled))
     real = SubElement(scalar, "Real", unit=variable.unit, **sizes(variable))
-    if exact or variable.causality is Causality.INPUT:
+    if scalar.get("initial") != "calculated":
         real.set("start", repr(float(variable.start)))
     return scalar
 
@@ -148,16 +185,27 @@ def _string(reference: int, text: Text) -> Element:
     return scalar
 
 
-def _add_structure(root: Element, declaration: Declaration, reals: list[Variable]) -> None:
+def starting(component: Component) -> tuple[Variable, ...]:
+    """Variables on which everything depends in initialisation, Strings aside.
+
+    Those whose start value is exact; where states are calculated, inputs as well.
+    """
+    d = component.declaration
+    found = (*d.states, *d.parameters) if component.hosting is None else (*d.parameters, *d.inputs)
+    return tuple(v for v in found if v.name not in d.hidden)
+
+
+def _add_structure(root: Element, component: Component, reals: list[Variable]) -> None:
     """Outputs with their direct feedthrough, and what they depend on at initialisation.
 
-    The latter are the same inputs and every variable whose start value is exact.
+    The latter are the same inputs and what `starting` tells.
     """
+    declaration = component.declaration
     structure = SubElement(root, "ModelStructure")
     outputs = SubElement(structure, "Outputs")
     unknowns = SubElement(structure, "InitialUnknowns")
     position = {v.name: i for i, v in enumerate(reals, 1)}
-    exact = [position[v.name] for v in (*declaration.states, *declaration.parameters)]
+    exact = [position[v.name] for v in starting(component)]
     exact += range(len(reals) + 1, len(reals) + 1 + len(declaration.texts))
     for variable in reals:
         if variable.causality is not Causality.OUTPUT:
@@ -167,7 +215,7 @@ def _add_structure(root: Element, declaration: Declaration, reals: list[Variable
         unknown = SubElement(outputs, "Unknown", index=index, dependencies=_join(inputs))
         if inputs:
             unknown.set("dependenciesKind", " ".join(["dependent"] * len(inputs)))
-        SubElement(unknowns, "Unknown", index=index, dependencies=_join(sorted(inputs + exact)))
+        SubElement(unknowns, "Unknown", index=index, dependencies=_join(sorted({*inputs, *exact})))
 
 
 def _add_derivatives(
@@ -190,7 +238,7 @@ def _add_derivatives(
         SubElement(derivatives, "Unknown", index=str(position[reference]))
     unknowns = child(structure, "InitialUnknowns")
     for reference in {*rates, *(reference for reference, _ in rates.values())}:
-        if variables[position[reference] - 1].get("initial") == "calculated":
+        if variables[position[reference] - 1].get("initial") in {"calculated", "approx"}:
             SubElement(unknowns, "Unknown", index=str(position[reference]))
     unknowns[:] = sorted(unknowns, key=lambda unknown: int(unknown.get("index", "")))
 

@@ -10,15 +10,19 @@ from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Variable
+from herringbone.core.declaration import node_name
 from herringbone.core.variable import NODES, Causality
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import (
-    STEP_SIZE,
+    AUTHOR,
+    add_experiment,
     add_log_categories,
     add_units,
     child,
     identifier,
+    initial,
     sizes,
+    starting,
 )
 from herringbone.fmi.used_states import UsedStates
 
@@ -50,7 +54,9 @@ def model_description_3(used: UsedStates) -> Element:
         modelName=component.name,
         instantiationToken=identifier(component, used.built_with),
         description=declaration.description,
+        author=AUTHOR,
         version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
         license="MIT",
         generationTool=f"herringbone {version('herringbone')}",
         variableNamingConvention="structured",
@@ -63,11 +69,12 @@ def model_description_3(used: UsedStates) -> Element:
     shown = [*(v for v, _ in states.values()), *(rate for _, rate in rates.values())]
     add_units(root, declaration, _TIME_UNIT, *(v.unit for v in shown))
     add_log_categories(root)
-    SubElement(root, "DefaultExperiment", startTime="0", stepSize=repr(STEP_SIZE))
+    add_experiment(root, component)
     variables = SubElement(root, "ModelVariables")
     references = dict(sorted((_references(declaration) | states).items()))
     for reference, (variable, extent) in references.items():
-        variables.append(_float64(reference, variable, extent))
+        settled = component.hosting is not None
+        variables.append(_float64(reference, variable, extent, settled=settled))
     for reference, text in interface.texts(declaration).items():
         string = SubElement(
             variables,
@@ -88,7 +95,7 @@ def model_description_3(used: UsedStates) -> Element:
         variability="continuous",
         unit=_TIME_UNIT,
     )
-    _add_structure(root, declaration, references)
+    _add_structure(root, component, references)
     if rates:
         _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
         _add_indicators(root, component)
@@ -100,15 +107,16 @@ def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:
     found = {}
     for variable in declaration.variables:
         first = declaration.index[variable.name]
-        found[first] = variable, 1
-        if variable.nodes:
+        if variable.name not in declaration.hidden:
+            found[first] = variable, 1
+        if variable.nodes and node_name(variable.name, 1) not in declaration.hidden:
             text = f"{variable.description}; nodes of the macro step"
             nodes = replace(variable, name=f"{variable.name}.node", description=text)
             found[first + 1] = nodes, NODES
     return found
 
 
-def _float64(reference: int, variable: Variable, extent: int) -> Element:
+def _float64(reference: int, variable: Variable, extent: int, *, settled: bool = False) -> Element:
     element = Element(
         "Float64",
         name=variable.name,
@@ -119,10 +127,9 @@ def _float64(reference: int, variable: Variable, extent: int) -> Element:
         unit=variable.unit,
         **sizes(variable),
     )
-    exact = variable.state or variable.causality is Causality.PARAMETER
     if variable.causality is not Causality.INPUT:
-        element.set("initial", "exact" if exact else "calculated")
-    if exact or variable.causality is Causality.INPUT:
+        element.set("initial", initial(variable, settled=settled))
+    if element.get("initial") != "calculated":
         element.set("start", " ".join([repr(float(variable.start))] * extent))
     if extent > 1:
         SubElement(element, "Dimension", start=str(extent))
@@ -130,21 +137,24 @@ def _float64(reference: int, variable: Variable, extent: int) -> Element:
 
 
 def _add_structure(
-    root: Element, declaration: Declaration, references: dict[int, tuple[Variable, int]]
+    root: Element, component: Component, references: dict[int, tuple[Variable, int]]
 ) -> None:
     """Outputs with their direct feedthrough, and what they depend on at initialisation.
 
-    The latter are the same inputs and every variable whose start value is exact.
+    The latter are the same inputs and what `starting` tells.
     """
+    declaration = component.declaration
     structure = SubElement(root, "ModelStructure")
-    exact = [declaration.index[v.name] for v in (*declaration.states, *declaration.parameters)]
+    exact = [declaration.index[v.name] for v in starting(component)]
     exact += interface.texts(declaration)
     unknowns = []
     for reference, (variable, _) in references.items():
         if variable.causality is not Causality.OUTPUT:
             continue
         scalars = [declaration.index[name] for name in variable.feedthrough]
-        inputs = sorted(at for first in scalars for at in (first, first + 1))
+        inputs = sorted(
+            at for at in {*scalars, *(first + 1 for first in scalars)} & set(references)
+        )
         output = SubElement(
             structure, "Output", valueReference=str(reference), dependencies=_join(inputs)
         )
@@ -154,7 +164,7 @@ def _add_structure(
             Element(
                 "InitialUnknown",
                 valueReference=str(reference),
-                dependencies=_join(sorted(inputs + exact)),
+                dependencies=_join(sorted({*inputs, *exact})),
             )
         )
     structure.extend(unknowns)
@@ -178,7 +188,7 @@ def _add_derivatives(
             variables.append(shown[reference])
         shown[reference].set("derivative", str(state))
     for reference in sorted({*rates, *(reference for reference, _ in rates.values())}):
-        if shown[reference].get("initial") == "calculated":
+        if shown[reference].get("initial") in {"calculated", "approx"}:
             SubElement(structure, "InitialUnknown", valueReference=str(reference))
 
 

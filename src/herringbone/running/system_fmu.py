@@ -5,8 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from herringbone.analysis.hosted.boundary import is_gearbox
+from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.composite import make_composite
 from herringbone.core import ParameterError
+from herringbone.core.hosting import Wanted
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.running.export import ready, written
@@ -26,8 +29,13 @@ def export_fmu(
     housing: Named | None = None,
     platforms: Sequence[str] = (),
     fmi: int = 2,
+    wanted: Wanted | None = None,
 ) -> Path:
     """Write a system as one native FMU, without any coupling delay inside.
+
+    A gearbox, one pair with its bearings and housing, can be made for hosts: few variables, its own
+    equilibrium at the start, inner steps by tolerance. Other systems keep all variables of their
+    parts, start where the scene does, and have fixed inner steps.
 
     Args:
         system: name of a shipped system, folder with system.toml, or .ssp file; no foreign FMUs.
@@ -38,6 +46,8 @@ def export_fmu(
         gear, housing: see `herringbone.run`.
         platforms: see `herringbone.fmi.native.PLATFORMS`; this one if not given.
         fmi: FMI version, 2 or 3.
+        wanted: what the host of a gearbox gives and wants to see; with `Wanted()` other systems
+            are taken, too. None: no FMU made for hosts.
 
     Returns:
         The file.
@@ -48,13 +58,23 @@ def export_fmu(
     file = Path(file)
     if file.suffix != ".fmu":
         raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
-    structure, _ = ready(system, scene, values, gear, housing)
-    composite = make_composite(structure, tuple(outside))
+    structure, chosen = ready(system, scene, values, gear, housing)
+    hosted = wanted is not None and not outside and is_gearbox(structure)
+    if wanted not in (None, Wanted()) and not hosted:
+        raise ParameterError(
+            f"{system}: what a host gives and sees can be chosen of a whole gearbox alone: one "
+            "gear pair with bearings and housing, whose two flanges are the ports of the system"
+        )
+    if wanted is not None and hosted:
+        structure = structure.with_values(chosen.values)
+        composite = make_hosted(structure, wanted)
+    else:
+        composite = make_composite(structure, tuple(outside))
     model = Model(
         composite.component,
-        (make_composite.__module__,),
+        (make_composite.__module__, make_hosted.__module__),
         composite.resources,
-        identity=repr((asdict(structure), tuple(outside))),
+        identity=repr((asdict(structure), tuple(outside), wanted)),
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):

@@ -17,6 +17,7 @@ class BlockMap:
         first: start of the parts' blocks in the component's block.
         states: number of states.
         inputs, outputs, parameters: pairs of places.
+        own: states in front that no part has.
     """
 
     first: int
@@ -24,6 +25,24 @@ class BlockMap:
     inputs: tuple[tuple[int, int], ...]
     outputs: tuple[tuple[int, int], ...]
     parameters: tuple[tuple[int, int], ...]
+    own: int = 0
+
+
+@dataclass(frozen=True)
+class OwnLines:
+    """What a component does besides its parts, as lines of kernels; `b` is its block.
+
+    Attributes:
+        place: hands inputs to the parts' `blocks`, at time t.
+        rates: derivatives `dx` of the own states, when the parts' are known.
+        results: own outputs, when the parts' are known.
+        kernels: further kernels, and what the module imports for them.
+    """
+
+    place: str = ""
+    rates: str = ""
+    results: str = ""
+    kernels: str = ""
 
 
 _KERNELS = """
@@ -36,40 +55,44 @@ def refresh(b: np.ndarray) -> None:
 
 
 @kernel
-def place(b: np.ndarray) -> None:
+def place(b: np.ndarray, t: float) -> None:
     blocks = b[{first}:]
-{inputs}
+{inputs}{own_place}    return
+
 
 @kernel
 def system_rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    place(b)
-    rhs(b[{first}:], b[:{states}], t, dx)
+    blocks = b[{first}:]
+    place(b, t)
+    rhs(blocks, b[{own}:{states}], t, dx[{own}:{states}])
+{own_rates}    return
 
 
 @kernel
 def system_out(b: np.ndarray, t: float) -> None:
     blocks = b[{first}:]
     refresh(b)
-    place(b)
-    scatter(blocks, b[:{states}])
+    place(b, t)
+    scatter(blocks, b[{own}:{states}])
     propagate(blocks, t)
     propagate(blocks, t)
     for i in range({outputs}):
         b[OUTPUT_TO[i]] = blocks[OUTPUT_FROM[i]]
+{own_results}    return
 
 
 @kernel
 def system_start(b: np.ndarray) -> None:
     blocks = b[{first}:]
     refresh(b)
-    scatter(blocks, b[:{states}])
+    scatter(blocks, b[{own}:{states}])
 {starts}    return
 
 
 @kernel
 def system_indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
     blocks = b[{first}:]
-    scatter(blocks, b[:{states}])
+    scatter(blocks, b[{own}:{states}])
 {indicators}    return
 
 
@@ -96,6 +119,7 @@ def composite_source(
     blocks: tuple[int, ...],
     states: tuple[int, ...],
     m: BlockMap,
+    own: OwnLines = OwnLines(),
 ) -> str:
     """Generate the module: the twin's source, then the component's kernels.
 
@@ -104,6 +128,7 @@ def composite_source(
         instances: the parts.
         blocks, states: where each part's block and states begin in the twin; totals at the end.
         m: where the component's variables lie.
+        own: what the component does besides.
     """
     loading = [i for i in instances if i.component.declaration.texts]
     starting = {i.component.name for i in instances if hasattr(i.component.start, "py_func")}
@@ -123,13 +148,17 @@ def composite_source(
         states=m.states,
         parameters=len(m.parameters),
         outputs=len(m.outputs),
-        inputs="".join(f"    blocks[{to}] = b[{at}]\n" for at, to in m.inputs) or "    return\n",
-        starts=_starts(instances, blocks, states, starting),
+        inputs="".join(f"    blocks[{to}] = b[{at}]\n" for at, to in m.inputs),
+        own=m.own,
+        own_place=own.place,
+        own_rates=own.rates,
+        own_results=own.results,
+        starts=_starts(instances, blocks, states, starting, m.own),
         indicators=_indicators(instances, blocks),
         loads=_loads(instances, blocks),
         checks=_checks(instances, blocks),
     )
-    return "".join([*lines, "\n", text])
+    return "".join([*lines, "\n", text, own.kernels])
 
 
 def has_check(instance: Instance) -> bool:
@@ -139,7 +168,11 @@ def has_check(instance: Instance) -> bool:
 
 
 def _starts(
-    instances: list[Instance], blocks: tuple[int, ...], states: tuple[int, ...], starting: set[str]
+    instances: list[Instance],
+    blocks: tuple[int, ...],
+    states: tuple[int, ...],
+    starting: set[str],
+    own: int,
 ) -> str:
     lines = []
     for p, instance in enumerate(instances):
@@ -148,7 +181,7 @@ def _starts(
             lines.append(
                 f"    {instance.component.name}_start(blocks[{blocks[p]}:{blocks[p + 1]}])\n"
                 f"    for i in range({count}):\n"
-                f"        b[{states[p]} + i] = blocks[{blocks[p]} + i]\n"
+                f"        b[{own + states[p]} + i] = blocks[{blocks[p]} + i]\n"
             )
     return "".join(lines)
 

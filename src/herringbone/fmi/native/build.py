@@ -11,6 +11,7 @@ from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.paths import cache_folder
 from herringbone.core.temporary import temporary_folder
+from herringbone.fmi.archive import add_to_archive
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.native.model import Model, registered_model
@@ -18,6 +19,7 @@ from herringbone.fmi.native.objects import object_code
 from herringbone.fmi.native.pack import pack_native
 from herringbone.fmi.native.platforms import Platform, own_platform, platform_of
 from herringbone.fmi.native.symbols import check_library, check_object
+from herringbone.fmi.reference import reference_files
 
 VERSIONS = (2, 3)
 """FMI versions that native FMUs are built for."""
@@ -87,6 +89,8 @@ def _built(model: Model, platforms: list[Platform], fmi: int) -> bytes:
     with temporary_folder() as scratch:
         libraries = {platform: _library(model, platform, fmi) for platform in platforms}
         packed = pack_native(model, libraries, fmi, scratch / f"{model.name}.fmu")
+        if model.shipped or own_platform() in platforms:
+            add_to_archive(packed, reference_files(packed, shipped=model.shipped))
         return packed.read_bytes()
 
 

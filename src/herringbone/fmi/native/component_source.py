@@ -5,9 +5,10 @@ import string
 from collections.abc import Container, Iterable
 
 from herringbone.components.resources.loader import ResourceLoader
-from herringbone.core import Declaration, Text, Variable
+from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.component import unbounded, unchanged
+from herringbone.core.declaration import node_name
 from herringbone.core.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
@@ -23,6 +24,7 @@ void hb_start(double *b);
 int32_t hb_load(const double *values, const int64_t *shape, double *b, double *scratch,
                 double *report);
 int32_t hb_verify(double *b, double *report);
+int32_t hb_settle(double *b, double t);
 void hb_tangent(double *b, double t, double *d, double *dx);
 void hb_indicators(double *b, double t, double *z);
 """
@@ -35,7 +37,7 @@ def component_source(used: UsedStates) -> str:
         used: the component, and the states that its FMU shows.
     """
     component, declaration = used.component, used.component.declaration
-    states, block = used.scalars(), _block(used)
+    states, block, hosting = used.scalars(), _block(used), component.hosting
     loader = component.load if isinstance(component.load, ResourceLoader) else None
     refusals = loader.refusals if loader else ()
     parts = [
@@ -47,12 +49,13 @@ def component_source(used: UsedStates) -> str:
         _array("HbReal reals", _reals(declaration, block)),
         _texts("names", (v.name if v else "" for v in _unlike_nodes(declaration, block))),
         _texts("units", (v.unit if v else "" for v in _unlike_nodes(declaration, block))),
-        _array("uint8_t access", _access(block, states)),
+        _array("uint8_t access", _access(declaration, block, states)),
         _array("uint8_t extents", _extents(used)),
         _array("uint32_t rates", _rates(declaration, block)),
         _array("uint32_t exchanged", states),
         _array("HbVector vectors", _vectors(used)),
         *_grammars(declaration.texts),
+        _array("HbRunsOn runs_on", _runs_on(component)),
         _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
@@ -86,6 +89,11 @@ def component_source(used: UsedStates) -> str:
         "start": "NULL" if component.start is unchanged else "hb_start",
         "load": "hb_load" if loader else "NULL",
         "verify": "hb_verify" if loader and loader.check else "NULL",
+        "settle": "hb_settle" if hosting else "NULL",
+        "not_settled": _string(hosting.not_settled if hosting else ""),
+        "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
+        "runs_on_count": len(hosting.runs_on) if hosting else 0,
+        "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,
         "refusals_count": len(refusals),
         "refusals": "refusals",
@@ -146,8 +154,14 @@ def _real(variable: Variable, node: int) -> str:
 def _block(used: UsedStates) -> list[Variable | None]:
     """The variables by index in the block, parameters included; None: a hidden state."""
     declaration = used.component.declaration
-    reals = interface.reals(declaration) | used.scalars()
+    reals = interface.every_real(declaration) | used.scalars()
     return [reals.get(i) for i in range(declaration.first_table)]
+
+
+def _runs_on(component: Component) -> Iterable[str]:
+    index = component.declaration.index
+    for which in component.hosting.runs_on if component.hosting else ():
+        yield f"{{{', '.join(str(index[name]) for name in which)}}}"
 
 
 def _nodes(declaration: Declaration) -> dict[int, int]:
@@ -172,9 +186,11 @@ def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[s
         yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0}"
 
 
-def _access(block: list[Variable | None], states: Container[int]) -> Iterable[str]:
+def _access(
+    declaration: Declaration, block: list[Variable | None], states: Container[int]
+) -> Iterable[str]:
     for index, variable in enumerate(block):
-        if variable is None:
+        if variable is None or variable.name in declaration.hidden:
             yield "HB_HIDDEN"
         elif variable.state:
             yield "HB_STATE"
@@ -194,7 +210,7 @@ def _extents(used: UsedStates) -> list[int]:
     for variable in declaration.variables:
         first = declaration.index[variable.name]
         extents[first] = 1
-        if variable.nodes:
+        if variable.nodes and node_name(variable.name, 1) not in declaration.hidden:
             extents[first + 1] = NODES
     for first, (_, extent) in used.arrays().items():
         extents[first] = extent

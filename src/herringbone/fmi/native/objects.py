@@ -80,6 +80,9 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     def indicators(b, t, z):  # noqa: ANN001, ANN202
         kernels_indicators(carray(b, (block,)), t, carray(z, (count,)))
 
+    def settle(b, t):  # noqa: ANN001, ANN202
+        return types.int32(kernels_settle(carray(b, (block,)), t))
+
     kernels_step, kernels_rhs, kernels_out = kernels
     kernels_start = of.start
     kernels_indicators: Any = of.indicators  # not used if it is None
@@ -101,6 +104,9 @@ def entry_points(of: Component) -> dict[str, CFunction]:
         kernels_check: Any = of.load.check  # not used if it is None
         if kernels_check is not None:
             found["hb_verify"] = (types.int32(_REALS, _REALS), verify)
+    if of.hosting is not None:
+        kernels_settle = of.hosting.settle
+        found["hb_settle"] = (types.int32(_REALS, _TIME), settle)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
     return {symbol: c_code(signature, function) for symbol, (signature, function) in found.items()}

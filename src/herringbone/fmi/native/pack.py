@@ -1,6 +1,5 @@
 """Packing a native FMU: description, binaries, resources, documentation."""
 
-import html
 import struct
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,8 +11,10 @@ from herringbone.fmi.model_description import model_description
 from herringbone.fmi.model_description_3 import model_description_3
 from herringbone.fmi.native.model import Model
 from herringbone.fmi.native.platforms import Platform
+from herringbone.fmi.packed.documentation import documentation, licence
+from herringbone.fmi.packed.icon import icon
+from herringbone.fmi.packed.terminals import terminals_and_icons
 
-_UNTESTED = "built, not run"
 _FAT_MAGIC, _FAT_ALIGNMENT = 0xCAFEBABE, 14
 _FAT_CPUS = {"x86_64-darwin": (0x01000007, 3), "aarch64-darwin": (0x0100000C, 0)}
 
@@ -37,7 +38,11 @@ def pack_native(model: Model, libraries: Mapping[Platform, Path], fmi: int, fmu:
     resources = {f"resources/{name}": file.read_bytes() for name, file in model.resources.items()}
     content = {
         "modelDescription.xml": _xml(description),
-        "documentation/index.html": _documentation(component, list(libraries)),
+        "documentation/index.html": documentation(component, libraries),
+        "documentation/licenses/license.txt": licence(),
+        "model.png": icon(),
+        "terminalsAndIcons/icon.png": icon(),
+        "terminalsAndIcons/terminalsAndIcons.xml": _xml(terminals_and_icons(component.declaration)),
         **binaries,
         **resources,
     }
@@ -80,14 +85,3 @@ def _universal(libraries: Mapping[Platform, bytes]) -> bytes:
         padded = data + b"\0" * (-len(data) % align)
         body, at = body + padded, at + len(padded)
     return table + b"\0" * (align - len(table)) + body
-
-
-def _documentation(component: Component, platforms: list[Platform]) -> bytes:
-    rows = "".join(f"<li>{p.name}{'' if p.tested else f' ({_UNTESTED})'}</li>" for p in platforms)
-    text = (
-        f"<!DOCTYPE html><html><head><meta charset='utf-8'><title>{component.name}</title></head>"
-        f"<body><h1>{component.name}</h1><p>{html.escape(component.declaration.description)}.</p>"
-        f"<h2>Binaries</h2><ul>{rows}</ul>"
-        f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
-    )
-    return text.encode()

@@ -18,7 +18,8 @@
 
 /* What the environment may do with an entry of the block. */
 enum HbAccess {
-    HB_HIDDEN,     /* no FMI variable: elements of a state vector that are not in use */
+    HB_HIDDEN,     /* no FMI variable: what an FMU does not show, such as elements of a state vector
+                      that are not in use */
     HB_ELEMENT,    /* never set: element of a state vector, made when initialisation ends */
     HB_INPUT,      /* set at any time */
     HB_OUTPUT,     /* never set */
@@ -73,6 +74,12 @@ typedef struct {
     const char *elements; /* what they stand for, such as "modes" */
 } HbVector;
 
+/* An input that is the integral of another one: what the host set runs on with the rate that it set. */
+typedef struct {
+    uint32_t input, rate; /* value references */
+    uint32_t since;       /* index of the local that has the time at which the input was set */
+} HbRunsOn;
+
 typedef struct {
     const char *name;    /* FMI model identifier */
     const char *token;   /* guid of FMI 2, instantiationToken of FMI 3 */
@@ -124,6 +131,13 @@ typedef struct {
                     double *report);
     /* What was loaded against the parameters, at the end of initialisation: as `load`. */
     int32_t (*verify)(double *b, double *report);
+    /* The states at the start, from parameters and inputs, in place of `start`; not 0: in vain, and
+       `not_settled` is logged. */
+    int32_t (*settle)(double *b, double t);
+    const char *not_settled;
+    uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
+    uint32_t runs_on_count;
+    const HbRunsOn *runs_on;
     uint32_t load_scratch;
     uint32_t refusals_count;
     const HbRefusal *refusals;

@@ -14,10 +14,22 @@ Status instance_set_time(Instance *instance, double time, const char *what) {
     return STATUS_OK;
 }
 
+Status instance_set_tolerance(Instance *instance, bool defined, double tolerance) {
+    uint32_t at = hb_component.tolerance;
+    if (defined && !(tolerance > 0.0 && tolerance < INFINITY))
+        return instance_fail(instance, STATUS_ERROR,
+                             "%s: tolerance %g; it must be positive and finite", instance->name,
+                             message_number(tolerance));
+    if (at)
+        instance->block[at] = defined ? tolerance : hb_component.reals[at].start;
+    return STATUS_OK;
+}
+
 Status instance_enter_initialisation(Instance *instance) {
     if (instance->now.phase != PHASE_INSTANTIATED)
         return instance_refuse(instance, "enterInitializationMode");
     instance->now.phase = PHASE_INITIALISATION;
+    instance_stamp(instance);
     instance->outdated = true;
     return STATUS_OK;
 }
@@ -159,6 +171,11 @@ Status instance_exit_initialisation(Instance *instance) {
         status = verify_tables(instance);
     if (status != STATUS_OK)
         return status;
+    if (instance->not_settled) {
+        Message message;
+        message_write(&message, "%s: %s", instance->name, hb_component.not_settled);
+        log_write(&instance->log, STATUS_WARNING, &message);
+    }
     double *signal = instance->block + hb_component.first_output;
     for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
         for (int node = 1; node < HB_STRIDE; node++)
@@ -172,7 +189,10 @@ Status instance_refresh(Instance *instance) {
         Status status = instance_read_resources(instance);
         if (status != STATUS_OK)
             return status;
-        if (hb_component.start)
+        if (hb_component.settle)
+            instance->not_settled =
+                hb_component.settle(instance->block, instance->now.time) != 0;
+        else if (hb_component.start)
             hb_component.start(instance->block);
         instance->rates_outdated = true;
     }

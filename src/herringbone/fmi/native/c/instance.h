@@ -33,7 +33,7 @@ typedef struct {
     int32_t phase;
     uint32_t last_degree; /* degree of the signals in the last step */
     uint32_t input_order; /* highest order of the input derivatives for the next step; 0: none */
-    uint32_t padding;
+    uint32_t derivatives; /* bit k: the host gave a derivative of input k for the next step */
 } Moment;
 
 typedef struct FmuState FmuState;
@@ -44,6 +44,7 @@ typedef struct {
     bool model_exchange;
     bool outdated;       /* outputs must be computed before they are read */
     bool rates_outdated; /* derivatives of the states, too */
+    bool not_settled;    /* no start was found as it was asked for */
     Moment now;
     Texts *texts;
     FmuState *states; /* those that the host has not freed */
@@ -74,6 +75,8 @@ Status instance_refuse(Instance *instance, const char *call);
 
 /* initialisation.c */
 Status instance_set_time(Instance *instance, double time, const char *what);
+/* The tolerance that the host gives; if it gives none, that of the default experiment holds. */
+Status instance_set_tolerance(Instance *instance, bool defined, double tolerance);
 Status instance_enter_initialisation(Instance *instance);
 Status instance_exit_initialisation(Instance *instance);
 /* Read the resource files, if they are not read yet. */
@@ -99,6 +102,9 @@ Status instance_set_texts(Instance *instance, const uint32_t references[], size_
 /* Tell that there are no variables of these references and type. */
 Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
                         size_t count);
+/* Inputs that run on are those of the present time: all of them, or those that are set. */
+void instance_stamp(Instance *instance);
+void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count);
 bool instance_is_real(uint32_t reference);
 /* An output itself, none of its nodes. */
 bool instance_is_output(uint32_t reference);

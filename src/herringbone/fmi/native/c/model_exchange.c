@@ -43,7 +43,9 @@ Status instance_move_time(Instance *instance, double time) {
     if (!in(instance, 1u << PHASE_EVENT | 1u << PHASE_CONTINUOUS))
         return instance_refuse(instance, "setTime");
     instance->outdated = instance->rates_outdated = true;
-    return instance_set_time(instance, time, "time");
+    Status status = instance_set_time(instance, time, "time");
+    instance_stamp(instance); /* an integrator's inputs are those of its time */
+    return status;
 }
 
 /* Refuse a NaN or infinite number per state: the integrator may try a smaller step. */

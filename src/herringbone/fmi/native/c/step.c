@@ -17,7 +17,16 @@ static uint32_t first_not_finite(const Instance *instance) {
     return hb_component.first_table;
 }
 
-static Status explain_failure(Instance *instance, double step_size) {
+/* Status of a step kernel, see kernels/adaptive.py. */
+enum { INNER_STEPS_TOO_SMALL = 3 };
+
+static Status explain_failure(Instance *instance, int32_t failed, double step_size) {
+    if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
+        return instance_fail(instance, STATUS_DISCARD,
+                             "%s: the tolerance %g asks for inner steps below 1e-10 s in a step of "
+                             "%g s, whatever the communication step size; give a larger tolerance, "
+                             "or check the inputs for jumps",
+                             instance->name, instance->block[hb_component.tolerance], step_size);
     if (hb_component.longest_step && step_size > hb_component.longest_step(instance->block))
         return instance_fail(instance, STATUS_DISCARD,
                              "%s: step size %g s; one call takes at most %g s", instance->name,
@@ -50,13 +59,20 @@ static int32_t step(Instance *instance, double time, double step_size) {
     return hb_component.step(instance->block, instance->work, time, step_size);
 }
 
+/* Most inputs that run on. */
+enum { RUNS_ON = 8 };
+
 /* Input derivatives are told to the kernels as nodes, of the degree of their highest order. */
 static int32_t step_along_derivatives(Instance *instance, double time, double step_size) {
-    double *live = &instance->block[hb_component.degree];
+    double *live = &instance->block[hb_component.degree], held[RUNS_ON];
+    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
+        held[k] = instance->block[hb_component.runs_on[k].input];
     instance->now.last_degree = input_derivatives_to_nodes(instance, step_size);
     *live = instance->now.last_degree;
     int32_t failed = step(instance, time, step_size);
     *live = 0.0;
+    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
+        instance->block[hb_component.runs_on[k].input] = held[k];
     return failed;
 }
 
@@ -81,7 +97,7 @@ Status instance_step(Instance *instance, double time, double step_size) {
                                       : step(instance, time, step_size);
     instance->rates_outdated = true;
     if (failed)
-        return explain_failure(instance, step_size);
+        return explain_failure(instance, failed, step_size);
     now->time = time + step_size;
     return STATUS_OK;
 }

@@ -145,6 +145,18 @@ static Status set_checked(Instance *instance, uint32_t reference, double value) 
     return STATUS_OK;
 }
 
+void instance_stamp(Instance *instance) {
+    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
+        instance->block[hb_component.runs_on[k].since] = instance->now.time;
+}
+
+void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count) {
+    for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
+        for (size_t i = 0; i < count; i++)
+            if (references[i] == hb_component.runs_on[k].input)
+                instance->block[hb_component.runs_on[k].since] = instance->now.time;
+}
+
 Status instance_set(Instance *instance, const uint32_t references[], size_t count,
                     const double values[]) {
     if (instance->now.phase == PHASE_TERMINATED)
@@ -160,6 +172,8 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
             worst = status > worst ? status : worst;
         }
     }
+    if (hb_component.runs_on_count)
+        instance_stamp_set(instance, references, count);
     instance->outdated =
         instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_INSTANTIATED;
     instance->rates_outdated = true;

@@ -69,13 +69,15 @@ void fmi3FreeInstance(fmi3Instance c) {
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined,
                                        fmi3Float64 tolerance, fmi3Float64 start,
                                        fmi3Boolean stop_defined, fmi3Float64 stop) {
-    (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
+    (void)stop_defined, (void)stop;
     Instance *instance = c;
     if (!instance)
         return fmi3Error;
     if (instance->now.phase != PHASE_INSTANTIATED)
         return (fmi3Status)instance_refuse(instance, "enterInitializationMode");
-    Status status = instance_set_time(instance, start, "start time");
+    Status status = instance_set_tolerance(instance, tolerance_defined, tolerance);
+    if (status == STATUS_OK)
+        status = instance_set_time(instance, start, "start time");
     return (fmi3Status)(status == STATUS_OK ? instance_enter_initialisation(instance) : status);
 }
 

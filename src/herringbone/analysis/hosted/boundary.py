@@ -1,0 +1,163 @@
+"""What a host sees of a gearbox: its flanges by their names, chosen outputs and parameters."""
+
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from functools import cached_property
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import ParameterError
+from herringbone.core.hosting import Given, Wanted
+from herringbone.core.part_path import PartPath
+from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.cosim.structure.system import PartSpec, System
+
+_INSIDE = {Role.GEAR_PAIR, Role.BEARING, Role.HOUSING}
+_TRANSMISSION_ERROR = "transmission_error"
+_MOTION_OF_SEATS = "v_"
+_FORCE = "f_"
+_OF_PAIR = (
+    "mesh_damping_ratio", "backlash", "symmetry_deviation", "ramp_turns",
+)  # fmt: skip
+"""Parameters of the gear pair that a host sees."""
+
+
+@dataclass(frozen=True)
+class HostFlange:
+    """A flange of the gearbox.
+
+    Attributes:
+        name: of the port.
+        given: what the host gives.
+        path: part and port of the gear pair.
+        shaft: path of the shaft between both; "" where the host gives torque.
+    """
+
+    name: str
+    given: Given
+    path: str
+    shaft: str = ""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A gearbox with what lies between it and the host.
+
+    Attributes:
+        system: the gearbox, with a shaft at every flange that takes motion.
+        flanges: its flanges.
+        pair: path of the gear pair.
+        wanted: what the host wants to see.
+    """
+
+    system: System
+    flanges: tuple[HostFlange, ...]
+    pair: str
+    wanted: Wanted
+
+    def name(self, full: str) -> str:
+        """What the host calls a variable `instance.variable`."""
+        for start, short in self._shorter.items():
+            if full.startswith(start):
+                return short + full[len(start) :]
+        return full
+
+    @cached_property
+    def _shorter(self) -> dict[str, str]:
+        known = anatomy(self.system)
+        found = {}
+        for f in self.flanges:
+            if f.shaft:
+                found[f"{f.shaft}.flange_a."] = f"{f.name}."
+                found[f"{f.shaft}."] = f"{f.name}.shaft_"
+            else:
+                found[f"{f.path}."] = f"{f.name}."
+        for role, kind, name in (
+            (Role.BEARING, PortKind.JOURNAL, "bearing"),
+            (Role.HOUSING, PortKind.SEAT, "seat"),
+        ):
+            parts = known.with_role(role)
+            if len(parts) == 1:
+                for port in known.ports(parts[0], kind):
+                    found[f"{parts[0]}.{port.name}."] = f"{name}.{port.place}."
+        for path in self._of_meshes:
+            found[path] = path.removeprefix(f"{self.pair}.")
+        return found
+
+    @cached_property
+    def _of_meshes(self) -> tuple[str, ...]:
+        known = anatomy(self.system)
+        return (
+            *known.columns(self.pair, Quantity.MESH_FORCE),
+            f"{self.pair}.{_TRANSMISSION_ERROR}",
+        )
+
+    def shows_output(self, full: str) -> bool:
+        """True if an output `instance.variable` is an output of the FMU."""
+        if any(
+            fnmatchcase(full, p) or fnmatchcase(self.name(full), p) for p in self.wanted.outputs
+        ):
+            return True
+        at, _, variable = self.name(full).rpartition(".")
+        if at in {f.name for f in self.flanges} and not variable.startswith("shaft_"):
+            return True
+        if full in self._of_meshes:
+            return True
+        kind = at.partition(".")[0]
+        return (kind == "bearing" and variable.startswith(_FORCE)) or (
+            kind == "seat" and variable.startswith(_MOTION_OF_SEATS)
+        )
+
+    def shows_parameter(self, part: str, variable: str, quantity: Quantity | None) -> bool:
+        """True if a parameter of a part is one of the FMU."""
+        if self.wanted.parameters or part in {f.shaft for f in self.flanges}:
+            return True
+        if part == self.pair:
+            return variable in _OF_PAIR
+        bearing = Role.BEARING in anatomy(self.system).parts[part].roles
+        return bearing and quantity in {Quantity.STIFFNESS, Quantity.DAMPING}
+
+
+def is_gearbox(system: System) -> bool:
+    """True if a system is one gear pair in its bearings and housing, with two open flanges."""
+    if system.foreign_parts or len(system.ports) != 2:
+        return False
+    known = anatomy(system)
+    if any(set(info.roles) - _INSIDE or not info.roles for info in known.parts.values()):
+        return False
+    pairs = known.with_role(Role.GEAR_PAIR)
+    flanges = {f"{p}.{port.name}" for p in pairs for port in known.ports(p, PortKind.FLANGE)}
+    return len(pairs) == 1 and set(system.ports.values()) == flanges
+
+
+def make_boundary(system: System, wanted: Wanted) -> Boundary:
+    """A gearbox with shafts to the host.
+
+    Raises:
+        ParameterError: the system has no flange of a name.
+    """
+    if unknown := sorted(set(wanted.given) - set(system.ports)):
+        raise ParameterError(
+            f"system '{system.name}' has no flange '{unknown[0]}'; it has {', '.join(system.ports)}"
+        )
+    (pair,) = anatomy(system).with_role(Role.GEAR_PAIR)
+    coupling = next(
+        c.name
+        for c in COMPONENTS.values()
+        if Role.COUPLING in c.declaration.roles and not c.declaration.state_count
+    )
+    flanges = []
+    for name, path in system.ports.items():
+        given = wanted.given.get(name, Given.TORQUE)
+        shaft = "" if given is Given.TORQUE else f"{name}_shaft"
+        flanges.append(HostFlange(name, given, path, shaft))
+    shafts = [f for f in flanges if f.shaft]
+    whole = replace(
+        system,
+        parts=(*system.parts, *(PartSpec(PartPath(f.shaft), coupling) for f in shafts)),
+        connections=(
+            *system.connections,
+            *((f.path, f"{f.shaft}.flange_b") for f in shafts),
+        ),
+    )
+    return Boundary(whole, tuple(flanges), pair, wanted)

@@ -1,0 +1,175 @@
+"""A gearbox as one component for any host."""
+
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+
+from herringbone.analysis.hosted.boundary import Boundary, make_boundary
+from herringbone.analysis.hosted.declaration import (
+    NEXT_STEP,
+    STEP_START,
+    STEPPING,
+    TOLERANCE,
+    host_declaration,
+    lead,
+    own_states,
+    since,
+)
+from herringbone.analysis.hosted.places import Places, elastic_states
+from herringbone.analysis.hosted.source import own_lines
+from herringbone.analysis.twin.composite import Composite
+from herringbone.analysis.twin.composite_parts import (
+    Parts,
+    full_name,
+    loader_of,
+    make_parts,
+    nominals_of,
+    resources_of,
+)
+from herringbone.analysis.twin.composite_source import composite_source
+from herringbone.analysis.twin.source import twin_source
+from herringbone.core import (
+    Component,
+    Declaration,
+    Experiment,
+    Hosting,
+    Kernels,
+    RunsOn,
+    Variable,
+    parameter,
+)
+from herringbone.core.caching.generated import load_generated
+from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.hosting import Given, Wanted
+from herringbone.core.roles import Quantity
+from herringbone.cosim.structure.system import System
+from herringbone.kernels.adaptive import LONGEST_STEP, adaptive_stepper
+from herringbone.kernels.jit import inner
+from herringbone.kernels.newton import newton_scratch
+
+_TOLERANCE = 1e-3
+EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
+"""Default experiment."""
+_NOT_SETTLED = (
+    "no equilibrium of the elastic coordinates was found under these torques; they start "
+    "undeformed, and will vibrate: look at the torques, or set start_mode = 0"
+)
+
+
+def make_hosted(system: System, wanted: Wanted) -> Composite:
+    """Make one component of a gearbox.
+
+    Args:
+        system: see `boundary.is_gearbox`; its values become start values.
+        wanted: what the host gives and wants to see.
+
+    Raises:
+        ParameterError, StructureError, ResourceError: see `make_boundary` and `make_composite`.
+    """
+    boundary = make_boundary(system, wanted)
+    parts = make_parts(boundary.system)
+    guesses = _guesses(boundary, parts)
+    count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
+    unknowns = sum(name is not None for name in elastic_states(boundary, parts))
+    unknowns += sum(bool(f.shaft) for f in boundary.flanges)
+    scratch = count + newton_scratch(unknowns)
+    declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses)
+    places = Places(boundary, parts, declaration)
+    source = composite_source(
+        twin_source(parts.network, parts.instances, parts.layout),
+        parts.instances,
+        parts.layout.block_first,
+        parts.layout.state_first,
+        places.block_map(),
+        own_lines(places.flanges(), places.start(guesses), places.starts()),
+    )
+    module = load_generated("composite", source)
+    loader = loader_of(declaration, parts.instances, module)
+    component = Component(
+        declaration,
+        Kernels(_step_kernel(boundary, declaration, module), module.system_rhs, module.system_out),
+        _equations(boundary, parts),
+        load=loader,
+        verify=loader.verify,
+        indicators=module.system_indicators,
+        indicator_count=sum(i.component.indicator_count for i in parts.instances),
+        nominals=nominals_of(declaration, parts),
+        longest_step=_longest_step(declaration),
+        hosting=Hosting(
+            module.settle,
+            _NOT_SETTLED,
+            tuple(
+                RunsOn(f"{f.name}.phi", f"{f.name}.w", since(f))
+                for f in boundary.flanges
+                if f.given is Given.MOTION
+            ),
+            TOLERANCE,
+            EXPERIMENT,
+            wanted.exchange,
+        ),
+    )
+    return Composite(component, dict(resources_of(parts.instances)))
+
+
+def _equations(boundary: Boundary, parts: Parts) -> str:
+    texts = (i.component.equations for i in parts.instances)
+    return "\n\n".join([f"{boundary.system.description}.", *dict.fromkeys(texts)])
+
+
+def _longest_step(declaration: Declaration) -> Callable[[np.ndarray], float]:
+    @inner(declaration.name)
+    def longest(b: np.ndarray) -> float:
+        return LONGEST_STEP
+
+    return longest
+
+
+def _step_kernel(boundary: Boundary, declaration: Declaration, module: ModuleType) -> Callable:
+    advance = adaptive_stepper(module.system_rhs, module.system_out, declaration, NEXT_STEP)
+    refresh, index = module.refresh, declaration.index
+    tolerance, start, degree = declaration.indices(TOLERANCE, STEP_START, INTERFACE_DEGREE)
+    stepping = index[STEPPING]
+    impulses = tuple(index[f"{f.name}.impulse"] for f in boundary.flanges if f.shaft)
+    held = tuple(
+        (index[lead(f)], index[since(f)]) for f in boundary.flanges if f.given is Given.MOTION
+    )
+    impulse_count, held_count = len(impulses), len(held)
+    impulses, held = impulses or (0,), held or ((0, 0),)
+
+    @inner(declaration.name)
+    def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
+        refresh(b)
+        b[start], b[stepping] = t, 1.0
+        for k in range(impulse_count):
+            b[impulses[k]] = 0.0
+        for k in range(held_count):
+            b[held[k][0]] = t - b[held[k][1]]
+        status = advance(b, w, 0.0, h, b[tolerance], int(b[degree]))
+        b[stepping] = 0.0
+        return status
+
+    return step
+
+
+def _guesses(boundary: Boundary, parts: Parts) -> list[Variable]:
+    """Hidden parameters: where the search for the equilibrium begins, by flank."""
+    found = []
+    for i in parts.instances:
+        declaration = i.component.declaration
+        by_flank = []
+        for flank in (1.0, -1.0):
+            block = i.block.copy()
+            block[: declaration.state_count] = 0.0
+            for v in declaration.offered(Quantity.CARRYING_FLANK):
+                block[declaration.index[v.name]] = flank
+            i.component.guess(block)
+            by_flank.append(block[: len(declaration.states)])
+        for k, v in enumerate(declaration.states):
+            if any(states[k] != 0.0 for states in by_flank):
+                name = boundary.name(full_name(i, v.name))
+                found += [
+                    parameter(f"{name}.guess_{side}", v.unit, "where a search begins", states[k])
+                    for side, states in zip(("drive", "coast"), by_flank, strict=True)
+                ]
+    return found

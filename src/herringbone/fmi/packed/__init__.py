@@ -1,0 +1,1 @@
+"""What lies in a native FMU besides description, binaries and resources."""

@@ -1,0 +1,81 @@
+"""Documentation of an FMU: equations, signs, variables and their ranges."""
+
+import html
+import math
+from collections.abc import Iterable
+from importlib.metadata import distribution
+
+from herringbone.core import Component, Variable
+from herringbone.core.units import quantity
+from herringbone.core.variable import Variability
+from herringbone.fmi import interface
+from herringbone.fmi.native.platforms import Platform
+
+_UNTESTED = "built, not run"
+_HEAD = ("name", "causality", "unit", "start", "range", "description")
+_SIGNS = (
+    "SI units; tools may show others. Forces and torques are those that act on the body whose "
+    "motion is given: a torque input drives the gearbox where it is positive, a torque output acts "
+    "on what the host has at that flange. Both flanges turn positively in driving direction. Left "
+    "is +z; in the housing's frame x points to the wheel and y up; in the gear's frame y is the "
+    "line of action of the flank that carries."
+)
+_HOSTED = (
+    "A flange that takes motion has its shaft inside; angles count from the start, where the shaft "
+    "has its initial torque. A held angle runs on: phi + w (t - time of the last set); if the host "
+    "gives derivatives of phi, these alone count. tau_mean is the mean of tau over the last "
+    "communication step: its product with the mean speed is the energy that was handed over. "
+    "At the start the elastic coordinates are in equilibrium with the torques, and move as one "
+    "with the gears; start_mode = 0 leaves them undeformed. The tolerance that the host gives, or "
+    "that of the default experiment, decides inner steps: relative, of each state by its size."
+)
+
+
+def documentation(component: Component, platforms: Iterable[Platform], more: str = "") -> bytes:
+    """The page; `more` is HTML that follows the signs."""
+    declaration = component.declaration
+    binaries = "".join(
+        f"<li>{p.name}{'' if p.tested else f' ({_UNTESTED})'}</li>" for p in platforms
+    )
+    hosted = f"<h2>Flanges and start</h2><p>{html.escape(_HOSTED)}</p>" if component.hosting else ""
+    text = (
+        f"<!DOCTYPE html><html><head><meta charset='utf-8'><title>{component.name}</title></head>"
+        f"<body><h1>{component.name}</h1><p>{html.escape(declaration.description)}.</p>"
+        f"<h2>Binaries</h2><ul>{binaries}</ul>"
+        f"<h2>Signs</h2><p>{html.escape(_SIGNS)}</p>{hosted}{more}"
+        f"<h2>Variables</h2>{_variables(component)}"
+        f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
+    )
+    return text.encode()
+
+
+def licence() -> bytes:
+    """Text of the licence."""
+    return (distribution("herringbone").read_text("licenses/LICENSE") or "MIT\n").encode()
+
+
+def _variables(component: Component) -> str:
+    shown = interface.reals(component.declaration).values()
+    rows = "".join(f"<tr>{''.join(map(_cell, _row(v)))}</tr>" for v in shown)
+    texts = "".join(
+        f"<tr>{''.join(map(_cell, (t.name, 'parameter', '', t.start, '', t.description)))}</tr>"
+        for t in component.declaration.texts
+    )
+    head = "".join(
+        f"<th>{name}</th>"
+        for name in ("name", "causality", "unit", "start", "range", "description")
+    )
+    return f"<table><tr>{head}</tr>{rows}{texts}</table>"
+
+
+def _cell(text: str) -> str:
+    return f"<td>{html.escape(text)}</td>"
+
+
+def _row(v: Variable) -> tuple[str, ...]:
+    limits = (v.minimum, v.maximum)
+    ends = [quantity(x, v.unit) if math.isfinite(x) else "" for x in limits]
+    range_ = " ... ".join(ends) if any(ends) else ""
+    tunable = ", tunable" if v.variability is Variability.TUNABLE else ""
+    start = repr(float(v.start)) if v.causality in {"input", "parameter"} else ""
+    return v.name, f"{v.causality}{tunable}", v.unit, start, range_, v.description

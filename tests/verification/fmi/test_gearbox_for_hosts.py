@@ -1,0 +1,250 @@
+"""The gearbox as an FMU for hosts: what it shows, how it starts, what a flange takes."""
+
+import math
+from functools import cache
+from xml.etree.ElementTree import fromstring
+from zipfile import ZipFile
+
+import numpy as np
+import pytest
+from fmpy import read_model_description, simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
+from support.fmi2_host import Fmi2Host
+
+from herringbone.core import ParameterError
+from herringbone.core.hosting import Given, Wanted
+from herringbone.fmi.check import check_fmu
+from herringbone.fmi.native import find_compiler, own_platform
+from herringbone.running.system_fmu import export_fmu
+
+RATIO, SPEED = 3.0, 1000.0 * math.pi / 30.0
+"""Teeth 81/27; 1000 r/min in rad/s."""
+MOTION = Wanted({"pinion": Given.MOTION})
+BOTH = Wanted({"pinion": Given.SPEED}, exchange=True)
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        own_platform() is None or find_compiler(own_platform()) is None,
+        reason="there is no C compiler",
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    """Function: the gearbox for a host."""
+    folder = tmp_path_factory.mktemp("hosted")
+
+    @cache
+    def export(number, fmi=2):
+        wanted = (Wanted(), MOTION, BOTH)[number]
+        return export_fmu("gearbox", folder / f"g{number}_{fmi}.fmu", fmi=fmi, wanted=wanted)
+
+    return export
+
+
+def load(torque, speed=SPEED):
+    """Start of a gearbox that takes torques: speed [rad/s] and pinion torque [N m], balanced."""
+    return {"initial_speed": speed, "pinion.tau": torque, "wheel.tau": -RATIO * torque}
+
+
+def forces(host):
+    return [n for n in host.reference if n.startswith("bearing.")]
+
+
+@pytest.mark.parametrize(("number", "fmi"), [(0, 2), (2, 3)])
+def test_what_it_shows(number, fmi, exported):
+    file = exported(number, fmi)
+    assert validate_fmu(str(file)) == []
+    of = {c: [] for c in ("input", "output", "parameter", "local", "independent")}
+    for v in read_model_description(str(file)).modelVariables:
+        of[v.causality].append(v.name)
+    inputs = {0: ["pinion.tau", "wheel.tau"], 2: ["pinion.w", "wheel.tau"]}[number]
+    assert sorted(of["input"]) == inputs
+    assert len(of["output"]) <= 40
+    assert len(of["parameter"]) <= 20 + 3 * (number == 2)  # stiffness, damping, torque of a shaft
+    # model exchange: 24 states of the pair, 2 of the flange, modes, and their derivatives; contacts
+    locals_ = [name for name in of["local"] if not name.startswith("event_indicator")]
+    assert len(of["local"]) - len(locals_) == (4 if number == 2 else 0)
+    assert not locals_ or {"pinion.angle", "der(modal_housing.q)"} <= set(locals_)
+    assert bool(locals_) is (number == 2)
+
+
+def test_no_input_is_missing(exported, capfd):
+    result = simulate_fmu(str(exported(0)), stop_time=5e-3)
+    assert len(result) == 6  # steps of the default experiment
+    assert "issing" not in "".join(capfd.readouterr())
+
+
+@pytest.mark.parametrize(("speed", "torque"), [(0.0, 0.0), (1.0, 200.0), (3.0, 900.0)])
+def test_start_at_any_operating_point(speed, torque, exported, tmp_path):
+    host = Fmi2Host(exported(0), tmp_path, values=load(torque, speed * SPEED))
+    step, rows = 2e-5, []
+    for k in range(15000):
+        rows.append(host.get(*forces(host)))
+        host.step(k * step, step)
+    swing = np.ptp(rows[:250], axis=0).max()
+    assert swing <= 1.1 * np.ptp(rows[-5000:], axis=0).max() + 0.01  # N
+
+
+def test_start_on_the_coast_flank(exported, tmp_path):
+    """Torque reversed: the mirror image of the same load, to what the apex deviation changes."""
+    found = [Fmi2Host(exported(0), tmp_path / str(t), values=load(t)) for t in (200.0, -200.0)]
+    drive, coast = (h.get("mesh_left.force", "bearing.pinion_left.f_y") for h in found)
+    assert coast == pytest.approx(-drive, rel=1e-3)
+
+
+def test_whole_accelerates_with_its_net_torque(exported, tmp_path):
+    """Torque at the pinion alone: all turn together, with the moments of inertia of both gears."""
+    values = {"initial_speed": 0.0, "pinion.tau": 200.0, "wheel.tau": 0.0}
+    host = Fmi2Host(exported(0), tmp_path, values=values)
+    pinion, wheel = host.get("pinion.a", "wheel.a")
+    assert pinion == pytest.approx(RATIO * wheel, rel=1e-9)
+    assert pinion > 0.0
+    mesh = host.get("mesh_left.force", "mesh_right.force").sum()
+    balanced = Fmi2Host(exported(0), tmp_path / "b", values=load(200.0)).get("mesh_left.force")[0]
+    assert 0.0 < mesh < 2.0 * balanced
+
+
+def test_no_equilibrium_is_told(exported, tmp_path):
+    loose = {**load(200.0), "bearing_supports.pinion.radial_stiffness": 0.0}
+    host = Fmi2Host(exported(0), tmp_path, values=loose)
+    (line,) = [m for m in host.messages if "no equilibrium" in m]
+    assert "they start undeformed" in line
+    assert host.get("transmission_error")[0] == 0.0
+    as_set = Fmi2Host(exported(0), tmp_path / "s", values={**load(200.0), "start_mode": 0.0})
+    assert as_set.get("transmission_error")[0] == 0.0
+    assert not [m for m in as_set.messages if "no equilibrium" in m]
+
+
+def torque_at_given_motion(file, folder, step, ripple):
+    """Mean torque at a pinion whose speed has a ripple, once a turn; held for a step [s]."""
+    share = 0.05 * ripple
+    host = Fmi2Host(file, folder, values={"pinion.phi": 0.0, "pinion.w": SPEED})
+    period, means = 2.0 * math.pi / SPEED, []
+    for k in range(round(6 * period / step)):
+        t = k * step
+        w = SPEED * (1.0 + share * math.sin(SPEED * t))
+        phi = SPEED * t - share * (math.cos(SPEED * t) - 1.0)
+        host.set({"pinion.phi": phi, "pinion.w": w, "wheel.tau": -600.0})
+        host.step(t, step)
+        means.append(host.get("pinion.tau_mean")[0])
+    return np.mean(means[-round(2 * period / step) :])
+
+
+@pytest.mark.parametrize("ripple", [False, True])
+def test_held_angle_runs_on(ripple, exported, tmp_path):
+    fine = torque_at_given_motion(exported(1), tmp_path / "f", 5e-5, ripple)
+    held = torque_at_given_motion(exported(1), tmp_path / "h", 1e-3, ripple)
+    assert fine == pytest.approx(-200.0, rel=1e-3)  # what balances 600 N m
+    assert held == pytest.approx(fine, rel=0.01)
+
+
+def test_derivatives_of_the_angle_count_alone(exported, tmp_path):
+    """With dphi/dt = w: as the angle that runs on. With dphi/dt = 0: the shaft is twisted."""
+    found = {}
+    for slope in (None, SPEED, 0.0):
+        host = Fmi2Host(exported(1), tmp_path / str(slope), values={"pinion.w": SPEED})
+        host.set({"pinion.phi": 0.0, "pinion.w": SPEED})
+        if slope is not None:
+            host.slave.setRealInputDerivatives([host.reference["pinion.phi"]], [1], [slope])
+        host.step(0.0, 1e-4)
+        found[slope] = host.get("pinion.tau")[0]
+    assert found[SPEED] == pytest.approx(found[None], abs=1e-6)  # N m
+    assert abs(found[0.0] - found[None]) > 50.0  # of 6e4 N m/rad times 0.01 rad
+
+
+def test_same_bits_as_fresh(exported, tmp_path):
+    """Reset, second initialisation, another instance, another start time, a restored state."""
+
+    def run(host, start=0.0):
+        rows = []
+        for k in range(20):
+            t = start + k * 2.0**-12
+            host.set({"pinion.phi": SPEED * (t - start), "pinion.w": SPEED})
+            host.step(t, 2.0**-12)
+            rows.append(host.get(*forces(host), "pinion.tau", "pinion.tau_mean"))
+        return np.array(rows)
+
+    values = {"pinion.w": SPEED, "wheel.tau": -600.0}
+    host = Fmi2Host(exported(1), tmp_path, values=values)
+    saved = host.slave.getFMUState()
+    fresh = run(host)
+    host.slave.setFMUState(saved)
+    restored = run(host)
+    host.slave.reset()
+    host.initialise(values={"pinion.w": 2.0, "wheel.tau": 30.0})
+    run(host)
+    host.slave.reset()
+    host.initialise(values=values)
+    other = Fmi2Host(exported(1), tmp_path / "o", values=values)
+    later = Fmi2Host(exported(1), tmp_path / "l", start=8.0, values=values)
+    for rows in (restored, run(host), run(other), run(later, 8.0)):
+        assert rows.tobytes() == fresh.tobytes()
+
+
+def test_tolerance_decides_inner_steps(exported, tmp_path):
+    def run(tolerance):
+        host = Fmi2Host(exported(0), tmp_path / str(tolerance), 0.0, tolerance, load(200.0))
+        rows = []
+        for k in range(50):
+            host.step(k * 1e-3, 1e-3)
+            rows.append(host.get(*forces(host)))
+        return np.array(rows)
+
+    exact = run(1e-9)
+    size = np.linalg.norm(exact - exact.mean(axis=0))
+    errors = [np.linalg.norm(run(t) - exact) / size for t in (1e-3, 1e-5)]
+    assert errors[0] < 5e-3
+    assert errors[1] < 5e-5
+    with pytest.raises(FMICallException):
+        Fmi2Host(exported(0), tmp_path / "n", 0.0, -1.0)
+
+
+def test_what_is_no_gearbox_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="of a whole gearbox alone"):
+        export_fmu("test_rig", tmp_path / "rig.fmu", wanted=MOTION)
+    with pytest.raises(ParameterError, match="has no flange 'shaft'"):
+        export_fmu("gearbox", tmp_path / "g.fmu", wanted=Wanted({"shaft": Given.SPEED}))
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_what_lies_in_it(fmi, exported):
+    """Terminals of variables that exist, an icon, a licence, units as people read them."""
+    file = exported(2 if fmi == 3 else 0, fmi)
+    description = read_model_description(str(file))
+    names = {v.name for v in description.modelVariables}
+    with ZipFile(file) as archive:
+        terminals = fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+        page = archive.read("documentation/index.html").decode()
+        assert archive.read("terminalsAndIcons/icon.png").startswith(b"\x89PNG")
+        assert b"Permission" in archive.read("documentation/licenses/license.txt")
+    members = [m.get("variableName") for m in terminals.iter("TerminalMemberVariable")]
+    assert set(members) <= names
+    assert {t.get("name") for t in terminals.iter("Terminal")} >= {"pinion", "seat.wheel_left"}
+    assert all(f"<td>{n}</td>" in page for n in members)
+    shown = {v.name: v.displayUnit for v in description.modelVariables}
+    assert (shown["wheel.w"], shown["mesh_left.force"]) == ("r/min", "kN")
+    assert description.defaultExperiment.tolerance
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_reference_results_are_replayed(fmi, exported, tmp_path):
+    file = exported(2 if fmi == 3 else 0, fmi)
+    assert check_fmu(file) == []
+    folder = "extra/org.fmi-standard.fmi-ls-ref"
+    with ZipFile(file) as archive:
+        content = {name: archive.read(name) for name in archive.namelist()}
+    head, *rows = content[f"{folder}/gearbox_out.csv"].decode().splitlines()
+    assert len(rows) == 21  # the start, and 20 steps
+    wrong = tmp_path / "gearbox.fmu"
+    rows[5] = ",".join([rows[5].split(",")[0], *["7.0"] * head.count(",")])
+    with ZipFile(wrong, "w") as archive:
+        content[f"{folder}/gearbox_out.csv"] = "\n".join([head, *rows]).encode()
+        for name, data in content.items():
+            archive.writestr(name, data)
+    problems = check_fmu(wrong)
+    assert len(problems) == head.count(",")
+    assert "reference results: wheel.w = 34.9" in "".join(problems)
