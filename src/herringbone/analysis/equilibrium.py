@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from herringbone.analysis.rigid_rotation import rigid_rotation, steady_rows
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import Role
@@ -43,8 +44,13 @@ class Equilibrium:
     residual: float
 
 
-def equilibrium(system: System) -> Equilibrium:
+def equilibrium(system: System, spin: float = 0.0) -> Equilibrium:
     """Start values for steady rotation of a system of components.
+
+    Args:
+        system: of known parts.
+        spin: speed of the fastest shaft [rad/s] that is added where the search begins, if nothing
+            holds the speed: torques by speed are far from straight between standstill and there.
 
     Where a controller holds the speed, the first gear pair stays at its angle: what a mesh gives
     back depends on its phase, and the angle would be moved to where that is least. At given torques
@@ -56,7 +62,7 @@ def equilibrium(system: System) -> Equilibrium:
     """
     twin = Twin(system)
     with _BLAS.limit(limits=1, user_api="blas"):
-        return _solved(system, twin, _held(twin))
+        return _solved(system, twin, _held(twin), spin)
 
 
 def _held(twin: Twin) -> int | None:
@@ -71,13 +77,15 @@ def _held(twin: Twin) -> int | None:
     return None
 
 
-def _solved(system: System, twin: Twin, held: int | None) -> Equilibrium:
+def _solved(system: System, twin: Twin, held: int | None, spin: float) -> Equilibrium:
     """Steady rotation with one state as it is, or none."""
-    rotating, zero = _steady_rows(twin)
+    rotating, zero = steady_rows(twin)
     scale = _scales(twin)
     x = _guess(twin)
     if x.size == 0:
         return Equilibrium({}, 0.0)
+    if spin:
+        x += spin * rigid_rotation(twin, x)
     keep = np.setdiff1d(np.arange(x.size), rotating)
     free = np.ones(x.size)
     if held is not None:
@@ -132,16 +140,6 @@ def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
         for v in declaration.vectors:
             names += [f"the rate of {instance.name}.{v.element(k + 1)}" for k in range(v.capacity)]
     return [names[k] for k in keep] + zero
-
-
-def _steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
-    """States that rotate, and outputs that vanish, in steady rotation."""
-    rotating, zero = [], []
-    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
-        declaration = instance.component.declaration
-        rotating += [first + i for i, v in enumerate(declaration.states) if v.steady == "rotating"]
-        zero += [f"{instance.name}.{v.name}" for v in declaration.outputs if v.steady == "zero"]
-    return np.array(rotating, dtype=np.int64), zero
 
 
 def _scales(twin: Twin) -> np.ndarray:

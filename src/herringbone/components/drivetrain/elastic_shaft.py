@@ -25,7 +25,7 @@ import numpy as np
 
 from herringbone.components.ports import flange, flange_body
 from herringbone.core import Component, Declaration, Kernels, output, parameter, state
-from herringbone.core.roles import Quantity
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -58,6 +58,7 @@ _d = Declaration(
                   quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(2 * MODES + 2, 2),
+    roles=[Role.ROTOR],
     ports=[flange("flange_a"), flange("flange_b")],
 )  # fmt: skip
 

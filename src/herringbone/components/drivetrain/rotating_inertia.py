@@ -12,7 +12,7 @@ import numpy as np
 
 from herringbone.components.ports import flange, flange_body
 from herringbone.core import Component, Declaration, Kernels, parameter, state
-from herringbone.core.roles import Quantity
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
@@ -38,6 +38,7 @@ _d = Declaration(
                   quantity=Quantity.MICRO_STEP),
     ],
     work=steppers.body_work(2, len(FLANGES)),
+    roles=[Role.ROTOR],
     ports=[flange(port) for port in FLANGES],
 )  # fmt: skip
 

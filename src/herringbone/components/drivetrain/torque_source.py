@@ -27,7 +27,7 @@ import numpy as np
 
 from herringbone.components.ports import flange
 from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
-from herringbone.core.roles import Quantity
+from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.elementary import cosine
 from herringbone.kernels.jit import kernel
@@ -74,6 +74,7 @@ _d = Declaration(
         *_orders(),
     ],
     work=steppers.element_work(len(_INPUTS)),
+    roles=[Role.SOURCE],
     ports=[flange("flange")],
 )  # fmt: skip
 
