@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from herringbone.cosim.structure.system import System
     from herringbone.result.result import Result
     from herringbone.running.api import run
+    from herringbone.running.export import build_fmus
+    from herringbone.running.own_master import connections, start_values
     from herringbone.scenes import Scene
 
     __version__: str
@@ -36,12 +38,18 @@ __all__ = [
     "Role",
     "Scene",
     "System",
+    "build_fmus",
+    "connections",
     "radiated_power",
     "run",
+    "start_values",
 ]
 
 _WHERE = {
     "run": "herringbone.running.api",
+    "build_fmus": "herringbone.running.export",
+    "connections": "herringbone.running.own_master",
+    "start_values": "herringbone.running.own_master",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

@@ -6,12 +6,13 @@ rotation and a system without controller keeps its start speed, so that the syst
 a null space: Gauss-Newton with the smallest step in scaled unknowns.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from herringbone.analysis.rigid_rotation import rigid_rotation, steady_rows
+from herringbone.analysis.rigid_rotation import steady_rows, turning
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import Role
@@ -44,13 +45,8 @@ class Equilibrium:
     residual: float
 
 
-def equilibrium(system: System, spin: float = 0.0) -> Equilibrium:
+def equilibrium(system: System) -> Equilibrium:
     """Start values for steady rotation of a system of components.
-
-    Args:
-        system: of known parts.
-        spin: speed of the fastest shaft [rad/s] that is added where the search begins, if nothing
-            holds the speed: torques by speed are far from straight between standstill and there.
 
     Where a controller holds the speed, the first gear pair stays at its angle: what a mesh gives
     back depends on its phase, and the angle would be moved to where that is least. At given torques
@@ -62,7 +58,14 @@ def equilibrium(system: System, spin: float = 0.0) -> Equilibrium:
     """
     twin = Twin(system)
     with _BLAS.limit(limits=1, user_api="blas"):
-        return _solved(system, twin, _held(twin), spin)
+        held = _held(twin)
+        try:
+            return _solved(system, twin, held, _guess(twin))
+        except EquilibriumError:
+            for x in turning(twin, _guess(twin)):
+                with suppress(EquilibriumError):
+                    return _solved(system, twin, held, x)
+            raise
 
 
 def _held(twin: Twin) -> int | None:
@@ -77,15 +80,12 @@ def _held(twin: Twin) -> int | None:
     return None
 
 
-def _solved(system: System, twin: Twin, held: int | None, spin: float) -> Equilibrium:
-    """Steady rotation with one state as it is, or none."""
+def _solved(system: System, twin: Twin, held: int | None, x: np.ndarray) -> Equilibrium:
+    """Steady rotation from a guess, with one state as it is, or none."""
     rotating, zero = steady_rows(twin)
     scale = _scales(twin)
-    x = _guess(twin)
     if x.size == 0:
         return Equilibrium({}, 0.0)
-    if spin:
-        x += spin * rigid_rotation(twin, x)
     keep = np.setdiff1d(np.arange(x.size), rotating)
     free = np.ones(x.size)
     if held is not None:

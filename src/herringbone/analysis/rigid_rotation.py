@@ -1,5 +1,7 @@
 """The rotation of a whole drivetrain in which nothing moves against anything else."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from herringbone.analysis.twin.monolithic import Twin
@@ -7,6 +9,24 @@ from herringbone.analysis.twin.monolithic import Twin
 _POSITIONS = {"m", "rad", "kg^1/2.m"}
 _VELOCITIES = {"m/s", "rad/s", "kg^1/2.m/s"}
 _NOTHING = 1e-9
+_ROUNDING = 1e-12
+_SPEEDS = (100.0, 1000.0, 10.0)
+"""Of the fastest shaft [rad/s], at which a search for steady rotation begins anew."""
+
+
+def turning(twin: Twin, x: np.ndarray) -> Iterator[np.ndarray]:
+    """States (n,) in which the whole drivetrain turns at some speeds, for a search to begin at.
+
+    None where it turns already, where it cannot, or where nothing depends on its speed.
+    """
+    rotation = rigid_rotation(twin, x)
+    if not rotation.any() or x[rotation != 0.0].any():
+        return
+    rows = np.setdiff1d(np.arange(x.size), steady_rows(twin)[0])
+    before, after = (twin.rhs(0.0, x + change)[rows] for change in (0.0, rotation))
+    if np.abs(after - before).max() > _ROUNDING * np.abs(before).max():
+        for speed in _SPEEDS:
+            yield x + speed * rotation
 
 
 def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:

@@ -1,10 +1,8 @@
-"""Steady rotation of systems whose torques are given, from several speeds and phases of the mesh.
+"""Steady rotation of systems whose torques are given, from several phases of the mesh.
 
-Where nothing controls the speed, torques by speed decide on it, and these are far from straight
-about standstill (dry friction, efficiency): the search begins anew at speeds. Torques that do not
-even depend on speed balance only at the phases of the mesh at which its stored energy is
-stationary; between these the search may be caught. It begins at the start angle, and anew from
-others.
+Where nothing controls the speed, given torques balance only at the phases of the mesh at which its
+stored energy is stationary; between these the search may be caught. It begins at the start angle,
+and anew from others.
 """
 
 import math
@@ -18,8 +16,6 @@ from herringbone.core import EquilibriumError
 from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
 
-_SPINS = (100.0, 1000.0, 10.0)
-"""Start speeds of the fastest shaft [rad/s]."""
 _PHASES = 8
 """Start angles over a mesh period: about half of all searches are caught."""
 
@@ -36,10 +32,6 @@ def steady_values(system: System) -> Values:
     try:
         return equilibrium(system).values
     except EquilibriumError:
-        if not anatomy(system).with_role(Role.CONTROLLER):
-            for spin in _SPINS:
-                with suppress(EquilibriumError):
-                    return equilibrium(system, spin).values
         for values in _other_angles(system):
             with suppress(EquilibriumError):
                 return equilibrium(system.with_values(values)).values
