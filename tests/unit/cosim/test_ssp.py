@@ -9,8 +9,8 @@ from fmpy.ssp import ssd as fmpy_ssp
 from lxml import etree
 
 from herringbone.core import FmuError, HerringboneError, ParameterError, StructureError
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.read import read_ssp, read_stop_time
-from herringbone.cosim.ssp.structure import DescribedPart
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 
