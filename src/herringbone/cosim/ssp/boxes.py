@@ -98,8 +98,8 @@ def _borders(scope: str) -> Iterator[tuple[str, str]]:
 
 
 def _connector(part: DescribedPart, scope: str, variable: str) -> str:
-    """Name of a connector of a system around a part: the path inside."""
-    return f"{flat_name(PartPath(part.name[len(scope) + 1 :]))}.{variable}"
+    """Name of a connector of a system around a part: path inside, told from that of the part's."""
+    return f"{flat_name(PartPath(part.name[len(scope) + 1 :]))}__{variable}"
 
 
 def _rising(
