@@ -5,6 +5,12 @@ from pathlib import Path
 
 import pytest
 
+import herringbone as hb
+from herringbone.fmi.native import find_compiler, own_platform
+
+needs_compiler = pytest.mark.skipif(
+    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
+)
 FOLDER = Path(__file__).parents[1] / "examples"
 FILES = {file.stem: file for file in sorted(FOLDER.glob("*.py"))}
 
@@ -23,6 +29,8 @@ KNOWN = {
     "07_symmetry_and_relief": ({}, 5296.0, WHOLE),
     "08_swap_the_housing": ({"t_end": 0.005}, None, None),
     "09_aliasing": ({"t_end": 0.1}, None, None),
+    "10_plain_fmpy": ({"t_end": 2e-4}, None, None),
+    "11_gearbox_fmu_in_a_loop": ({"t_end": 0.005}, 200.0, WHOLE),
 }
 """Arguments, number and relative tolerance; or arguments of a test of its own below."""
 
@@ -77,3 +85,23 @@ def test_swap_the_housing(tmp_path, monkeypatch):
 def test_aliasing(tmp_path, monkeypatch):
     """The line at 650 Hz is an alias: an eighth-order filter at 800 Hz leaves 1.6 % of 1350 Hz."""
     assert run(tmp_path, monkeypatch, "09_aliasing") > 20.0
+
+
+@needs_compiler
+def test_plain_fmpy(tmp_path, monkeypatch):
+    """At most 40 lines; the results of our master that steps in parallel on held inputs."""
+    assert len(FILES["10_plain_fmpy"].read_text(encoding="utf-8").splitlines()) <= 40
+    force = run(tmp_path, monkeypatch, "10_plain_fmpy")
+    ours = hb.run(
+        "gearbox",
+        values={"gear_mesh.der(angle)": 104.72, "gear_mesh.pinion.tau": 200.0},
+        algorithm="jacobi:order=0,schedule=parallel",
+        step=2e-6,
+        record_step=2e-5,
+        t_end=2e-4,
+    )
+    both = [f"bearing_supports.shaft.pinion_{side}.f_y" for side in ("left", "right")]
+    start, end = ours.data[both].sum(axis=1).iloc[[0, -1]]
+    assert start == pytest.approx(200.0 / 50.298e-3, rel=1e-4)
+    assert force == pytest.approx(end, rel=1e-9)
+    assert force != pytest.approx(start, rel=1e-6)

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from herringbone.result.folder.load import load
     from herringbone.result.result import Result
     from herringbone.running.api import run
+    from herringbone.running.export import build_fmus
+    from herringbone.running.own_master import connections, start_values
     from herringbone.scenes import Scene
 
     __version__: str
@@ -37,14 +39,20 @@ __all__ = [
     "Role",
     "Scene",
     "System",
+    "build_fmus",
+    "connections",
     "load",
     "radiated_power",
     "run",
+    "start_values",
 ]
 
 _WHERE = {
     "run": "herringbone.running.api",
     "load": "herringbone.result.folder.load",
+    "build_fmus": "herringbone.running.export",
+    "connections": "herringbone.running.own_master",
+    "start_values": "herringbone.running.own_master",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

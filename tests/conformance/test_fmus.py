@@ -66,8 +66,10 @@ def test_repeated_step_is_bit_identical(name, started):
 
     steps(0)
     saved = host.slave.getFMUstate()
+    states = [v.name for v in component.declaration.states]
+    before = host.values(*states)
     once = steps(3)
-    if component.declaration.state_count:
+    if component.declaration.hidden_states or host.values(*states) != before:
         assert steps(3) != once
     host.slave.setFMUstate(saved)
     assert steps(3) == once

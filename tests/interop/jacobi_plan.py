@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.structure.network import build_network
 
 

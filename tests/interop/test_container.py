@@ -12,7 +12,7 @@ import pytest
 
 import herringbone as hb
 from herringbone.cosim.algorithms import Jacobi
-from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.structure.network import build_network
 from herringbone.fmi.native import build_native_fmus
 from herringbone.running.loading import load_scene, load_system

@@ -10,7 +10,7 @@ from support.fmus import NAMES
 
 import herringbone as hb
 from herringbone.components.registry import COMPONENTS
-from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.structure.network import build_network
 from herringbone.fmi import golden
 from herringbone.fmi.native import build_native_fmus

@@ -11,8 +11,8 @@ from herringbone.core.paths import PACKAGE
 
 NAME = re.compile(rf"(?<![A-Za-z_])({'|'.join(COMPONENTS)})(?![a-z_])")
 MODULES = {
-    f"herringbone.components.{file.stem}"
-    for file in (PACKAGE / "components").iterdir()
+    ".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts)
+    for file in (PACKAGE / "components").rglob("*")
     if file.stem.startswith(tuple(COMPONENTS))
 }
 FILES = sorted(f for f in PACKAGE.rglob("*.py") if "components" not in f.relative_to(PACKAGE).parts)

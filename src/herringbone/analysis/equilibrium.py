@@ -6,11 +6,13 @@ rotation and a system without controller keeps its start speed, so that the syst
 a null space: Gauss-Newton with the smallest step in scaled unknowns.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from herringbone.analysis.rigid_rotation import steady_rows, turning
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.roles import Role
@@ -56,7 +58,14 @@ def equilibrium(system: System) -> Equilibrium:
     """
     twin = Twin(system)
     with _BLAS.limit(limits=1, user_api="blas"):
-        return _solved(system, twin, _held(twin))
+        held = _held(twin)
+        try:
+            return _solved(system, twin, held, _guess(twin))
+        except EquilibriumError:
+            for x in turning(twin, _guess(twin)):
+                with suppress(EquilibriumError):
+                    return _solved(system, twin, held, x)
+            raise
 
 
 def _held(twin: Twin) -> int | None:
@@ -71,11 +80,10 @@ def _held(twin: Twin) -> int | None:
     return None
 
 
-def _solved(system: System, twin: Twin, held: int | None) -> Equilibrium:
-    """Steady rotation with one state as it is, or none."""
-    rotating, zero = _steady_rows(twin)
+def _solved(system: System, twin: Twin, held: int | None, x: np.ndarray) -> Equilibrium:
+    """Steady rotation from a guess, with one state as it is, or none."""
+    rotating, zero = steady_rows(twin)
     scale = _scales(twin)
-    x = _guess(twin)
     if x.size == 0:
         return Equilibrium({}, 0.0)
     keep = np.setdiff1d(np.arange(x.size), rotating)
@@ -132,16 +140,6 @@ def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
         for v in declaration.vectors:
             names += [f"the rate of {instance.name}.{v.element(k + 1)}" for k in range(v.capacity)]
     return [names[k] for k in keep] + zero
-
-
-def _steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
-    """States that rotate, and outputs that vanish, in steady rotation."""
-    rotating, zero = [], []
-    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
-        declaration = instance.component.declaration
-        rotating += [first + i for i, v in enumerate(declaration.states) if v.steady == "rotating"]
-        zero += [f"{instance.name}.{v.name}" for v in declaration.outputs if v.steady == "zero"]
-    return np.array(rotating, dtype=np.int64), zero
 
 
 def _scales(twin: Twin) -> np.ndarray:

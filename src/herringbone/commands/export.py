@@ -46,7 +46,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     )
     for name, text in _SHOWN.items():
         sub.add_argument(f"--{name}", action="store_true", help=f"a gearbox FMU with {text}")
-    sub.add_argument("--native", action="store_true", help="an .ssp file with native FMUs")
+    kind = sub.add_mutually_exclusive_group()
+    kind.add_argument("--native", action="store_true", help="native FMUs in the .ssp; the default")
+    kind.add_argument("--python", action="store_true", help="Python FMUs in the .ssp file")
+    sub.add_argument(
+        "--nested", action="store_true", help="keep nested systems in the .ssp, with connectors"
+    )
     add_platform_options(sub)
     sub.add_argument(
         "-o",
@@ -74,6 +79,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
     if options.as_fmu:
         if options.step is not None:
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
+        if options.nested or options.python:
+            raise ParameterError("--nested and --python belong to .ssp files; leave out --as-fmu")
         file = export_fmu(
             options.system,
             options.output or Path(fmu_file_name(name, options.fmi)),
@@ -91,8 +98,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         raise ParameterError(
             "--outside, --fmi, flanges and variables belong to one FMU; add --as-fmu"
         )
-    if platforms and not options.native:
-        raise ParameterError("--platforms chooses among native FMUs; add --native or --as-fmu")
+    if platforms and options.python:
+        raise ParameterError("--platforms chooses among native FMUs; leave out --python")
     file = export_ssp(
         options.system,
         options.output or Path(f"{name}.ssp"),
@@ -101,8 +108,9 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         values=values,
         gear=files.gear,
         housing=files.housing,
-        native=options.native,
+        native=not options.python,
         platforms=platforms,
+        nested=options.nested,
     )
     return [str(file), *untested(platforms)]
 

@@ -18,12 +18,19 @@ _MODULES = (
     "shaft_coupling",
     "bench_controller",
     "velocity_sensor",
+    "drivetrain.rotating_inertia",
+    "drivetrain.geared_shaft",
+    "drivetrain.elastic_shaft",
+    "drivetrain.torque_source",
+    "drivetrain.speed_source",
+    "drivetrain.freewheel",
 )
 """Each defines the component of its name, in capitals. The first one of a role is the usual one."""
 
 
 def _defined(module: str) -> Component:
-    return getattr(import_module(f"{__package__}.{module}"), module.upper())
+    name = module.rpartition(".")[2]
+    return getattr(import_module(f"{__package__}.{module}"), name.upper())
 
 
 COMPONENTS: dict[str, Component] = {c.name: c for c in map(_defined, _MODULES)}

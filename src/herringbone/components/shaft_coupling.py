@@ -1,7 +1,9 @@
 """Massless torsional spring-damper between two flanges; the torque transducer.
 
-    torque = stiffness (phi_a - phi_b) + damping (w_a - w_b)
+    torque = stiffness (phi_a - phi_b - phi_rel0) + damping (w_a - w_b)
     tau_a = -torque,  tau_b = +torque
+
+`phi_rel0` is the twist at which there is no torque: in a closed loop of shafts, it locks one in.
 
 `torque` is the torque that flange a hands to flange b, `speed` the mean of both speeds: what the
 transducer shows. Both flanges' motions belong to the same instant: never hold one side's angle
@@ -65,6 +67,7 @@ _d = Declaration(
             minimum=0,
             quantity=Quantity.DAMPING,
         ),
+        parameter("phi_rel0", "rad", "twist at which there is no torque", 0.0),
     ],
     work=steppers.element_work(len(_MOTION)),
     roles=[Role.COUPLING],
@@ -75,7 +78,9 @@ _PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
 _TAU_A, _TAU_B, _TORQUE, _SPEED, _PHI_REL, _W_REL = _d.indices(
     "flange_a.tau", "flange_b.tau", "torque", "speed", "phi_rel", "w_rel"
 )
-_STIFFNESS, _DAMPING, _DEGREE = _d.indices("stiffness", "damping", "interface_degree")
+_STIFFNESS, _DAMPING, _PHI_REL0, _DEGREE = _d.indices(
+    "stiffness", "damping", "phi_rel0", "interface_degree"
+)
 
 
 @kernel
@@ -87,7 +92,8 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 def _out(b: np.ndarray, t: float) -> None:
     b[_PHI_REL] = b[_PHI_A] - b[_PHI_B]
     b[_W_REL] = b[_W_A] - b[_W_B]
-    b[_TORQUE] = b[_STIFFNESS] * b[_PHI_REL] + b[_DAMPING] * b[_W_REL]
+    elastic = b[_STIFFNESS] * (b[_PHI_REL] - b[_PHI_REL0])
+    b[_TORQUE] = elastic + b[_DAMPING] * b[_W_REL]
     b[_TAU_A], b[_TAU_B] = -b[_TORQUE], b[_TORQUE]
     b[_SPEED] = 0.5 * (b[_W_A] + b[_W_B])
 

@@ -26,6 +26,8 @@ class Role(StrEnum):
     COUPLING = "shaft coupling"
     CONTROLLER = "controller"
     SENSOR = "sensor"
+    ROTOR = "rotor"
+    SOURCE = "torque source"
 
 
 class PortKind(StrEnum):

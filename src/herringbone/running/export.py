@@ -4,16 +4,16 @@ import logging
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
-from herringbone.components.registry import component
 from herringbone.core import ParameterError, ResourceError
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
+from herringbone.fmi.native.started import build_started_fmu
 from herringbone.fmi.python.build import build_python_fmus
+from herringbone.running.carried_files import carried_files, refuse_files, without_files
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
@@ -124,10 +124,14 @@ def export_ssp(
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
-    native: bool = False,
+    native: bool = True,
     platforms: Sequence[str] = (),
+    nested: bool = False,
 ) -> Path:
     """Write a system as an .ssp file: structure, FMUs, and start values of a scene.
+
+    Native FMUs start with their values whatever a master makes of parameter files: each instance
+    has an FMU of its own. Python FMUs have them from the parameter files alone.
 
     Masters that step all FMUs in parallel give elements one communication step of delay: see
     `Jacobi(order=0, schedule="parallel")` for their step limit. libcosim sets start values of
@@ -140,8 +144,9 @@ def export_ssp(
         step: communication step size [s]; shortened so that a whole number makes the end time.
         values: variables to set, by `instance.variable`.
         gear, housing: see `herringbone.run`.
-        native: FMUs without Python, instead of Python FMUs.
+        native: FMUs without Python; else Python FMUs.
         platforms: of native FMUs, see `herringbone.fmi.native.PLATFORMS`; this one if not given.
+        nested: nested systems stay so, and ports become connectors of their systems.
 
     Returns:
         The file.
@@ -153,49 +158,23 @@ def export_ssp(
     if file.suffix != ".ssp":
         raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
     structure, chosen = ready(system, scene, values, gear, housing)
-    structure, files = _carried(structure, native=native)
     step = make_grid(chosen.t_end, step, step).step
-    names = sorted({str(p.component) for p in structure.parts if not p.foreign})
-    fmus = (
-        build_native_fmus(names, platforms=platforms, files=files)
-        if native
-        else build_python_fmus(names)
-    )
+    own = [part for part in structure.parts if not part.foreign]
+    if native:
+        carried = {str(part.name): carried_files(part) for part in own}
+        structure = without_files(structure, carried)
+        fmus = {
+            str(part.name): build_started_fmu(
+                str(part.component), part.values, files=carried[part.name], platforms=platforms
+            )
+            for part in structure.parts
+            if not part.foreign
+        }
+    else:
+        for part in own:
+            refuse_files(part)
+        built = build_python_fmus(sorted({str(part.component) for part in own}))
+        fmus = {str(part.name): built[str(part.component)] for part in own}
     with written(file):
-        write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end)
+        write_ssp(structure, fmus, file, step=step, t_end=chosen.t_end, nested=nested)
     return file
-
-
-def _carried(system: System, *, native: bool) -> tuple[System, dict[str, Path]]:
-    """Files that native FMUs are to carry, by `component.parameter`, and the system that has them.
-
-    Resources must lie in the FMUs: a file of this machine is not there on another one.
-
-    Raises:
-        ParameterError: Python FMUs, or parts of one component with different files.
-    """
-    read = [
-        (f"{part.name}.{text.name}", f"{part.component}.{text.name}", str(value))
-        for part in system.parts
-        if not part.foreign
-        for text in component(str(part.component)).declaration.texts
-        for value in (part.values.get(text.name, text.start),)
-    ]
-    files: dict[str, Path] = {}
-    for path, name, value in read:
-        if Path(value).is_absolute():
-            alike = all(other == value for _, owner, other in read if owner == name)
-            if not native or not alike:
-                why = (
-                    "FMUs of one component carry one file"
-                    if native
-                    else "an .ssp file must not depend on files outside it; add --native, whose "
-                    "FMUs carry it"
-                )
-                raise ParameterError(f"{path} = '{value}': {why}")
-            files[name] = Path(value)
-    parts = (
-        replace(p, values={v: x for v, x in p.values.items() if f"{p.component}.{v}" not in files})
-        for p in system.parts
-    )
-    return replace(system, parts=tuple(parts)), files

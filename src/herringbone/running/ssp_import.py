@@ -8,14 +8,16 @@ from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.ssp.read import read_ssp, read_stop_time
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.fmi.model_description import model_description
+from herringbone.fmi.native.started import starts_of_own_fmu
 from herringbone.scenes import Scene, Start
 
 
 def load_ssp(file: str | Path) -> System:
     """The system of an .ssp file or unpacked folder.
 
-    An FMU whose GUID is that of a component of these sources becomes that component, so that
-    equilibrium and monolithic twin are known; every other FMU stays foreign.
+    An FMU whose GUID is that of a component of these sources, with whatever start values, becomes
+    that component, so that equilibrium and monolithic twin are known; every other FMU stays
+    foreign.
 
     Raises:
         StructureError, FmuError: the file cannot be read; see `read_ssp`.
@@ -40,6 +42,12 @@ def _recognised(part: PartSpec) -> PartSpec:
         return part
     model = read_fmu(part.fmu)
     own = COMPONENTS.get(model.coSimulation.modelIdentifier)
-    if own is None or model.guid != model_description(own).get("guid"):
+    if own is None:
         return part
-    return replace(part, component=own.name, fmu=None)
+    if model.guid == model_description(own).get("guid"):
+        return replace(part, component=own.name, fmu=None)
+    starts = starts_of_own_fmu(model)
+    if starts is None:
+        return part
+    values = {**part.values, **{k: v for k, v in starts.items() if k not in part.values}}
+    return replace(part, component=own.name, fmu=None, values=values)

@@ -183,4 +183,4 @@ def test_rates_are_declared_and_names_tell_those_of_strangers():
             elif rate_of(strange, v.name):
                 told.add(v.name)
     assert told == {"phi_rel"}  # of an element, whose rates nobody needs
-    assert count == 8 * 2 + 12 * 2 + 4 * 2
+    assert count == 8 * 2 + 12 * 2 + 10 * 2

@@ -33,7 +33,10 @@ def differences(names: Collection[str], root: Path) -> list[str]:
             else:
                 shutil.copyfile(source, target)
         generate(names, copy)
-        made = sorted(file for file in (copy / "fmus").rglob("*") if file.is_file())
+        made = sorted([
+            *(file for file in (copy / "fmus").rglob("*") if file.is_file()),
+            *(copy / "system_models").rglob("*.md"),
+        ])  # fmt: skip
         found = ((file.relative_to(copy), file) for file in made)
         return [f"{name}: {why}" for name, file in found if (why := difference(root / name, file))]
 

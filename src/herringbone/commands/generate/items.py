@@ -63,6 +63,11 @@ ITEMS: dict[str, Item] = {
         ("-m herringbone.fmi.generate",),
         usual=True,
     ),
+    "systems": Item(
+        "README.md and layout.png in system_models/*",
+        "five minutes",
+        ("-m herringbone.commands.generate.system_pages",),
+    ),
     "overview": Item(
         "overview.png",
         "seconds",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree.ElementTree import Element, SubElement
 
-from herringbone.cosim.ssp.structure import DescribedPart
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.structure.network import Network
 
 OSP_FILE: Final = "OspSystemStructure.xml"

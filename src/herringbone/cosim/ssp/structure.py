@@ -1,20 +1,15 @@
 """The system structure description of an SSP 1.0 file, as an XML tree."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
-from fmpy.model_description import ModelDescription
-
-from herringbone.core import ParameterError, StructureError
+from herringbone.core import StructureError
 from herringbone.core.part import PartVariable
-from herringbone.core.part_path import PartPath, flat_name
-from herringbone.cosim.fmu.file import is_fmi3, read_fmu
-from herringbone.cosim.fmu.variables import read_variables
+from herringbone.core.part_path import flat_name
 from herringbone.cosim.layouts.layout import record_names
+from herringbone.cosim.ssp.boxes import Box, Corners, boxes, coordinates
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,
@@ -24,14 +19,7 @@ from herringbone.cosim.ssp.format import (
     VERSION,
 )
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.system import System, Values
-
-_TO_TEXT: dict[str, Callable[[Any], str]] = {
-    "Real": lambda value: repr(float(value)),
-    "Integer": lambda value: repr(int(value)),
-    "Boolean": lambda value: "true" if value else "false",
-    "String": str,
-}
+from herringbone.cosim.structure.system import System
 
 _CONNECTORS = {
     "Real": "Real",
@@ -41,58 +29,7 @@ _CONNECTORS = {
     "String": "String",
 }
 """SSP types of connectors by FMI type."""
-
-
-@dataclass(frozen=True)
-class DescribedPart:
-    """A part of which only the model description is known."""
-
-    name: PartPath
-    file: Path
-    values: Values
-    has_states: bool | None = None
-
-    @cached_property
-    def model(self) -> ModelDescription:
-        """The FMU's model description; raises FmuError."""
-        return read_fmu(self.file)
-
-    @cached_property
-    def variables(self) -> Mapping[str, PartVariable]:
-        """The FMU's variables as a master sees them."""
-        return read_variables(self.model)
-
-    def typed_values(self) -> Iterator[tuple[str, str, str]]:
-        """Name, FMI type and text of each value.
-
-        Raises:
-            ParameterError: there is no such variable, or its type has no place in SSP 1.0.
-        """
-        types = {v.name: v.type for v in self.model.modelVariables}
-        for name, value in self.values.items():
-            if name not in types:
-                raise ParameterError(f"{self.name}: {self.file.name} has no variable '{name}'")
-            kind = types[name]
-            if is_fmi3(self.model):
-                raise ParameterError(
-                    f"{self.name}.{name} = {value!r}: SSP 1.0 has no value of type {kind}, and its "
-                    "masters run FMI 2.0; replace this part by an FMU 2.0, or drop the value"
-                )
-            if kind not in _TO_TEXT or (kind == "String") != isinstance(value, str):
-                raise ParameterError(
-                    f"{self.name}.{name} = {value!r}: this {kind} has no place in an SSP 1.0 file"
-                )
-            yield name, kind, _TO_TEXT[kind](value)
-
-    @property
-    def values_file(self) -> str:
-        """Place of the parameter file in the .ssp."""
-        return f"resources/{self.label}.ssv"
-
-    @property
-    def label(self) -> str:
-        """Name of the component in the file, which has one flat system."""
-        return flat_name(self.name)
+_ENDS = ("startElement", "startConnector", "endElement", "endConnector")
 
 
 def xml_root(tag: str, prefixes: Iterable[str], **attributes: str) -> Element:
@@ -108,6 +45,8 @@ def structure(
     sources: Mapping[Path, str],
     step: float,
     t_end: float,
+    *,
+    nested: bool = False,
 ) -> Element:
     """The whole system structure description.
 
@@ -118,6 +57,8 @@ def structure(
         sources: place of each FMU file in the .ssp.
         step: communication step size [s].
         t_end: stop time of the default experiment [s].
+        nested: nested systems are systems of their own, with connectors; so are the ports of the
+            whole.
 
     Raises:
         StructureError: a unit name has two meanings.
@@ -125,16 +66,44 @@ def structure(
     root = xml_root(
         "ssd:SystemStructureDescription", NAMESPACES, name=system.name, generationTool="herringbone"
     )
-    inner = SubElement(root, "ssd:System", name=system.name, description=system.description)
     connectors = _connectors(network)
-    elements = SubElement(inner, "ssd:Elements")
-    for part, names in zip(parts, connectors, strict=True):
-        _add_component(elements, part, names, sources[part.file])
-    _add_connections(inner, parts, network)
-    _add_system_annotations(inner, system, step)
+    tree = boxes(parts, network, system.ports if nested else {}, nested=nested)
+    for p, variable in tree[""].connectors.values():
+        if variable.name not in connectors[p]:
+            connectors[p].append(variable.name)
+    inner = SubElement(root, "ssd:System", name=system.name, description=system.description)
+    _fill_system(inner, tree, tree[""], parts, connectors, sources)
+    _add_system_annotations(inner, system, step, flat=not nested)
     _add_units(root, parts, connectors)
     _add_experiment(root, step, t_end)
     return root
+
+
+def _fill_system(
+    system: Element,
+    tree: Mapping[str, Box],
+    box: Box,
+    parts: Sequence[DescribedPart],
+    connectors: Sequence[Sequence[str]],
+    sources: Mapping[Path, str],
+) -> None:
+    """Write what a system contains, in the order that the format asks for."""
+    _add_connectors(system, [(n, parts[p], v) for n, (p, v) in box.connectors.items()])
+    if box.corners:
+        SubElement(system, "ssd:ElementGeometry", coordinates(box.corners))
+    elements = SubElement(system, "ssd:Elements")
+    for p, name in box.parts.items():
+        source = sources[parts[p].file]
+        _add_component(elements, parts[p], name, connectors[p], source, box.places[name])
+    for scope, name in box.systems.items():
+        inner = SubElement(elements, "ssd:System", name=name)
+        _fill_system(inner, tree, tree[scope], parts, connectors, sources)
+    if box.wires:
+        connections = SubElement(system, "ssd:Connections")
+        for wire in box.wires:
+            ends = zip(_ENDS, wire, strict=True)
+            SubElement(connections, "ssd:Connection", {key: name for key, name in ends if name})
+    SubElement(system, "ssd:SystemGeometry", coordinates(box.extent))
 
 
 def _connectors(network: Network) -> list[list[str]]:
@@ -149,20 +118,39 @@ def _connectors(network: Network) -> list[list[str]]:
 
 
 def _add_component(
-    elements: Element, part: DescribedPart, names: Sequence[str], source: str
+    elements: Element,
+    part: DescribedPart,
+    name: str,
+    connectors: Sequence[str],
+    source: str,
+    corners: Corners,
 ) -> None:
-    component = SubElement(elements, "ssd:Component", name=part.label, type=FMU_TYPE, source=source)
-    if names:
-        connectors = SubElement(component, "ssd:Connectors")
-        for name in names:
-            variable = part.variables[name]
-            connector = SubElement(connectors, "ssd:Connector", name=name, kind=variable.causality)
-            defined = variable.unit if variable.dimension else None
-            kind = _connector_type(part, variable)
-            SubElement(connector, kind, {"unit": defined} if defined else {})
+    component = SubElement(elements, "ssd:Component", name=name, type=FMU_TYPE, source=source)
+    _add_connectors(component, [(c, part, part.variables[c]) for c in connectors])
+    SubElement(component, "ssd:ElementGeometry", coordinates(corners))
     if part.values:
         bindings = SubElement(component, "ssd:ParameterBindings")
         SubElement(bindings, "ssd:ParameterBinding", type=PARAMETER_TYPE, source=part.values_file)
+
+
+def _add_connectors(
+    element: Element, found: Sequence[tuple[str, DescribedPart, PartVariable]]
+) -> None:
+    """Connectors by name, of what variable of which part; inputs at the left, outputs right."""
+    if not found:
+        return
+    connectors = SubElement(element, "ssd:Connectors")
+    kinds = [variable.causality for _, _, variable in found]
+    count = {kind: kinds.count(kind) for kind in kinds}
+    seen = dict.fromkeys(count, 0)
+    for name, part, variable in found:
+        kind = variable.causality
+        connector = SubElement(connectors, "ssd:Connector", name=name, kind=kind)
+        defined = variable.unit if variable.dimension else None
+        SubElement(connector, _connector_type(part, variable), {"unit": defined} if defined else {})
+        seen[kind] += 1
+        x, y = float(kind == "output"), 1.0 - seen[kind] / (count[kind] + 1)
+        SubElement(connector, "ssd:ConnectorGeometry", x=f"{x:g}", y=f"{y:.4g}")
 
 
 def _connector_type(part: DescribedPart, variable: PartVariable) -> str:
@@ -176,22 +164,7 @@ def _connector_type(part: DescribedPart, variable: PartVariable) -> str:
     return f"ssc:{_CONNECTORS[variable.type]}"
 
 
-def _add_connections(system: Element, parts: Sequence[DescribedPart], network: Network) -> None:
-    if not network.every_connection:
-        return
-    connections = SubElement(system, "ssd:Connections")
-    for c in network.every_connection:
-        SubElement(
-            connections,
-            "ssd:Connection",
-            startElement=parts[c.source].label,
-            startConnector=c.output,
-            endElement=parts[c.target].label,
-            endConnector=c.input,
-        )
-
-
-def _add_system_annotations(element: Element, system: System, step: float) -> None:
+def _add_system_annotations(element: Element, system: System, step: float, *, flat: bool) -> None:
     annotations = SubElement(element, "ssd:Annotations")
     annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
     information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
@@ -203,7 +176,7 @@ def _add_system_annotations(element: Element, system: System, step: float) -> No
         absoluteTolerance="1e-4",
         relativeTolerance="1e-4",
     )
-    scoped = [path for path in system.paths if path.scope]
+    scoped = [path for path in system.paths if path.scope and flat]
     if scoped:
         annotation = SubElement(annotations, "ssc:Annotation", type=PARTS_ANNOTATION)
         names = SubElement(annotation, "hb:Parts")

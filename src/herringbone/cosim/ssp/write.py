@@ -21,11 +21,12 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from herringbone.core import StructureError
 from herringbone.core.part import Part
+from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import STRUCTURE_FILE
 from herringbone.cosim.ssp.osp_structure import OSP_FILE, osp_structure
-from herringbone.cosim.ssp.structure import DescribedPart, structure, xml_root
+from herringbone.cosim.ssp.structure import structure, xml_root
 from herringbone.cosim.structure.network import build_network
-from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.system import PartSpec, System
 
 PARAMETER_SET = "start"
 """Name of the parameter set of every component; ecos wants it in `init(parameter_set=...)`."""
@@ -34,16 +35,24 @@ _PERMISSIONS = 0o644 << 16
 
 
 def write_ssp(
-    system: System, fmus: Mapping[str, Path], file: str | Path, *, step: float, t_end: float
+    system: System,
+    fmus: Mapping[str, Path],
+    file: str | Path,
+    *,
+    step: float,
+    t_end: float,
+    nested: bool = False,
 ) -> None:
     """Write a system with its FMUs and start values; the same input gives the same bytes.
 
     Args:
         system: structure, with all values that are to be set.
-        fmus: FMU by component name; parts that are FMU files need none.
+        fmus: FMU by part, or by component for parts that share it; parts that are FMU files need
+            none.
         file: the .ssp file.
         step: communication step size [s].
         t_end: stop time of the default experiment [s].
+        nested: nested systems stay so, see `ssp.boxes`; else one flat system.
 
     Raises:
         FmuError: an FMU cannot be read.
@@ -51,16 +60,21 @@ def write_ssp(
         ParameterError: a value does not belong to a variable, or its type has no place in SSP 1.0.
     """
     parts = [
-        DescribedPart(spec.name, spec.fmu or fmus[str(spec.component)], spec.values)
-        for spec in system.parts
+        DescribedPart(spec.name, spec.fmu or _fmu(fmus, spec), spec.values) for spec in system.parts
     ]
     network = build_network(system, cast("list[Part]", parts))
     sources = _resource_names(parts)
     entries = {source: part.read_bytes() for part, source in sources.items()}
     entries |= {part.values_file: _text(_parameter_set(part)) for part in parts if part.values}
     entries[OSP_FILE] = _text(osp_structure(parts, network, sources, step))
-    entries[STRUCTURE_FILE] = _text(structure(system, parts, network, sources, step, t_end))
+    whole = structure(system, parts, network, sources, step, t_end, nested=nested)
+    entries[STRUCTURE_FILE] = _text(whole)
     _write_zip(entries, Path(file))
+
+
+def _fmu(fmus: Mapping[str, Path], spec: PartSpec) -> Path:
+    """The FMU of a part."""
+    return fmus[spec.name] if spec.name in fmus else fmus[str(spec.component)]
 
 
 def _resource_names(parts: Sequence[DescribedPart]) -> dict[Path, str]:

@@ -1,0 +1,15 @@
+"""pythonfmu script of the component torque_source."""
+
+from herringbone.fmi.python.slave import ComponentSlave
+
+
+class torque_source(ComponentSlave):
+    """The methods stand here because pythonfmu needs two functions in the script itself."""
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Advance by `step_size` [s]; False discards the step."""
+        return self.advance(current_time, step_size)
+
+    def terminate(self) -> None:
+        """End the run."""
+        self.end()

@@ -1,0 +1,88 @@
+"""The rotation of a whole drivetrain in which nothing moves against anything else."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from herringbone.analysis.twin.monolithic import Twin
+
+_POSITIONS = {"m", "rad", "kg^1/2.m"}
+_VELOCITIES = {"m/s", "rad/s", "kg^1/2.m/s"}
+_NOTHING = 1e-9
+_ROUNDING = 1e-12
+_SPEEDS = (100.0, 1000.0, 10.0)
+"""Of the fastest shaft [rad/s], at which a search for steady rotation begins anew."""
+
+
+def turning(twin: Twin, x: np.ndarray) -> Iterator[np.ndarray]:
+    """States (n,) in which the whole drivetrain turns at some speeds, for a search to begin at.
+
+    None where it turns already, where it cannot, or where nothing depends on its speed.
+    """
+    rotation = rigid_rotation(twin, x)
+    if not rotation.any() or x[rotation != 0.0].any():
+        return
+    rows = np.setdiff1d(np.arange(x.size), steady_rows(twin)[0])
+    before, after = (twin.rhs(0.0, x + change)[rows] for change in (0.0, rotation))
+    if np.abs(after - before).max() > _ROUNDING * np.abs(before).max():
+        for speed in _SPEEDS:
+            yield x + speed * rotation
+
+
+def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:
+    """Change of the states (n,) that turns the whole drivetrain by 1 rad/s of its fastest shaft.
+
+    Velocities alone change. No relative position changes by them, and no output that vanishes in
+    steady rotation does. Zero if there is no such motion, or not only one: where a controller
+    holds the speed, or where shafts are not joined.
+
+    Args:
+        twin: the system.
+        x: states (n,) about which it is asked; kinematics do not depend on them.
+    """
+    units = _units(twin)
+    velocities = np.flatnonzero(np.isin(units, list(_VELOCITIES)))
+    rotating, zero = steady_rows(twin)
+    positions = np.flatnonzero(np.isin(units, list(_POSITIONS)))
+    relative = np.setdiff1d(positions, rotating)
+
+    def rates(x: np.ndarray) -> np.ndarray:
+        shown = twin.observe(np.zeros(1), x[:, None], zero)[0] if zero else np.empty(0)
+        return np.concatenate([twin.rhs(0.0, x)[relative], shown])
+
+    base = rates(x)
+    columns = []
+    for i in velocities:
+        moved = x.copy()
+        moved[i] += 1.0
+        columns.append(rates(moved) - base)
+    found = np.zeros_like(x)
+    if not columns:
+        return found
+    _, sizes, directions = np.linalg.svd(np.array(columns).T)
+    free = directions[np.count_nonzero(sizes > _NOTHING * sizes.max(initial=0.0)) :]
+    if len(free) == 1:
+        largest = free[0][np.argmax(np.abs(free[0]))]
+        found[velocities] = np.where(np.abs(free[0]) > _NOTHING, free[0] / largest, 0.0)
+    return found
+
+
+def _units(twin: Twin) -> np.ndarray:
+    """Units of all states (n,)."""
+    units: list[str] = []
+    for instance in twin.instances:
+        declaration = instance.component.declaration
+        units += [v.unit for v in declaration.states]
+        for vector in declaration.vectors:
+            units += [vector.unit] * vector.capacity
+    return np.array(units)
+
+
+def steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
+    """States that rotate, and outputs that vanish, in steady rotation."""
+    rotating, zero = [], []
+    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
+        declaration = instance.component.declaration
+        rotating += [first + i for i, v in enumerate(declaration.states) if v.steady == "rotating"]
+        zero += [f"{instance.name}.{v.name}" for v in declaration.outputs if v.steady == "zero"]
+    return np.array(rotating, dtype=np.int64), zero

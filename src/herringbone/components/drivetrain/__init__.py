@@ -1,0 +1,1 @@
+"""Parts of drivetrains around gearboxes, after Modelica.Mechanics.Rotational."""

@@ -1,0 +1,110 @@
+"""Freewheel: flange a drives flange b through a spring, and b may overrun a.
+
+    z = phi_a - phi_b - free_angle,   w_rel = w_a - w_b
+    z' = max(w_rel, -z / release_time),   so that free_angle' = min(0, w_rel + z / release_time)
+    torque = max(0, stiffness z + damping r w_rel) where z > 0, else 0
+    r = v^2 (3 - 2 v),   v = min(1, z / engagement_angle)
+    tau_a = -torque,   tau_b = +torque
+
+z is the twist of the engaged sprags. While a drives, free_angle is constant and this is a shaft
+coupling; when b overruns, z dies out and free_angle follows it, so that the freewheel engages
+again wherever b stops to overrun. Damping rises smoothly with the engagement and never pulls.
+
+Left out: drag while overrunning, the inertia of the sprags, slip at overload.
+
+Sources: Modelica.Mechanics.Rotational.Components.OneWayClutch (names and signs), with an elastic
+engagement in place of its discrete one.
+"""
+
+import numpy as np
+
+from herringbone.components.ports import flange
+from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.core.roles import Quantity, Role
+from herringbone.kernels import steppers
+from herringbone.kernels.jit import kernel
+
+_MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
+_ENGAGED = 1e-3
+"""A usual twist [rad], where the search for an equilibrium begins."""
+
+_d = Declaration(
+    "freewheel",
+    "Shaft coupling that one side may overrun",
+    [
+        state("free_angle", "rad", "by which a is ahead of b where the sprags engage"),
+        input_("flange_a.phi", "rad", "angle of flange a"),
+        input_("flange_a.w", "rad/s", "angular velocity of flange a"),
+        input_("flange_b.phi", "rad", "angle of flange b"),
+        input_("flange_b.w", "rad/s", "angular velocity of flange b"),
+        output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
+        output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
+        output("torque", "N.m", "torque handed from a to b", feedthrough=_MOTION,
+               quantity=Quantity.TORQUE),
+        output("twist", "rad", "of the engaged sprags, z",
+               feedthrough=("flange_a.phi", "flange_b.phi")),
+        output("w_rel", "rad/s", "speed of a over b", feedthrough=("flange_a.w", "flange_b.w")),
+        output("twist_rate", "rad/s", "rate of the twist, z'", feedthrough=_MOTION, steady="zero"),
+        parameter("stiffness", "N.m/rad", "torsional, engaged", 6e4, minimum=0,
+                  quantity=Quantity.STIFFNESS),
+        parameter("damping", "N.m.s/rad", "torsional, engaged", 5.0, minimum=0,
+                  quantity=Quantity.DAMPING),
+        parameter("engagement_angle", "rad", "twist at which damping is full", 1e-4, minimum=1e-9),
+        parameter("release_time", "s", "in which the sprags let go", 1e-3, minimum=1e-4),
+        parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
+                  quantity=Quantity.MICRO_STEP),
+    ],
+    work=steppers.body_work(1, len(_MOTION)),
+    roles=[Role.COUPLING],
+    ports=[flange("flange_a"), flange("flange_b")],
+)  # fmt: skip
+
+_FREE = _d.index["free_angle"]
+_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
+_TAU_A, _TAU_B, _TORQUE, _TWIST, _W_REL, _RATE = _d.indices(
+    "flange_a.tau", "flange_b.tau", "torque", "twist", "w_rel", "twist_rate"
+)
+_STIFFNESS, _DAMPING, _ENGAGEMENT, _RELEASE, _MICRO_STEP, _DEGREE = _d.indices(
+    "stiffness", "damping", "engagement_angle", "release_time", "micro_step", "interface_degree"
+)
+
+
+@kernel
+def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    twist = b[_PHI_A] - b[_PHI_B] - b[_FREE]
+    dx[_FREE] = min(0.0, b[_W_A] - b[_W_B] + twist / b[_RELEASE])
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    twist, speed = b[_PHI_A] - b[_PHI_B] - b[_FREE], b[_W_A] - b[_W_B]
+    torque = 0.0
+    if twist > 0.0:
+        v = min(1.0, twist / b[_ENGAGEMENT])
+        damping = b[_DAMPING] * v * v * (3.0 - 2.0 * v)
+        torque = max(0.0, b[_STIFFNESS] * twist + damping * speed)
+    b[_TWIST], b[_W_REL], b[_TORQUE] = twist, speed, torque
+    b[_RATE] = max(speed, -twist / b[_RELEASE])
+    b[_TAU_A], b[_TAU_B] = -torque, torque
+
+
+_advance = steppers.body_stepper(_rhs, _out, _d)
+
+
+@kernel
+def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
+    return _advance(b, w, t, h, b[_MICRO_STEP], int(b[_DEGREE]))
+
+
+def _guess(block: np.ndarray) -> None:
+    """Engaged: where the sprags are open, nothing depends on the twist."""
+    block[_FREE] = block[_PHI_A] - block[_PHI_B] - _ENGAGED
+
+
+FREEWHEEL = Component(
+    _d,
+    Kernels(_step, _rhs, _out),
+    __doc__,
+    guess=_guess,
+    longest_step=steppers.longest_step(_d, "micro_step"),
+)

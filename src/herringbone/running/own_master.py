@@ -1,0 +1,116 @@
+"""What a master of one's own needs of a system: start values and connections of variables."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.components.registry import component
+from herringbone.core import ParameterError, StructureError
+from herringbone.core.roles import GEARS, PortKind, Role
+from herringbone.cosim.structure.network import build_network
+from herringbone.cosim.structure.system import System
+from herringbone.running.loading import load_system, open_parts
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.scenes import Scene
+
+
+class Link(NamedTuple):
+    """An output that feeds an input.
+
+    Attributes:
+        source, output: part and variable that give.
+        target, input: part and variable that take.
+    """
+
+    source: str
+    output: str
+    target: str
+    input: str
+
+
+def start_values(
+    system: str | Path | System,
+    *,
+    speed: float | None = None,
+    torque: float | None = None,
+    scene: str | Path | Scene | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+) -> dict[str, dict[str, float | str]]:
+    """Start values of all parts in steady rotation under load.
+
+    Set them in each FMU before initialisation; then hand outputs on to inputs, see `connections`,
+    twice in initialisation mode.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
+        speed: of the pinion [rad/s], where nothing is joined to the gear pair; else the scene's.
+        torque: at the pinion [N m], likewise; what balances it at the wheel follows.
+        scene, values, gear, housing: see `herringbone.run`.
+
+    Returns:
+        By part: value by variable. Names of resource files are among them where they are set.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or there is no steady rotation.
+    """
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    wanted = dict(values or {})
+    if speed is not None or torque is not None:
+        wanted = {**_at_pinion(structure, speed, torque), **wanted}
+    found = prepared(system, scene, Wishes(values=wanted, gear=gear, housing=housing)).system
+    return {str(part.name): dict(part.values) for part in found.parts}
+
+
+def connections(system: str | Path | System) -> tuple[Link, ...]:
+    """All connections of a system, variable by variable: motions first, then forces.
+
+    Handed on in this order in initialisation mode, all signals have arrived after two passes.
+
+    Raises:
+        HerringboneError: the system is wrong, or an FMU in it cannot be opened.
+    """
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    parts = open_parts(structure, "in-process")
+    try:
+        network = build_network(structure, parts)
+        links = sorted(network.every_connection, key=lambda c: c.source in network.elements)
+        return tuple(
+            Link(parts[c.source].name, c.output, parts[c.target].name, c.input) for c in links
+        )
+    finally:
+        for part in parts:
+            part.close()
+
+
+def _at_pinion(system: System, speed: float | None, torque: float | None) -> dict[str, float]:
+    """Speed and torque of the only gear pair, by path.
+
+    Raises:
+        StructureError: there is not one gear pair that is a component.
+        ParameterError: something is joined to it, that decides on its speed and torque.
+    """
+    known = anatomy(system)
+    pairs = [name for name in known.with_role(Role.GEAR_PAIR) if not system.part(name).foreign]
+    if len(pairs) != 1:
+        raise StructureError(
+            f"system '{system.name}' has {len(pairs)} gear pairs; speed and torque are of one"
+        )
+    joined = known.joined(pairs[0], PortKind.FLANGE)
+    if joined:
+        raise ParameterError(
+            f"speed and torque of {pairs[0]} follow from {', '.join(part for part, _ in joined)}; "
+            "set what drives and loads them by values"
+        )
+    found: dict[str, float] = {}
+    declaration = component(str(system.part(pairs[0]).component)).declaration
+    if speed is not None:
+        turning = next(v.name for v in declaration.states if v.steady == "rotating")
+        found[f"{pairs[0]}.der({turning})"] = speed
+    if torque is not None:
+        (pinion,) = known.ports(pairs[0], PortKind.FLANGE, GEARS[0])
+        found[f"{pairs[0]}.{pinion.name}.tau"] = torque
+    return found
