@@ -15,9 +15,10 @@ import pytest
 from scipy.linalg import expm
 
 from herringbone.analysis.accuracy.error import relative_error
-from herringbone.analysis.stability.amplification import Amplification, Growth
+from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.atlas import simulated_limit, two_rotors
 from herringbone.analysis.stability.bonds import highest_frequency
+from herringbone.analysis.stability.growth import Growth
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.core import ParameterError

@@ -5,7 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from herringbone.analysis.stability.amplification import RIGID, Amplification
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.growth import RIGID
 from herringbone.analysis.stability.linear_parts import linear_network, real_parts
 from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.components.in_process import InProcessPart

@@ -8,7 +8,8 @@ import pytest
 from support.parts import PROTOTYPE_HOUSING
 
 from herringbone.analysis.stability import atlas
-from herringbone.analysis.stability.amplification import GROWTH, Amplification, Growth
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
 from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.analysis.stability.step_map import MappedPart, linear_part

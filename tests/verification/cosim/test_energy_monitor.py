@@ -12,10 +12,11 @@ import pytest
 from support.algorithms import variants
 from support.parts import TwoMass, open_in_process
 
-from herringbone.analysis.stability.amplification import GROWTH, Amplification
+from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.atlas import two_rotors
 from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.diagnosis import diagnose
+from herringbone.analysis.stability.growth import GROWTH
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.components.bearing_supports import BEARING_SUPPORTS

@@ -11,13 +11,13 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from scipy.linalg.lapack import dgebal
 from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
+from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
 from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
 from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
@@ -29,97 +29,17 @@ from herringbone.cosim.structure.network import Network
 
 _BLAS = ThreadpoolController()
 """Matrices of a few hundred rows: threads of BLAS would mostly wait for each other."""
-RIGID = 1e-5
-"""Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
-square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
 NOISE = 1e-8
 """Error of a matrix with foreign parts in it, over its size: of models, and of differences."""
-_SAMPLES, _MARGIN = 2, 3.0
 _EVEN = 1e-3
-_EXACT = 1e-8
-"""A double eigenvalue that errors of 1e-16 and more have split is further from 1."""
 _TURNED = 0.02
 _HALF, _FALLS = 0.5, 0.35
 """At half the step less than this share of the growth is left, if it is that of held values: 1/4
 where it goes with the step's square. By time alone it is 1/2."""
-GROWTH = 1e-6
-"""Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
-_SLOW = 0.3
-"""Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
 _ROWS = HISTORY - 1
 _START = HISTORY
 """A macro step by which all history is there."""
 _NEVER = 1 << 40
-
-
-@dataclass(frozen=True)
-class Growth:
-    """The fastest growing motion of a coupled system.
-
-    Attributes:
-        radius: largest magnitude of an eigenvalue, rigid rotation left out.
-        frequency: of that motion [Hz], at most half the rate of communication points.
-        fast_radius: the same of motions that are not slow against the step. Slow ones decay by
-            next to nothing in a step at any step; these tell when an unstable band is near.
-        mirror_radius: the same of motions at half the rate of communication points: there a motion
-            meets its own mirror image, and one of the two grows at the expense of the other.
-    """
-
-    radius: float
-    frequency: float
-    fast_radius: float
-    mirror_radius: float = 0.0
-
-
-def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
-    """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
-
-    Args:
-        matrix: of the step.
-        step: its length [s].
-        noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
-            out like 1 itself.
-    """
-    if matrix.size == 0:
-        return Growth(0.0, 0.0, 0.0)
-    with _BLAS.limit(limits=1, user_api="blas"):
-        eigenvalues = np.linalg.eigvals(matrix)
-        found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
-        if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less
-            return found
-        eigenvalues, known = _with_errors(matrix, noise)
-    return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
-
-
-def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
-    sizes = np.abs(eigenvalues)
-    if sizes.size == 0:
-        return Growth(0.0, 0.0, 0.0)
-    angles = np.abs(np.angle(eigenvalues))
-    largest = int(np.argmax(sizes))
-    frequency = float(angles[largest] / (2.0 * np.pi * step))
-    fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
-    mirror = float(sizes[angles == np.pi].max(initial=0.0))
-    return Growth(float(sizes[largest]), frequency, fast, mirror)
-
-
-def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues, and how far errors of the matrix move each: as far as random ones of the size.
-
-    Double eigenvalues go by the square root of an error, which no condition number tells. A turn of
-    everything that the matrix leaves as it is, is left so by its errors, too.
-    """
-    scaled = dgebal(matrix, scale=1)[0]
-    values, vectors = np.linalg.eig(scaled)
-    rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _EXACT].real)[0]
-    random = np.random.default_rng(0)
-    moved = np.zeros(len(values))
-    size = noise * np.linalg.norm(scaled, 2) / np.sqrt(len(values))
-    for _ in range(_SAMPLES):
-        error = size * random.standard_normal(scaled.shape)
-        other = np.linalg.eigvals(scaled + error - error @ rigid @ rigid.T)
-        moved = np.maximum(moved, np.abs(values[:, None] - other).min(axis=1))
-    return values, _MARGIN * moved
 
 
 class Amplification:

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from herringbone.analysis.stability.amplification import GROWTH, Amplification
+from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.bonds import Direction, bond_directions, highest_frequency
+from herringbone.analysis.stability.growth import GROWTH
 from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,

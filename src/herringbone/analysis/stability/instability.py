@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from herringbone.analysis.stability.amplification import GROWTH, Amplification, Growth
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import NO_STRANGERS, Strangers, linear_network
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core import HerringboneError

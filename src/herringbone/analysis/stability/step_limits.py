@@ -10,7 +10,8 @@ from functools import cache
 
 import numpy as np
 
-from herringbone.analysis.stability.amplification import Amplification, Growth
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.growth import Growth
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
     MeshStiffness,

@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from herringbone.analysis.stability.amplification import GROWTH, Growth
+from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.core import HerringboneError, ParameterError
 
 SMALLEST_STEP, LARGEST_STEP = 1e-6, 2e-3

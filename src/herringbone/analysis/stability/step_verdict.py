@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from herringbone.analysis.stability.amplification import GROWTH, Amplification
+from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.diagnosis import diagnose
+from herringbone.analysis.stability.growth import GROWTH
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
     MeshStiffness,
