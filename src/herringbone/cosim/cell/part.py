@@ -202,7 +202,7 @@ class CellPart:
     def failed(self) -> None:
         """A step failed: FMI then allows no call but fmi2FreeInstance."""
         self._failed = True
-        self._memory["used"] = self._memory["waiting"] = 0
+        self._memory["used"] = self._memory["waiting"] = self._memory["reads"] = 0
         if not self._cell.lost:
             self._ask("failed")
 
