@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
-from herringbone.cosim.cell import messages
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -22,7 +21,8 @@ from herringbone.cosim.cell.block import (
     MORE,
     places,
 )
-from herringbone.cosim.cell.code import code_file
+from herringbone.cosim.cell.calls import messages
+from herringbone.cosim.cell.inside.code import code_file
 from herringbone.cosim.cell.log import OutputLog
 from herringbone.cosim.cell.policy import policy, spin_time
 from herringbone.cosim.cell.sides import Side
@@ -223,7 +223,7 @@ def _signal(number: int) -> str:
 
 
 def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Popen[bytes]":
-    command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.child"]
+    command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.inside.child"]
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
     try:
         return subprocess.Popen(

@@ -1,7 +1,6 @@
-"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER CODE FOLDER`."""
+"""What runs in a cell: `python -m ...cell.inside.child BLOCK WORDS MASTER CODE FOLDER`."""
 
 import ctypes
-import locale
 import os
 import resource
 import shutil
@@ -10,7 +9,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,7 +17,8 @@ import numpy as np
 
 from herringbone.core import FmuError, HerringboneError
 from herringbone.cosim.cell.block import FUNCTIONS, INSTANCES, SERVER, STATES, places
-from herringbone.cosim.cell.loading import Code, loaded
+from herringbone.cosim.cell.inside.loading import Code, loaded
+from herringbone.cosim.cell.inside.surroundings import surroundings
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
 from herringbone.cosim.fmu.float_modes import leave_modes
@@ -158,38 +157,6 @@ class Server:
         ctypes.CDLL(None).fflush(None)
         now = surroundings()
         return [what for what, before in self._before.items() if now[what] != before]
-
-
-def surroundings() -> dict[str, object]:
-    """What belongs to the whole process, by what it is called."""
-    umask = os.umask(0)
-    os.umask(umask)
-    return {
-        "the working folder": _or_none(Path.cwd),
-        "the umask": umask,
-        "the locale": locale.setlocale(locale.LC_ALL),
-        "open descriptors": tuple(_is_open(k) for k in range(3)),
-        "the number of threads": _or_none(lambda: len(list(Path("/proc/self/task").iterdir()))),
-        "the floating-point environment": _modes(),
-    }
-
-
-def _or_none(find: Callable[[], object]) -> object:
-    try:
-        return find()
-    except OSError:
-        return None
-
-
-def _is_open(descriptor: int) -> bool:
-    return _or_none(lambda: os.fstat(descriptor) and True) is True
-
-
-def _modes() -> tuple[int, bool]:
-    """Rounding mode, by what the C library calls it, and whether denormal numbers become zero."""
-    library = ctypes.CDLL(None)
-    rounding = int(library.fegetround()) if hasattr(library, "fegetround") else 0
-    return rounding, float(np.float64(sys.float_info.min) / 2.0) == 0.0
 
 
 def watch(master: int, server: Server) -> None:
