@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 
-from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.limits import step_limits
+from herringbone.analysis.stability.amplification import RIGID, Amplification
 from herringbone.analysis.stability.linear_parts import linear_network, real_parts
+from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
 from herringbone.core.part import closing_all
@@ -67,9 +67,10 @@ def limits(system, strangers, algorithm):
     if found.unstable_bands:
         high = min(high, math.sqrt(math.prod(found.unstable_bands[0])))  # narrow bands
     ends = [rates(low), rates(high)]
-    if not ends[0][1] < 0.0 < ends[1][1]:
+    # What moves by less in a step is taken for the free rotation.
+    if not ends[0][1] < RIGID < ends[1][1]:
         return limit, math.nan, found.residual, *zip(*ends, strict=True)
     while high > RESOLUTION * low:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if rates(middle)[1] > 0.0 else (middle, high)
+        low, high = (low, middle) if rates(middle)[1] > RIGID else (middle, high)
     return limit, math.sqrt(low * high), found.residual, *zip(*ends, strict=True)

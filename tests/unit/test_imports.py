@@ -51,6 +51,7 @@ ONLY_IN: dict[str, set[str]] = {
         "cosim/cell/code.py",
         "cosim/cell/loading.py",
         "cosim/loops/calls.py",
+        "cosim/loops/float_modes.py",
         "cosim/fmu/fmi3_steps.py",
         "fmi/native/objects.py",
         "kernels/linking.py",

@@ -56,9 +56,19 @@ def run(options: argparse.Namespace) -> int:
     show(
         f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
     )
-    for line in _signature(options.fmu, options.step):
+    for line in (*_remarks(options.fmu), *_signature(options.fmu, options.step)):
         show(f"  {line}")
     return 1 if problems else 0
+
+
+def _remarks(fmu: Path) -> list[str]:
+    """What FMI allows, but leaves open; nothing if the file cannot be read, which is said."""
+    from herringbone.fmi.check import without_unit  # noqa: PLC0415
+
+    try:
+        return [f"remark: {line}, taken as SI" for line in without_unit(fmu)]
+    except FmuError:
+        return []
 
 
 def _refuse_wrong(options: argparse.Namespace) -> None:
@@ -77,10 +87,10 @@ def _refuse_wrong(options: argparse.Namespace) -> None:
 
 def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
-    from herringbone.commands.contract import own_step  # noqa: PLC0415 (numba)
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415
+    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415 (numba)
+    from herringbone.running.foreign.started import own_step  # noqa: PLC0415
 
     try:
         with many_of(fmu.stem, fmu) as make:

@@ -2,7 +2,7 @@
 
 import argparse
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +13,10 @@ from herringbone.analysis.flange.contract import check_flanges
 from herringbone.analysis.housing.contract import STEP, check_housing
 from herringbone.commands.options import assignments
 from herringbone.commands.output import show
-from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.part import Part
 from herringbone.core.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
+from herringbone.running.foreign.started import own_step, started
 
 ROLES = {
     "housing": Role.HOUSING,
@@ -56,7 +55,7 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
     """Findings, and the step of the trials [s]."""
     role, fmu = ROLES[options.role], options.fmu
     with many_of(fmu.stem, fmu) as new:
-        make = _started(new, assignments(options.set, "--set", "VARIABLE=VALUE"))
+        make = started(new, assignments(options.set, "--set", "VARIABLE=VALUE"))
         if role is Role.HOUSING:
             step = options.step or STEP
             static = None if options.against is None else _static(options.against)
@@ -64,34 +63,6 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
         step = options.step or own_step(fmu)
         flanges = options.flange or ()
         return check_flanges(make, role, step=step, flanges=flanges, progress=progress), step
-
-
-def _started(new: Callable[[], Part], values: Mapping[str, str]) -> Callable[[], Part]:
-    """Makes instances with start values set."""
-
-    def make() -> Part:
-        part = new()
-        try:
-            for name, text in values.items():
-                number = part.variables[name].is_real if name in part.variables else False
-                part.set(name, float(text) if number else text)
-        except (ValueError, HerringboneError) as error:
-            part.enter_initialization(0.0, 1.0)  # pythonfmu does not survive freeing what was not
-            part.close()
-            if isinstance(error, ValueError):
-                raise ParameterError(f"--set {name}={text}: it must be a number") from error
-            raise
-        return part
-
-    return make
-
-
-def own_step(fmu: Path) -> float:
-    """Step that an FMU proposes for experiments [s], or that of trials."""
-    from herringbone.cosim.fmu.file import read_fmu  # noqa: PLC0415
-
-    experiment = read_fmu(fmu).defaultExperiment
-    return float(experiment.stepSize) if experiment and experiment.stepSize else 1e-4
 
 
 def _static(against: Path) -> np.ndarray:

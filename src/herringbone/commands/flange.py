@@ -7,6 +7,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from herringbone.commands.options import assignments
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ _NAMES = {
 }
 _ONLY_HERE = ("inertia", "stiffness", "damping")
 _NOT_HERE = (
-    "scene", "algorithm", "step", "simulate", "atlas", "output", "gear", "housing", "replace", "set"
+    "scene", "algorithm", "step", "simulate", "atlas", "output", "gear", "housing", "replace"
 )  # fmt: skip
 
 
@@ -27,8 +28,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare what is asked of one FMU."""
     sub.add_argument(
         "--flange", metavar="PORT",
-        help="of an FMU in place of a system: the port that a host couples to an inertia, or its "
-        "variables TORQUE,SPEED or TORQUE,ANGLE,SPEED",
+        help="of an FMU in place of a system: the port that a host couples to an inertia, or "
+        "tau=NAME,phi=NAME,w=NAME; guessed",
     )  # fmt: skip
     sub.add_argument("--inertia", type=float, help="of the host at the flange in kg.m2")
     sub.add_argument("--stiffness", type=float, help="of the host's shaft in N.m/rad")
@@ -50,14 +51,14 @@ def is_asked(options: argparse.Namespace) -> bool:
                 f"--{name} is asked of one FMU, not of the system {options.system}"
             )
         return False
-    if not options.flange or options.inertia is None:
+    if options.inertia is None:
         raise ParameterError(
-            f"{options.system}: of an FMU give --flange PORT and --inertia in kg.m2, with "
+            f"{options.system}: of an FMU give the host's --inertia in kg.m2, with "
             "--stiffness and --damping of the host's shaft if the flange takes torque"
         )
     for name in _NOT_HERE:
         if getattr(options, name):
-            raise ParameterError(f"--{name} is of systems; leave it out with --flange")
+            raise ParameterError(f"--{name} is of systems; leave it out for an FMU")
     return True
 
 
@@ -67,19 +68,21 @@ def flange_limits(options: argparse.Namespace) -> str:
     Raises:
         HerringboneError: something about the input is wrong, or trials tell nothing of the FMU.
     """
-    from herringbone.analysis.stability.hosted_flange import Host  # noqa: PLC0415 (numba)
+    from herringbone.analysis.flange.hosted_flange import Host  # noqa: PLC0415 (numba)
     from herringbone.running.foreign.hosted_flange import hosted_flange  # noqa: PLC0415
 
     host = Host(options.inertia, options.stiffness or 0.0, options.damping or 0.0)
-    found = hosted_flange(Path(options.system), options.flange, host)
+    values = assignments(options.set, "--set", "VARIABLE=VALUE")
+    found = hosted_flange(Path(options.system), options.flange or "", host, values)
     return json.dumps(_summary(found)) if options.json else _text(found)
 
 
 def _text(found: "HostedFlange") -> str:
     host, flange = found.host, found.flange
     shaft = f", shaft {host.stiffness:g} N.m/rad, {host.damping:g} N.m.s/rad"
+    names = ", ".join(filter(None, (flange.tau, flange.phi, flange.w)))
     lines = [
-        f"{found.fmu}: {flange.torque}, {', '.join(flange.motion)} with {host.inertia:g} kg.m2"
+        f"{found.fmu}: {names} with {host.inertia:g} kg.m2"
         f"{shaft if flange.takes_torque else ' at the flange, its shaft inside'}",
         "first unstable communication step in us",
         "",
@@ -111,9 +114,9 @@ def _summary(found: "HostedFlange") -> dict[str, Any]:
     """Plain values: steps in s; None where no limit was found."""
     return {
         "fmu": str(found.fmu),
-        "torque": found.flange.torque,
-        "angle": found.flange.angle or None,
-        "speed": found.flange.speed,
+        "torque": found.flange.tau,
+        "angle": found.flange.phi or None,
+        "speed": found.flange.w,
         "takes_torque": found.flange.takes_torque,
         "inertia": found.host.inertia,
         "stiffness": found.host.stiffness,

@@ -42,6 +42,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.running.foreign.surrogates import opened_surrogates, under_load  # noqa: PLC0415
+    from herringbone.running.known_limits import KnownLimits  # noqa: PLC0415
     from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
     from herringbone.scenes import Start  # noqa: PLC0415
 
@@ -66,8 +67,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     for note in notes:
         say(note)
     structure = under_load(structure)
-    bar = tqdm(unit=" matrices", disable=None)
-    with bar, opened_surrogates(structure, LI().start_step) as foreign:
+    bar, trials = tqdm(unit=" matrices", disable=None), LI().start_step
+    with bar, opened_surrogates(structure, trials) as foreign:
         if foreign.missing:
             raise FmuError("; ".join(foreign.lines))
         if foreign.strangers and options.atlas:
@@ -91,6 +92,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             simulate=options.simulate,
             progress=show,
             strangers=foreign.strangers,
+            remember=KnownLimits(structure, trials),
         )
         panels = atlas(structure, progress=show) if options.atlas else ()
         if options.atlas:

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from herringbone.core import FmuError, HerringboneError, Outcome, OutcomeKind
+from herringbone.core import FmuError, Outcome, OutcomeKind
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
+from herringbone.cosim.divergence import diverged, is_sudden
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs, record_names
@@ -180,10 +181,14 @@ class Run:
         part = self.network.parts[culprit]
         part.failed()
         said = "; ".join(part.messages())
-        where, value = self._diverged(culprit)
+        where, value = diverged(self.network, culprit)
         if status == NOT_FINITE or where:
             where = where or part.name
             how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
+            rows = self.record.values[: self.record.complete(done)]
+            if not math.isfinite(value) and is_sudden(rows):
+                message = f"{where} {how} at {reached:g} s, and nothing has grown before"
+                return Outcome(OutcomeKind.PART_FAILED, reached, where, message)
             message = (
                 f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
                 f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
@@ -214,24 +219,6 @@ class Run:
             "higher limit"
         )
         return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
-
-    def _diverged(self, culprit: int) -> tuple[str, float]:
-        """The first input or output of a part that has diverged, or the output that feeds it."""
-        parts = self.network.parts
-        part = parts[culprit]
-        names = [
-            n for n, v in part.variables.items() if v.causality in {"output", "input"} and v.is_real
-        ]
-        try:
-            found = zip(names, part.get(names), strict=True)
-            bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
-            fed = bad.partition(".node")[0]
-            for c in self.network.inputs(culprit):
-                if c.input == fed and not abs(parts[c.source].get([c.output])[0]) < BOUND:
-                    return f"{parts[c.source].name}.{c.output}", value
-        except HerringboneError:
-            return "", 0.0
-        return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
     def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
         times = self.record.times(done)

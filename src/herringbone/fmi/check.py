@@ -32,10 +32,10 @@ def check_fmu(path: str | Path) -> list[str]:
     path = Path(path)
     require_file(path)
     try:
-        description = read_fmu(path)
+        read_fmu(path)
     except FmuError as error:
         return [str(error)]
-    problems = validate_fmu(str(path)) + _without_unit(description)
+    problems = list(validate_fmu(str(path)))
     try:
         return problems + applied(path, trials)
     except FmuError as error:
@@ -53,8 +53,16 @@ def trials(path: Path) -> list[str]:
     return problems
 
 
-def _without_unit(description: ModelDescription) -> list[str]:
-    """Reals without unit; an event indicator, which is a variable in FMI 3.0, needs none."""
+def without_unit(path: str | Path) -> list[str]:
+    """Reals without unit, which FMI allows, one line each; event indicators need none.
+
+    Args:
+        path: the FMU.
+
+    Raises:
+        FmuError: the file cannot be read.
+    """
+    description = read_fmu(Path(path))
     indicators = {unknown.variable.name for unknown in description.eventIndicators}
     return [
         f"{v.name}: a {v.type} without unit"

@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from herringbone.analysis.stability.limits import fastest_bond, warn_if_unstable
+from herringbone.analysis.stability.instability import warn_if_unstable
+from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.core.activity import activity
 from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all

@@ -5,12 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from herringbone.analysis.stability.hosted_flange import Host
+from herringbone.analysis.flange.hosted_flange import Host
 from herringbone.commands import main as cli
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature.trial import Trial
 from herringbone.running.foreign.hosted_flange import hosted_flange
 
+MASS = "tau=f,phi=x,w=v"
 HOST = Host(2.0, 500.0, 1.0)
 WITHIN = 0.02
 STEPS = 6000
@@ -23,7 +24,7 @@ def limit_of(found, order, *, parallel=False):
 def growth_at_host(file, host, h, *, parallel=False, inside=False):
     """Logarithm of growth of a host's torque over the second half of a run of the FMU.
 
-    The host of `analysis.stability.hosted_flange` at order 0: a free inertia at 1 rad/s.
+    The host of `analysis.flange.hosted_flange` at order 0: a free inertia at 1 rad/s.
     """
     inputs, outputs = (
         (["flange.phi", "flange.w"], ["flange.tau"]) if inside else (["f"], ["x", "v"])
@@ -55,7 +56,7 @@ def growth_at_host(file, host, h, *, parallel=False, inside=False):
 def test_shaft_outside(kinds, parallel, share):
     """A free mass: H w = 4 zeta, and 4/3 zeta one step late, which is 2 D/K and 2/3 D/K."""
     file = kinds / "oscillator_mass.fmu"
-    found = hosted_flange(file, "f,x,v", HOST)
+    found = hosted_flange(file, MASS, HOST)
     assert found.promised
     limit = limit_of(found, 0, parallel=parallel)
     assert limit == pytest.approx(share * HOST.damping / HOST.stiffness, rel=0.01)
@@ -73,14 +74,14 @@ def test_shaft_inside(kinds):
 
 def test_an_angle_that_the_fmu_lacks_is_the_integral_of_its_speed(kinds):
     file = kinds / "oscillator_mass.fmu"
-    with_angle, without = (hosted_flange(file, name, HOST) for name in ("f,x,v", "f,v"))
+    with_angle, without = (hosted_flange(file, name, HOST) for name in (MASS, "tau=f,w=v"))
     for one, other in zip(with_angle.limits, without.limits, strict=True):
         assert one.limit == pytest.approx(other.limit, rel=1e-3)
 
 
 def test_derivatives_help(kinds):
     """The more, the lighter the damping: two masses, H w about 1.85 zeta^(1/3) and 0.95."""
-    found = hosted_flange(kinds / "oscillator_mass.fmu", "f,x,v", HOST)
+    found = hosted_flange(kinds / "oscillator_mass.fmu", MASS, HOST)
     frequency = np.sqrt(HOST.stiffness * 1.5)
     zeta = 0.5 * HOST.damping * frequency / HOST.stiffness
     assert limit_of(found, 1) * frequency == pytest.approx(1.85 * zeta ** (1.0 / 3.0), rel=0.1)
@@ -100,10 +101,11 @@ def test_command(kinds, capsys):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ([], "give --flange PORT and --inertia"),
-        (["--flange", "shaft", "--inertia", "1"], "no such ports"),
-        (["--flange", "flange.tau,flange.q", "--inertia", "1"], "no real variable 'flange.q'"),
-        (["--flange", "flange.w,flange.phi", "--inertia", "1"], "takes torque and gives motion"),
+        ([], "give the host's --inertia"),
+        (["--flange", "shaft", "--inertia", "1"], "no variable shaft.tau"),
+        (["--flange", "tau=flange.tau,w=flange.q", "--inertia", "1"], "no input phi and flange.q"),
+        (["--flange", "tau=flange.w,w=flange.phi", "--inertia", "1"], "flange.w is an input"),
+        (["--inertia", "1", "--set", "flange.tau=3"], "it is an output, which the FMU computes"),
         (["--flange", "flange", "--inertia", "-1"], "must be positive"),
         (["--flange", "flange", "--inertia", "1", "--stiffness", "9"], "has its shaft inside"),
         (["--flange", "flange", "--inertia", "1", "--step", "1e-4"], "--step is of systems"),

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from herringbone.analysis.stability.identification import (
+from herringbone.analysis.stability.surrogates.identification import (
     blocks,
     in_continuous_time,
     realised,
 )
-from herringbone.analysis.stability.surrogate import PROMISED, Surrogate
+from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Laboratory
 from herringbone.cosim.signature.rotation import Given

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from support.rig_limits import predicted, rig
 
-from herringbone.analysis.stability.limits import default_algorithms, warn_if_unstable
+from herringbone.analysis.stability.instability import warn_if_unstable
+from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.components.in_process import InProcessPart
 from herringbone.cosim.algorithms import LI, FixedPoint

@@ -9,8 +9,8 @@ from support.parts import PROTOTYPE_HOUSING
 
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import GROWTH, Amplification, Growth
-from herringbone.analysis.stability.limits import step_limits
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
+from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.analysis.stability.step_map import MappedPart, linear_part
 from herringbone.analysis.stability.step_scan import unstable_bands
 from herringbone.cosim.algorithms import LI, Jacobi

@@ -13,11 +13,12 @@ from support.stranger_limits import ABOVE, BELOW, limits, run_rate
 
 import herringbone as hb
 from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.limits import default_algorithms, step_limits
+from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import linear_network
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability.step_limits import step_limits
 from herringbone.commands import main as cli
-from herringbone.cosim.algorithms import LI, Jacobi, parse_algorithm
+from herringbone.cosim.algorithms import Jacobi, parse_algorithm
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.running.foreign.surrogates import opened_surrogates, under_load
 from herringbone.running.prepared import Wishes, prepared
@@ -72,10 +73,6 @@ SYSTEMS = {
     ),
 }  # fmt: skip
 
-UNRESOLVED = {"states and feedthrough": (Jacobi(order=0), LI())}
-"""Not compared: held angles of a free rotation gain energy at every step, slower than trials tell;
-li has a band there that is narrower than runs resolve."""
-
 
 def make_system(folder, kinds, name):
     """One of the systems, with its values."""
@@ -93,8 +90,6 @@ def test_limits_of_all_algorithms(kinds, tmp_path, name):
     with opened_surrogates(system, STEP) as found:
         assert not found.missing
         for algorithm in default_algorithms():
-            if algorithm in UNRESOLVED.get(name, ()):
-                continue
             predicted, seen, residual, expected, rates = limits(system, found.strangers, algorithm)
             assert residual < 1e-4
             if math.isfinite(predicted):

@@ -9,11 +9,12 @@ import pytest
 from herringbone.analysis.stability import limits as stability_module
 from herringbone.analysis.stability.atlas import Panel
 from herringbone.analysis.stability.bonds import Bond
-from herringbone.analysis.stability.limits import Stability, StepLimits, default_algorithms
+from herringbone.analysis.stability.limits import Stability, default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.report import stability_summary, stability_text
 from herringbone.analysis.stability.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability.step_limits import StepLimits
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import LI, Jacobi

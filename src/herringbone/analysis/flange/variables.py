@@ -78,7 +78,11 @@ def asked(texts: Sequence[str]) -> list[dict[str, str]]:
 
 
 def find_flanges(
-    variables: Mapping[str, PartVariable], wanted: Sequence[Mapping[str, str]], count: int
+    variables: Mapping[str, PartVariable],
+    wanted: Sequence[Mapping[str, str]],
+    count: int,
+    *,
+    whole: bool = True,
 ) -> tuple[list[Flange], list[Finding]]:
     """The flanges of a part, and what is wrong with their variables.
 
@@ -86,6 +90,7 @@ def find_flanges(
         variables: of the part.
         wanted: names by quantity, one mapping a flange; by ports and units if empty.
         count: flanges that the role has.
+        whole: a flange that takes torque must give angle and speed, not one of them alone.
     """
     how = "as told"
     if not wanted:
@@ -96,7 +101,7 @@ def find_flanges(
         ports = ", ".join(_port(names) for names in wanted) or "none"
         shown = f"{len(wanted)} found ({ports}); it has {_offered(variables)}"
         return [], [judged("variables", False, shown, f"{count} flange(s): {NEEDS}")]
-    missing = [line for names in wanted for line in _missing(names, variables)]
+    missing = [line for names in wanted for line in _missing(names, variables, whole)]
     if missing:
         shown = "; ".join(missing)
         return [], [judged("variables", False, shown, f"{count} flange(s): {NEEDS}")]
@@ -129,7 +134,9 @@ def _port(names: Mapping[str, str]) -> str:
     return port or last
 
 
-def _missing(names: Mapping[str, str], variables: Mapping[str, PartVariable]) -> Iterable[str]:
+def _missing(
+    names: Mapping[str, str], variables: Mapping[str, PartVariable], whole: bool
+) -> Iterable[str]:
     """What a flange lacks; one that takes motion may do with one of phi and w."""
     there_are = reals(variables)
     there = {q: there_are[name] for q, name in names.items() if name in there_are}
@@ -140,7 +147,7 @@ def _missing(names: Mapping[str, str], variables: Mapping[str, PartVariable]) ->
     motion = "output" if torque.causality == "input" else "input"
     fit = [q for q in ("phi", "w") if q in there and there[q].causality == motion]
     lack = [q for q in ("phi", "w") if q not in fit]
-    if lack and (motion == "output" or not fit):
+    if lack and ((whole and motion == "output") or not fit):
         listed = " and ".join(names.get(q, q) for q in lack)
         yield f"{torque.name} is an {torque.causality}, but there is no {motion} {listed}"
 

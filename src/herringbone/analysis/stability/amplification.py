@@ -9,7 +9,7 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 1061-1081, section 3: recurrence equations of co-simulation; here the parts are the real ones.)
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
-from herringbone.analysis.stability.surrogate_part import StandIn
+from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
@@ -35,7 +35,13 @@ square root of rounding only) and motions that take more than 1e5 steps; they ar
 NOISE = 1e-8
 """Error of a matrix with foreign parts in it, over its size: of models, and of differences."""
 _SAMPLES, _MARGIN = 2, 3.0
+_EVEN = 1e-3
+_EXACT = 1e-8
+"""A double eigenvalue that errors of 1e-16 and more have split is further from 1."""
 _TURNED = 0.02
+_HALF, _FALLS = 0.5, 0.35
+"""At half the step less than this share of the growth is left, if it is that of held values: 1/4
+where it goes with the step's square. By time alone it is 1/2."""
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
 _SLOW = 0.3
@@ -77,11 +83,15 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with _BLAS.limit(limits=1, user_api="blas"):
-        if noise > 0.0:
-            eigenvalues, known = _with_errors(matrix, noise)
-        else:
-            eigenvalues, known = np.linalg.eigvals(matrix), np.zeros(1)
-    eigenvalues = eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)]
+        eigenvalues = np.linalg.eigvals(matrix)
+        found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
+        if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less
+            return found
+        eigenvalues, known = _with_errors(matrix, noise)
+    return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
+
+
+def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
     sizes = np.abs(eigenvalues)
     if sizes.size == 0:
         return Growth(0.0, 0.0, 0.0)
@@ -96,15 +106,18 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
 def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues, and how far errors of the matrix move each: as far as random ones of the size.
 
-    Double eigenvalues go by the square root of an error, which no condition number tells.
+    Double eigenvalues go by the square root of an error, which no condition number tells. A turn of
+    everything that the matrix leaves as it is, is left so by its errors, too.
     """
     scaled = dgebal(matrix, scale=1)[0]
-    values = np.linalg.eigvals(scaled)
+    values, vectors = np.linalg.eig(scaled)
+    rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _EXACT].real)[0]
     random = np.random.default_rng(0)
     moved = np.zeros(len(values))
     size = noise * np.linalg.norm(scaled, 2) / np.sqrt(len(values))
     for _ in range(_SAMPLES):
-        other = np.linalg.eigvals(scaled + size * random.standard_normal(scaled.shape))
+        error = size * random.standard_normal(scaled.shape)
+        other = np.linalg.eigvals(scaled + error - error @ rigid @ rigid.T)
         moved = np.maximum(moved, np.abs(values[:, None] - other).min(axis=1))
     return values, _MARGIN * moved
 
@@ -165,9 +178,19 @@ class Amplification:
         found = growth_of(matrix, step, self._noise)
         turned = 2.0 * np.pi * found.frequency * step
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
-            # Slow growth may be free rotation that the models of foreign parts know too little of.
-            return growth_of(matrix, step, max(self._noise, min(self.residual, 1.0)))
+            residual = min(self.residual, 1.0)
+            if not self._of_coupling(found, step):
+                return growth_of(matrix, step, max(self._noise, residual))
         return found
+
+    def _of_coupling(self, found: Growth, step: float) -> bool:
+        """False if slow growth may be free rotation, of which models of foreign parts know little.
+
+        What they miss makes a motion grow in time whatever the step, growth by held values goes
+        with a power of the step.
+        """
+        half = growth_of(self.matrix(_HALF * step), _HALF * step, self._noise)
+        return half.radius - 1.0 < _FALLS * (found.radius - 1.0)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -252,10 +275,17 @@ class Amplification:
             # An algorithm may build its correction in the first call.
             self._advance(prepared, step, history)
             base = self._advance(prepared, step, history)[used]
+
+            def moved(entry: int, change: float) -> np.ndarray:
+                return self._advance(prepared, step, history, {entry: change})[used] - base
+
+            uneven = self._noise > 0.0 and _is_uneven(moved, used, self._change)
             for column, entry in enumerate(used):
                 change = self._change[entry]
-                moved = self._advance(prepared, step, history, {entry: change})[used]
-                matrix[:, column] = (moved - base) / change
+                matrix[:, column] = moved(entry, change) / change
+                if uneven:
+                    matrix[:, column] -= moved(entry, -change) / change
+                    matrix[:, column] *= 0.5
         return matrix
 
     def _restore(self, history: np.ndarray) -> None:
@@ -275,6 +305,20 @@ class Amplification:
     def _vector(self, history: np.ndarray) -> np.ndarray:
         states = [p.values[:count] for p, count in zip(self._parts, self._counts, strict=True)]
         return np.concatenate([*states, history[:_ROWS].ravel()])
+
+
+def _is_uneven(
+    moved: Callable[[int, float], np.ndarray], used: np.ndarray, changes: np.ndarray
+) -> bool:
+    """True if a change and its opposite do not answer alike, by an entry that looks back.
+
+    An algorithm that corrects until little is left may take one correction less at rest than after
+    any change: a difference that belongs to no column, and that differences to both sides cancel.
+    """
+    if used.size == 0:
+        return False
+    there, back = (moved(used[-1], sign * changes[used[-1]]) for sign in (1.0, -1.0))
+    return bool(np.linalg.norm(there + back) > _EVEN * np.linalg.norm(there))
 
 
 def _coupled(matrix: np.ndarray) -> np.ndarray:

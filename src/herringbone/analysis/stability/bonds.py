@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.stability.linear_parts import Member
-from herringbone.analysis.stability.surrogate_part import StandIn
+from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.analysis.stability.surrogate_part import StandIn
+from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.declaration import INTERFACE_DEGREE, node_name

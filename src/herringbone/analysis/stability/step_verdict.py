@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 from herringbone.analysis.stability.amplification import GROWTH, Amplification
 from herringbone.analysis.stability.diagnosis import diagnose
-from herringbone.analysis.stability.limits import Progress
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
     MeshStiffness,
     Strangers,
     linear_network,
 )
-from herringbone.analysis.stability.surrogate import PROMISED
+from herringbone.analysis.stability.step_limits import Progress
+from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core.energy_report import Diagnosis, hertz
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System

@@ -25,6 +25,13 @@ if TYPE_CHECKING:  # a cell starts quicker without
     from herringbone.cosim.signature.signature import Signature
 
 _SHOWN = 8
+_CALCULATED = {
+    "output": "an output",
+    "local": "a local variable",
+    "calculatedParameter": "a calculated parameter",
+    "independent": "the time",
+}
+"""By causality, unless a start value is declared (FMI 2.0.4, section 2.2.7)."""
 
 
 class FmuPart(ABC):
@@ -122,6 +129,7 @@ class FmuPart(ABC):
             raise ParameterError(
                 f"{self.name}: {self.file.name} has no variable '{name}'; {self._near(name)}"
             )
+        self._refuse_calculated(name, what)
         first = self.variables[names[0]]
         if first.array == name:
             values = as_values(first.type, value, len(names), what, first.items)
@@ -133,6 +141,16 @@ class FmuPart(ABC):
             self._put(dict(zip(names, values, strict=True)))
         except FMICallException as error:
             raise ParameterError(self._refusal(what, error)) from error
+
+    def _refuse_calculated(self, name: str, what: str) -> None:
+        """Raises ParameterError: the FMU computes the variable, so that no value can be given."""
+        v = next((v for v in self.model.modelVariables if v.name == name), None)
+        if v is None or v.causality not in _CALCULATED or v.initial in {"exact", "approx"}:
+            return
+        if v.initial == "calculated" or v.start is None:
+            raise ParameterError(
+                f"{what}: it is {_CALCULATED[v.causality]}, which the FMU computes"
+            )
 
     def _near(self, name: str) -> str:
         """Variables that a wrong name may mean, or the first ones."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.signature.rotation import Given
 from herringbone.cosim.signature.signature import Rate
 from herringbone.cosim.structure.system import PartSpec
+from herringbone.running.content import contents_of
 
 _TRIALS = "herringbone.cosim.signature.probe", "herringbone.running.foreign.foreign_parts"
 
@@ -37,17 +37,7 @@ def known_signature(spec: PartSpec, step: float, find: Callable[[], Signature]) 
 
 
 def _key(spec: PartSpec, step: float) -> str:
-    values = [f"{name} {value!r}" for name, value in sorted(spec.values.items())]
-    named = [Path(v) for v in spec.values.values() if isinstance(v, str) and v]
-    contents = [file.read_bytes() for file in (Path(str(spec.fmu)), *filter(_is_file, named))]
-    return digest_of(kernels_key(*_TRIALS), *contents, repr(float(step)), *values)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a text that is no path
-        return False
+    return digest_of(kernels_key(*_TRIALS), *contents_of(spec), repr(float(step)))
 
 
 def _plain(found: Signature) -> dict:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from herringbone.analysis.stability.surrogate import Surrogate
-from herringbone.analysis.stability.surrogate_part import Stranger
+from herringbone.analysis.stability.surrogates.surrogate import Surrogate
+from herringbone.analysis.stability.surrogates.surrogate_part import Stranger
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all

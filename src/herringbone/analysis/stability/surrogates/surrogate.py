@@ -13,7 +13,7 @@ from time import perf_counter
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from herringbone.analysis.stability.identification import (
+from herringbone.analysis.stability.surrogates.identification import (
     LinearModel,
     Step,
     blocks,

@@ -23,8 +23,8 @@ from scipy.linalg import expm
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.amplification import Growth, growth_of
-from herringbone.analysis.stability.identification import LinearModel
 from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.surrogates.identification import LinearModel
 
 _BLAS = ThreadpoolController()
 ORDERS = (0, 1, 2)

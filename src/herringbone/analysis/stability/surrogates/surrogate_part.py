@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from herringbone.analysis.stability.surrogate import Surrogate
+from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.core.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.cosim.nodal import NodalPart

@@ -1,0 +1,55 @@
+"""Limits of the communication step, kept by what they depend on: system, algorithm, and trials."""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+
+from herringbone.analysis.stability.step_limits import StepLimits
+from herringbone.core.caching.files import keep, kept
+from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.paths import cache_root
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.structure.system import System
+from herringbone.running.content import contents_of_system
+
+_SOURCES = "herringbone.analysis.stability.limits", "herringbone.running.foreign.surrogates"
+_LIBRARIES = "numpy", "scipy"
+
+
+@dataclass(frozen=True)
+class KnownLimits:
+    """Limits of a system that were found before, or are found now and kept.
+
+    Attributes:
+        system: as its limits are asked for.
+        step: of the first trials of its foreign parts [s].
+    """
+
+    system: System
+    step: float
+
+    def __call__(
+        self, algorithm: Algorithm, simulated: bool, find: Callable[[], StepLimits]
+    ) -> StepLimits:
+        """Limits of an algorithm.
+
+        Args:
+            algorithm: of the coupling.
+            simulated: with those that runs show.
+            find: finds them; what it raises is raised.
+        """
+        file = cache_root() / "limits" / f"{self._key(algorithm, simulated)}.json"
+        if (known := kept(file)) is not None:
+            bands = tuple((low, high) for low, high in known.pop("unstable_bands"))
+            return StepLimits(unstable_bands=bands, **known)
+        found = find()
+        keep(file, asdict(found))
+        return found
+
+    def _key(self, algorithm: Algorithm, simulated: bool) -> str:
+        return digest_of(
+            kernels_key(*_SOURCES),
+            *(version(library) for library in _LIBRARIES),
+            *contents_of_system(self.system),
+            f"{algorithm!r} {simulated} {self.step!r}",
+        )
