@@ -27,7 +27,6 @@ from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
 _SLEEP = 1.0
-_PR_SET_TIMERSLACK = 29
 _LOOK = 0.25
 """Seconds between looks at whether the master lives."""
 _KNOWN = set(FUNCTIONS.names or ())
@@ -51,8 +50,6 @@ class Server:
     def __init__(self, block: int, capacity: int, master: int, code: Code) -> None:
         self._side = Side(block, places(capacity), capacity, _SLEEP)
         self._side.record["parent"] = master
-        self._nap = np.zeros(2, np.int64)
-        self._side.record["nap"] = self._nap.ctypes.data
         self._functions = np.zeros(INSTANCES, FUNCTIONS)
         self._references = np.zeros(capacity, np.uint32)
         self._orders = np.zeros(capacity, np.int32)
@@ -170,7 +167,6 @@ def watch(master: int, server: Server) -> None:
 def main(block: int, capacity: int, master: int, code: Path, folder: str) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(1))  # it is up when it wants [ns]
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     functions = loaded(code)
     leave_modes()
