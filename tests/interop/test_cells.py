@@ -153,16 +153,16 @@ def test_check_survives(systems, monkeypatch, capsys, tmp_path, place):
 @pytest.mark.parametrize("deed", [Deed.ROUND, Deed.FLUSH])
 def test_modes_of_floating_point_are_restored_in_process(systems, monkeypatch, fmi, deed):
     """After each call: those from Python, and those of compiled code."""
-    monkeypatch.setenv("HOSTILE", f"{int(Place.INITIALISE)} {int(deed)}")
-    part = new_part("stranger", systems[fmi][0] / "hostile.fmu")
-    part.enter_initialization(0.0, 1.0)
-    assert modes() == (0, True)
-    part.exit_initialization()
-    monkeypatch.setenv("HOSTILE", f"{int(Place.STEP)} {int(deed)}")
-    at = part.addresses
-    assert do_step(at.do_step, at.component, 0.0, 1e-3) == 0
-    assert modes() == (0, True)
-    part.close()
+    for place in (Place.INITIALISE, Place.STEP):
+        monkeypatch.setenv("HOSTILE", f"{int(place)} {int(deed)}")
+        part = new_part("stranger", systems[fmi][0] / "hostile.fmu")
+        part.enter_initialization(0.0, 1.0)
+        assert modes() == (0, True)
+        part.exit_initialization()
+        at = part.addresses
+        assert do_step(at.do_step, at.component, 0.0, 1e-3) == 0
+        assert modes() == (0, True)
+        part.close()
 
 
 def modes():
