@@ -8,6 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
 from herringbone.core.paths import cache_folder
+from herringbone.cosim.cell.policy import housing_of_strangers
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
 
@@ -23,6 +24,13 @@ def one_blas_thread():
 def seldom_collected():
     """Searching numba's millions of objects for cycles takes a tenth of the time."""
     with output.seldom_collected():
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def strangers_in_process():
+    """A cell takes a third of a second to start; the tests of cells ask for them."""
+    with housing_of_strangers(in_process=True):
         yield
 
 

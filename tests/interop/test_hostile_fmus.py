@@ -77,7 +77,8 @@ def test_what_a_cell_finds_after_the_end_is_in_the_summary(system, tmp_path, dee
 
 @cells
 def test_a_crash_in_a_step_is_an_outcome(system, tmp_path):
-    code, said = run(system, tmp_path, Place.LATE_STEP, Deed.CRASH, "--cells")
+    """Cells are the default."""
+    code, said = run(system, tmp_path, Place.LATE_STEP, Deed.CRASH)
     assert code == 1
     assert "part_failed: stranger" in said
     assert "signal 11 (SIGSEGV) in doStep at 0.0005" in said

@@ -48,8 +48,8 @@ ONLY_IN: dict[str, set[str]] = {
     "numba": {"kernels", "cosim", "fmi/native/objects.py"},
     "llvmlite": {
         "cosim/cell/atomics.py",
-        "cosim/cell/code.py",
-        "cosim/cell/loading.py",
+        "cosim/cell/inside/code.py",
+        "cosim/cell/inside/loading.py",
         "cosim/loops/calls.py",
         "cosim/loops/float_modes.py",
         "cosim/fmu/fmi3_steps.py",

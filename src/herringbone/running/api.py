@@ -87,8 +87,8 @@ def run(
             housings: by path.
         probe: find out by trial steps what foreign FMUs are, see `running.foreign`; False:
             they are taken by what they declare.
-        in_process: True, the default: load foreign FMUs into this process, where their faults are
-            faults of the run; False: each runs in a child process, see `cosim.cell`.
+        in_process: True: load foreign FMUs into this process, where their faults are faults of the
+            run; False, the default on Linux: each runs in a child process, see `cosim.cell`.
         call_deadline: longest time that a call of an FMU in a child process may take [s]; 60 s if
             not given.
         reference: also solve the monolithic twin, and report the errors against it.

@@ -5,7 +5,7 @@ import hashlib
 from pathlib import Path
 
 from herringbone.core.caching.files import write_file
-from herringbone.core.paths import cache_root
+from herringbone.core.paths import cache_root, is_trusted
 
 _FOLDER = "built-fmus"
 
@@ -27,4 +27,5 @@ def content_of(file: Path) -> str:
 def is_built(file: Path) -> bool:
     """True if the content of a file was built here, whatever its name."""
     content = content_of(file)
-    return bool(content) and (cache_root() / _FOLDER / content).is_file()
+    mark = cache_root() / _FOLDER / content
+    return bool(content) and mark.is_file() and is_trusted(mark) and is_trusted(mark.parent)

@@ -8,10 +8,10 @@ Python process with one block of memory that it shares with the master:
   life of the cell meanwhile (`waiting`);
 - what the compiled loop calls are adapters at C addresses (`calls`). They collect what needs no
   answer (set, save, restore, free) and send it with the next step, together with a request for the
-  outputs that were read after the last one: one message per part and sweep. The cell's side is
-  compiled, too (`serving`);
+  outputs that were read before: one message per part and sweep. Nobody waits for it until these
+  are read, so that other parts step meanwhile. The cell's side is compiled, too (`inside.serving`);
 - all else (instantiate, initialise, values of other types, terminate, free) goes as JSON through
-  the same block (`wire`, `process`, `child`).
+  the same block (`wire`, `process`, `inside.child`).
 
 No descriptor is needed after the start, so that an FMU may close them all. A refusal of what was
 collected is reported by the step that it was sent with; the first call of every kind is sent at

@@ -86,7 +86,7 @@ SIDE = np.dtype(
         for name in (
             "block", "words", "values", "capacity", "syscall", "clock", "poll", "now", "timeout",
             "watched", "parent", "deadline", "lost", "misses", "rest", "flying",
-            "nap", "interval",
+            "nap", "interval", "lead",
         )
     ]
 )  # fmt: skip
@@ -97,7 +97,8 @@ clock_gettime and poll; of a timespec to read the clock into, and of the one tha
 to; of the pollfd by which the master sees the cell end; number of the process whose child the cell
 is; time to wait for an answer [ns], 0: without end; why the cell is lost; waits in a row that
 spinning did not shorten; waits that do not spin; address of the instance whose message is under
-way, 0: none is; of a timespec to nap for, 0: it does not; mean time until a message comes [ns].
+way, 0: none is; of a timespec to nap for; mean time until a message comes [ns], and by which a nap
+ends earlier.
 """
 ALIVE, DIED, LATE = 0, 1, 2
 """Why a cell is lost: it ended; it did not answer in time."""

@@ -1,19 +1,19 @@
 """An FMU in a cell, as participant."""
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, HerringboneError
-from herringbone.core.caching.built import content_of
 from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
-from herringbone.core.temporary import remove_temporary_folder, temporary_folder
-from herringbone.cosim.cell import calls, derivative_calls, state_calls
-from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits, room
+from herringbone.core.temporary import remove_temporary_folder
+from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits
+from herringbone.cosim.cell.calls import derivatives, signals, states
+from herringbone.cosim.cell.housing import give_back
 from herringbone.cosim.cell.policy import Remark, policy
 from herringbone.cosim.cell.process import Cell, CellLost
 from herringbone.cosim.fmu.variables import read_variables, resized
@@ -21,69 +21,18 @@ from herringbone.cosim.fmu.variables import read_variables, resized
 if TYPE_CHECKING:
     from herringbone.cosim.signature.signature import Signature
 
-T = TypeVar("T")
 _LAST_GOOD = 1
 _FUNCTIONS = {
-    "set_real": calls.set_real,
-    "get_real": calls.get_real,
-    "do_step": calls.do_step,
-    "get_state": state_calls.get_state,
-    "set_state": state_calls.set_state,
-    "free_state": state_calls.free_state,
-    "set_derivatives": derivative_calls.set_derivatives,
-    "get_derivatives": derivative_calls.get_derivatives,
+    "set_real": signals.set_real,
+    "get_real": signals.get_real,
+    "do_step": signals.do_step,
+    "get_state": states.get_state,
+    "set_state": states.set_state,
+    "free_state": states.free_state,
+    "set_derivatives": derivatives.set_derivatives,
+    "get_derivatives": derivatives.get_derivatives,
 }
 _SEND = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
-
-
-def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Cell:
-    """A cell of the FMU that is idle, or a new one with room for its signals; raises FmuError."""
-    content, idle = content_of(file), policy().idle or {}
-    if idle.get(content):
-        cell = idle[content].pop()
-        cell.name = name
-        return cell
-    known = read_variables(model)
-    sized = any(v.causality == STRUCTURE for v in known.values())
-    return Cell(name, content, room(len(known), sized=sized), folder)
-
-
-def give_back(cell: Cell) -> None:
-    """Keep a cell for the next time, or end it if its FMU did anything to it."""
-    idle = policy().idle
-    if idle is not None and _is_as_new(cell):
-        idle.setdefault(cell.content, []).append(cell)
-    else:
-        cell.close()
-
-
-def applied(name: str, file: Path, model: ModelDescription, function: Callable[[Path], T]) -> T:
-    """What a function of a module finds about an FMU, in a cell.
-
-    Raises:
-        CellLost: the cell does not survive that.
-        HerringboneError: what the function raised.
-    """
-    with temporary_folder() as folder:
-        cell = cell_for(name, file, model, folder)
-        asked = function.__module__, function.__name__, str(file.absolute()), str(folder)
-        try:
-            return cell.ask("apply", -1, *asked)
-        finally:
-            cell.close()
-            if said := cell.log.described():
-                policy().remarks.append(Remark(name, said))
-
-
-def _is_as_new(cell: Cell) -> bool:
-    """True if its FMU did nothing to a cell that shows."""
-    try:
-        if cell.lost or cell.ask("changed", -1):
-            return False
-    except HerringboneError:
-        return False
-    cell.log.settle()
-    return cell.log.size == 0
 
 
 class CellPart:
@@ -154,16 +103,23 @@ class CellPart:
     def addresses(self) -> Addresses:
         """Addresses of the adapters, of what the FMU has; the component is their memory."""
         found = {name: f.address for name, f in _FUNCTIONS.items() if self._has[name]}
-        found |= {"get_later": calls.get_later.address, "finish": calls.finish.address}
+        found |= {"get_later": signals.get_later.address, "finish": signals.finish.address}
         return Addresses(self._memory.ctypes.data, **found, answers_later=1)
 
     def new_state(self) -> int:
         """0: the adapters number the states."""
         return 0
 
+    def _sent(self) -> int:
+        """Send what the adapters have collected; FMI status."""
+        return _SEND(signals.send.address)(self._memory.ctypes.data)
+
     def _ask(self, call: str, *arguments: object) -> object:
         """Call a function of the part in the cell; raises HerringboneError."""
-        if _SEND(calls.send.address)(self._memory.ctypes.data) > _LAST_GOOD and not self._cell.lost:
+        if (
+            _SEND(signals.send.address)(self._memory.ctypes.data) > _LAST_GOOD
+            and not self._cell.lost
+        ):
             said = "; ".join(self._cell.ask("messages", self._number))
             raise FmuError(f"{self.name} refuses a step, a value or a state: {said}")
         return self._cell.ask(call, self._number, *arguments)
@@ -202,7 +158,7 @@ class CellPart:
     def failed(self) -> None:
         """A step failed: FMI then allows no call but fmi2FreeInstance."""
         self._failed = True
-        self._memory["used"] = self._memory["waiting"] = 0
+        self._memory["used"] = self._memory["waiting"] = self._memory["reads"] = 0
         if not self._cell.lost:
             self._ask("failed")
 
@@ -235,7 +191,7 @@ class CellPart:
     def _end(self) -> None:
         try:
             if not self._failed:
-                _SEND(calls.send.address)(self._memory.ctypes.data)
+                self._sent()
             for call in ("terminate", "free"):
                 self._cell.ask(call, self._number)
             if self._owned:

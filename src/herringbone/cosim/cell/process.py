@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
-from herringbone.cosim.cell import messages
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -22,7 +21,8 @@ from herringbone.cosim.cell.block import (
     MORE,
     places,
 )
-from herringbone.cosim.cell.code import code_file
+from herringbone.cosim.cell.calls import messages
+from herringbone.cosim.cell.inside.code import code_file
 from herringbone.cosim.cell.log import OutputLog
 from herringbone.cosim.cell.policy import policy, spin_time
 from herringbone.cosim.cell.sides import Side
@@ -100,15 +100,23 @@ class Cell:
         """True if there is no conversation any more."""
         return bool(self.side.record["lost"][0] != ALIVE)
 
+    @property
+    def has_instances(self) -> bool:
+        """True if it has anything to do."""
+        return len(self._free) < INSTANCES
+
     def new_instance(self) -> int:
         """Number of a new instance; raises FmuError."""
         if not self._free:
             raise FmuError(f"{self.name}: more than {INSTANCES} instances at the same time")
-        return self._free.pop()
+        number = self._free.pop()
+        _share_cores()
+        return number
 
     def forget(self, number: int, memory: int) -> None:
         """An instance is closed, whose memory is at this address."""
         self._free.append(number)
+        _share_cores()
         if self.side.record["flying"][0] == memory:
             self.side.record["flying"] = 0
 
@@ -215,7 +223,7 @@ def _signal(number: int) -> str:
 
 
 def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Popen[bytes]":
-    command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.child"]
+    command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.inside.child"]
     paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
     try:
         return subprocess.Popen(
@@ -233,9 +241,9 @@ def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Pope
 
 def _share_cores() -> None:
     """Spin only as long as there is a core for each."""
-    cells = list(_open)
-    for cell in cells:
-        cell.side.spin(spin_time(len(cells)))
+    busy = [cell for cell in _open if cell.has_instances]
+    for cell in busy:
+        cell.side.spin(spin_time(len(busy)))
 
 
 @atexit.register

@@ -7,6 +7,8 @@ import numpy as np
 
 from herringbone.cosim.cell.block import HEADER, HEADER_TYPE, SIDE, SPIN, TEXT_BYTES, Places
 
+_PR_SET_TIMERSLACK = 29
+
 
 class Side:
     """The block, mapped, and the record of this side.
@@ -25,10 +27,11 @@ class Side:
         self._text = self._bytes[layout.text :]
         self.header = self._bytes[HEADER : HEADER + HEADER_TYPE.itemsize].view(HEADER_TYPE)
         self.record = np.zeros(1, SIDE)
-        self._now, self._timeout = np.zeros(2, np.int64), np.zeros(2, np.int64)
+        self._now, self._timeout, self._nap = (np.zeros(2, np.int64) for _ in range(3))
         self.poll = np.zeros(1, np.int64)
         self._timeout[:] = int(sleep), int(1e9 * (sleep % 1.0))  # timespec: s, and ns below 1e9
         c = ctypes.CDLL(None)
+        c.prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(1))  # naps end when they shall [ns]
         values = {
             "block": address,
             "words": address + layout.words,
@@ -37,6 +40,7 @@ class Side:
             "now": self._now.ctypes.data,
             "timeout": self._timeout.ctypes.data,
             "watched": self.poll.ctypes.data,
+            "nap": self._nap.ctypes.data,
         }
         for name, function in (
             ("syscall", c.syscall),

@@ -9,8 +9,9 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
 from herringbone.core.temporary import remove_temporary_folder
-from herringbone.cosim.cell.part import CellPart, cell_for, give_back
-from herringbone.cosim.cell.part import applied as applied_in_cell
+from herringbone.cosim.cell.housing import applied as applied_in_cell
+from herringbone.cosim.cell.housing import cell_for, give_back
+from herringbone.cosim.cell.part import CellPart
 from herringbone.cosim.cell.policy import Remark, cells_work, policy
 from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu

@@ -1,7 +1,6 @@
-"""What runs in a cell: `python -m herringbone.cosim.cell.child BLOCK WORDS MASTER CODE FOLDER`."""
+"""What runs in a cell: `python -m ...cell.inside.child BLOCK WORDS MASTER CODE FOLDER`."""
 
 import ctypes
-import locale
 import os
 import resource
 import shutil
@@ -10,7 +9,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,7 +17,8 @@ import numpy as np
 
 from herringbone.core import FmuError, HerringboneError
 from herringbone.cosim.cell.block import FUNCTIONS, INSTANCES, SERVER, STATES, places
-from herringbone.cosim.cell.loading import Code, loaded
+from herringbone.cosim.cell.inside.loading import Code, loaded
+from herringbone.cosim.cell.inside.surroundings import surroundings
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
 from herringbone.cosim.fmu.float_modes import leave_modes
@@ -28,7 +27,6 @@ from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 
 _SLEEP = 1.0
-_PR_SET_TIMERSLACK = 29
 _LOOK = 0.25
 """Seconds between looks at whether the master lives."""
 _KNOWN = set(FUNCTIONS.names or ())
@@ -52,8 +50,6 @@ class Server:
     def __init__(self, block: int, capacity: int, master: int, code: Code) -> None:
         self._side = Side(block, places(capacity), capacity, _SLEEP)
         self._side.record["parent"] = master
-        self._nap = np.zeros(2, np.int64)
-        self._side.record["nap"] = self._nap.ctypes.data
         self._functions = np.zeros(INSTANCES, FUNCTIONS)
         self._references = np.zeros(capacity, np.uint32)
         self._orders = np.zeros(capacity, np.int32)
@@ -160,38 +156,6 @@ class Server:
         return [what for what, before in self._before.items() if now[what] != before]
 
 
-def surroundings() -> dict[str, object]:
-    """What belongs to the whole process, by what it is called."""
-    umask = os.umask(0)
-    os.umask(umask)
-    return {
-        "the working folder": _or_none(Path.cwd),
-        "the umask": umask,
-        "the locale": locale.setlocale(locale.LC_ALL),
-        "open descriptors": tuple(_is_open(k) for k in range(3)),
-        "the number of threads": _or_none(lambda: len(list(Path("/proc/self/task").iterdir()))),
-        "the floating-point environment": _modes(),
-    }
-
-
-def _or_none(find: Callable[[], object]) -> object:
-    try:
-        return find()
-    except OSError:
-        return None
-
-
-def _is_open(descriptor: int) -> bool:
-    return _or_none(lambda: os.fstat(descriptor) and True) is True
-
-
-def _modes() -> tuple[int, bool]:
-    """Rounding mode, by what the C library calls it, and whether denormal numbers become zero."""
-    library = ctypes.CDLL(None)
-    rounding = int(library.fegetround()) if hasattr(library, "fegetround") else 0
-    return rounding, float(np.float64(sys.float_info.min) / 2.0) == 0.0
-
-
 def watch(master: int, server: Server) -> None:
     """End this process when the master has ended, and remove what it left."""
     while os.getppid() == master:
@@ -203,7 +167,6 @@ def watch(master: int, server: Server) -> None:
 def main(block: int, capacity: int, master: int, code: Path, folder: str) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(1))  # it is up when it wants [ns]
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     functions = loaded(code)
     leave_modes()

@@ -14,7 +14,7 @@ from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import kernels_key
 from herringbone.core.paths import cache_folder
-from herringbone.cosim.cell import serving
+from herringbone.cosim.cell.inside import serving
 from herringbone.cosim.fmu import fmi3_calls
 from herringbone.cosim.fmu.fmi3_adapters import adapters
 from herringbone.kernels.jit import c_code

@@ -9,19 +9,16 @@ import numpy as np
 from numba import carray, from_dtype, types
 
 from herringbone.cosim.cell.block import INSTANCE, KINDS, SET, STEP
-from herringbone.cosim.cell.messages import (
-    LAST_GOOD,
+from herringbone.cosim.cell.calls.messages import LAST_GOOD, land, launch, room
+from herringbone.cosim.cell.calls.messages import send as send_all
+from herringbone.cosim.cell.calls.operations import (
     ask,
     ask_later,
     begin,
     collected,
-    land,
-    launch,
     launch_step,
-    room,
     step_now,
 )
-from herringbone.cosim.cell.messages import send as send_all
 from herringbone.cosim.loops.calls import at_address
 from herringbone.kernels.jit import allocating, c_function
 

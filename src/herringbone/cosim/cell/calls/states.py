@@ -1,11 +1,12 @@
-"""FMI 2.0 functions of states in front of those of a part in a cell; see `cell.calls`."""
+"""FMI 2.0 functions of states in front of those of a part in a cell; see `signals`."""
 
 import numpy as np
 from numba import carray, types
 
 from herringbone.cosim.cell.block import FREE, RESTORE, SAVE, STATES
-from herringbone.cosim.cell.calls import INSTANCE_POINTER
-from herringbone.cosim.cell.messages import ERROR, LAST_GOOD, begin, collected, room
+from herringbone.cosim.cell.calls.messages import ERROR, LAST_GOOD, room
+from herringbone.cosim.cell.calls.operations import begin, collected
+from herringbone.cosim.cell.calls.signals import INSTANCE_POINTER
 from herringbone.cosim.loops.calls import at_address
 from herringbone.kernels.jit import c_function
 

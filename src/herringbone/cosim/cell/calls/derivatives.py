@@ -1,20 +1,12 @@
-"""FMI 2.0 functions of derivatives in front of those of a part in a cell; see `cell.calls`."""
+"""FMI 2.0 functions of derivatives in front of those of a part in a cell; see `signals`."""
 
 import numpy as np
 from numba import carray, types
 
 from herringbone.cosim.cell.block import SET_DERIVATIVES
-from herringbone.cosim.cell.calls import INSTANCE_POINTER
-from herringbone.cosim.cell.messages import (
-    LAST_GOOD,
-    ask,
-    ask_rates,
-    begin,
-    collected,
-    land,
-    room,
-    send,
-)
+from herringbone.cosim.cell.calls.messages import LAST_GOOD, land, room, send
+from herringbone.cosim.cell.calls.operations import ask, ask_rates, begin, collected
+from herringbone.cosim.cell.calls.signals import INSTANCE_POINTER
 from herringbone.cosim.loops.calls import at_address
 from herringbone.kernels.jit import allocating, c_function
 

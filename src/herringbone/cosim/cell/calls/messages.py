@@ -13,18 +13,14 @@ from herringbone.cosim.cell.block import (
     ALIVE,
     ANSWER,
     CELL_SLEEPS,
-    GET,
-    GET_DERIVATIVES,
     HEADER,
     HEADER_TYPE,
     INSTANCE,
-    KINDS,
     MASTER_SLEEPS,
     OPERATIONS,
     READS,
     REQUEST,
     SIDE,
-    STEP,
 )
 from herringbone.cosim.cell.waiting import await_word, post
 from herringbone.cosim.loops.calls import at_address
@@ -33,9 +29,9 @@ from herringbone.kernels.jit import allocating, c_function
 _SIDE = types.CPointer(from_dtype(SIDE))
 LAST_GOOD, ERROR, FATAL = 1, 3, 4
 """FMI status."""
-_OUTPUTS, _RATES, _LATER = range(3)
+OUTPUTS, RATES, LATER = range(3)
 """What is read: the outputs that were read last, their derivatives, or what is asked for later."""
-_WORDS = 3
+WORDS = 3
 """Of each: address where values go, their number, what it is."""
 
 
@@ -96,19 +92,19 @@ def _deliver(memory: np.ndarray, side: np.ndarray, found: int) -> None:
     """Values of an answer go where they were wanted."""
     part = memory[0]
     value = carray(at_address(side[0].values), found + 1, np.float64)
-    wanted = carray(at_address(part.wanted), _WORDS * READS, np.int64)
+    wanted = carray(at_address(part.wanted), WORDS * READS, np.int64)
     at = 0
     for k in range(part.reads):
         if at >= found:
             break
-        to, count, what = wanted[_WORDS * k], wanted[_WORDS * k + 1], wanted[_WORDS * k + 2]
+        to, count, what = wanted[WORDS * k], wanted[WORDS * k + 1], wanted[WORDS * k + 2]
         status = int(value[at])
         into = carray(at_address(to), count, np.float64)
         for i in range(count if status <= LAST_GOOD else 0):
             into[i] = value[at + 1 + i]
-        if what == _OUTPUTS:
+        if what == OUTPUTS:
             memory[0].status, memory[0].valid = status, 1
-        elif what == _RATES:
+        elif what == RATES:
             memory[0].rate_status, memory[0].rate_valid = status, 1
         else:
             memory[0].came = max(memory[0].came, status)
@@ -169,93 +165,3 @@ def room(memory: np.ndarray, words: int) -> int:
             return ERROR
         return send(memory)
     return 0
-
-
-@allocating
-def begin(memory: np.ndarray, kind: int, count: int) -> int:
-    """Begin an operation: where its content goes, in words."""
-    part = memory[0]
-    words = carray(at_address(part.words), part.used + 2, np.int64)
-    words[part.used], words[part.used + 1] = kind, count
-    return part.used + 2
-
-
-@allocating
-def collected(memory: np.ndarray, kind: int) -> int:
-    """An operation is complete: it waits, or is sent if it is the first of its kind. FMI status."""
-    part = memory[0]
-    part.valid = part.rate_valid = 0
-    known = carray(at_address(part.known), KINDS, np.uint8)
-    if known[kind]:
-        return 0
-    status = send(memory)
-    if status <= LAST_GOOD:
-        known[kind] = 1
-    return status
-
-
-@allocating
-def _want(memory: np.ndarray, to: int, count: int, what: int) -> None:
-    part = memory[0]
-    wanted = carray(at_address(part.wanted), _WORDS * READS, np.int64)
-    at = _WORDS * part.reads
-    wanted[at], wanted[at + 1], wanted[at + 2] = to, count, what
-    memory[0].reads += 1
-
-
-@allocating
-def _get(memory: np.ndarray, references: np.ndarray, count: int) -> None:
-    at = begin(memory, GET, count)
-    words = carray(at_address(memory[0].words), at + count, np.int64)
-    for i in range(count):
-        words[at + i] = references[i]
-    memory[0].used = at + count
-
-
-@allocating
-def ask_later(memory: np.ndarray, references: np.ndarray, count: int, to: int) -> None:
-    """Collect the request for outputs that go to an address."""
-    _get(memory, references, count)
-    _want(memory, to, count, _LATER)
-
-
-@allocating
-def ask(memory: np.ndarray) -> None:
-    """Collect the request for the outputs that were read before."""
-    part = memory[0]
-    _get(memory, carray(at_address(part.references), part.count, np.uint32), part.count)
-    _want(memory, part.found, part.count, _OUTPUTS)
-
-
-@allocating
-def ask_rates(memory: np.ndarray) -> None:
-    """Collect the request for the derivatives that were read last."""
-    part = memory[0]
-    count = part.rate_count
-    at = begin(memory, GET_DERIVATIVES, count)
-    words = carray(at_address(part.words), at + 2 * count, np.int64)
-    reference = carray(at_address(part.rates), count, np.uint32)
-    order = carray(at_address(part.orders), count, np.int32)
-    for i in range(count):
-        words[at + i], words[at + count + i] = reference[i], order[i]
-    part.used = at + 2 * count
-    _want(memory, part.rate_found, count, _RATES)
-
-
-@allocating
-def launch_step(memory: np.ndarray) -> None:
-    """Post the steps that were collected, with the requests for outputs."""
-    ask(memory)
-    if memory[0].rate_count > 0:
-        ask_rates(memory)
-    launch(memory)
-
-
-@allocating
-def step_now(memory: np.ndarray) -> int:
-    """As `launch_step`, and wait; FMI status."""
-    launch_step(memory)
-    status = land(memory)
-    if status <= LAST_GOOD:
-        carray(at_address(memory[0].known), KINDS, np.uint8)[STEP] = 1
-    return status

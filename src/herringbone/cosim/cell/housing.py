@@ -1,0 +1,68 @@
+"""Cells for FMUs: new ones, idle ones that are used again, and their end."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from fmpy.model_description import ModelDescription
+
+from herringbone.core import HerringboneError
+from herringbone.core.caching.built import content_of
+from herringbone.core.part import STRUCTURE
+from herringbone.core.temporary import temporary_folder
+from herringbone.cosim.cell.block import room
+from herringbone.cosim.cell.policy import Remark, policy
+from herringbone.cosim.cell.process import Cell
+from herringbone.cosim.fmu.variables import read_variables
+
+T = TypeVar("T")
+
+
+def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Cell:
+    """A cell of the FMU that is idle, or a new one with room for its signals; raises FmuError."""
+    content, idle = content_of(file), policy().idle or {}
+    if idle.get(content):
+        cell = idle[content].pop()
+        cell.name = name
+        return cell
+    known = read_variables(model)
+    sized = any(v.causality == STRUCTURE for v in known.values())
+    return Cell(name, content, room(len(known), sized=sized), folder)
+
+
+def give_back(cell: Cell) -> None:
+    """Keep a cell for the next time, or end it if its FMU did anything to it."""
+    idle = policy().idle
+    if idle is not None and _is_as_new(cell):
+        idle.setdefault(cell.content, []).append(cell)
+    else:
+        cell.close()
+
+
+def applied(name: str, file: Path, model: ModelDescription, function: Callable[[Path], T]) -> T:
+    """What a function of a module finds about an FMU, in a cell.
+
+    Raises:
+        CellLost: the cell does not survive that.
+        HerringboneError: what the function raised.
+    """
+    with temporary_folder() as folder:
+        cell = cell_for(name, file, model, folder)
+        asked = function.__module__, function.__name__, str(file.absolute()), str(folder)
+        try:
+            return cell.ask("apply", -1, *asked)
+        finally:
+            cell.close()
+            if said := cell.log.described():
+                policy().remarks.append(Remark(name, said))
+
+
+def _is_as_new(cell: Cell) -> bool:
+    """True if its FMU did nothing to a cell that shows."""
+    try:
+        if cell.lost or cell.ask("changed", -1):
+            return False
+    except HerringboneError:
+        return False
+    cell.log.settle()
+    return cell.log.size == 0
