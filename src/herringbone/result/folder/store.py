@@ -54,7 +54,7 @@ class Store:
     @property
     def rows(self) -> int:
         """Rows that are there."""
-        return self._file.rows
+        return self._rows.rows if self._rows else 0
 
     @property
     def _file(self) -> RowFile:

@@ -136,6 +136,10 @@ class RunOutput:
         store, self._store = self._store, None
         try:
             self._written = finish_report(store, result, self.shown, parquet=self.parquet).files
+        except HerringboneError as error:
+            raise HerringboneError(
+                f"{error}; all records are in {self.shown}, and --resume writes the rest"
+            ) from error
         finally:
             store.close()
         self._run = store.run
