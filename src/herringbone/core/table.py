@@ -39,8 +39,12 @@ class KeptRows(NamedTuple):
 class RowSink(Protocol):
     """Where the rows of a run go, in their order, while it goes on."""
 
-    def begin(self, columns: TableColumns) -> None:
-        """The run has these columns."""
+    def begin(self, columns: TableColumns, rows: int) -> None:
+        """The run has these columns, and will have so many rows; 0: nobody knows how many.
+
+        Raises:
+            HerringboneError: they cannot be kept.
+        """
 
     def append(
         self, times: np.ndarray, values: np.ndarray, others: Sequence[Sequence[Any]]

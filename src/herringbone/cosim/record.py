@@ -37,10 +37,12 @@ class Record(Protocol):
     Attributes:
         values: rows by columns.
         first: row of the run with which `values` begins.
+        expected: rows of the whole run; 0 if nobody knows.
     """
 
     values: np.ndarray
     first: int
+    expected: int
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows in `values` that are complete after `done` units of the grid."""
@@ -98,7 +100,7 @@ class UniformRecord:
 
     def __init__(self, grid: Grid, columns: int, window: int | None = None) -> None:
         self._grid, self.first = grid, 0
-        rows = grid.count // grid.every + 1
+        self.expected = rows = grid.count // grid.every + 1
         if window is None:
             _check_room(rows, columns, grid)
         self.values = np.full((rows if window is None else min(rows, window), columns), np.nan)
@@ -152,7 +154,7 @@ class GrowingRecord:
     def __init__(self, columns: int, window: int | None = None) -> None:
         room = _ROWS if window is None else window
         self.values, self.row_times = np.empty((room, columns)), np.zeros(room)
-        self.rows, self.first = 1, 0
+        self.rows, self.first, self.expected = 1, 0, 0
 
     def times(self, done: int) -> np.ndarray:
         """Times [s] of the rows written."""

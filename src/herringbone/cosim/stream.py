@@ -66,7 +66,8 @@ class Stream:
         self.sizes: list[tuple[int, np.ndarray]] = []
         types = {name: kind.name for name, kind in others.types.items()}
         units = tuple(own_unit(v) for v in recorded)
-        self.sink.begin(TableColumns(tuple(names), units, types, others.units))
+        columns = TableColumns(tuple(names), units, types, others.units)
+        self.sink.begin(columns, -(-record.expected // streaming.every))
 
     @property
     def sink(self) -> RowSink:

@@ -1,6 +1,6 @@
 """A results folder whose run is resumed: what is there already is compared bit by bit."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.table import TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State, remove_reports
 from herringbone.result.folder.others import OtherFile, read_others
+from herringbone.result.folder.room import check_room
 from herringbone.result.folder.rows import RowFile
 from herringbone.result.folder.run_file import RunFile, write_run_file
 from herringbone.result.folder.store import Store
@@ -36,14 +37,25 @@ class CheckedStore(Store):
         start: all that is known of the result.
         there: rows in the folder.
         done: of these, the ones that the run does not compute again.
+        prepare: see `Store`.
     """
 
-    def __init__(self, folder: Path, run: RunFile, start: Result, there: int, done: int) -> None:
-        super().__init__(folder, run, start)
+    def __init__(
+        self,
+        folder: Path,
+        run: RunFile,
+        start: Result,
+        there: int,
+        done: int,
+        prepare: Callable[[], None] = lambda: None,
+    ) -> None:
+        super().__init__(folder, run, start, prepare)
         self._there, self._position = there, done
 
-    def begin(self, columns: TableColumns) -> None:
+    def begin(self, columns: TableColumns, rows: int = 0) -> None:
         """Open the files; raises ReplayError if the run has other columns than before."""
+        check_room(self.folder, rows - self._there, len(columns.names))
+        self._prepare()
         known = self._described(columns)
         if (known.columns, known.units) != (self.run.columns, self.run.units):
             raise ReplayError(f"{self.folder} holds a run with other columns; nothing was changed")

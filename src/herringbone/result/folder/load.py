@@ -21,8 +21,8 @@ _UNITS = "# units: "
 def load(folder: str | Path) -> Result:
     """The result in a folder that `herringbone run` has written, or is writing.
 
-    Rows are read from the disk when they are used. What a run left that was killed is a result,
-    too: its outcome is "interrupted" and says so.
+    Rows of long runs are read from the disk when they are used. What a run left that was killed is
+    a result, too: its outcome is "interrupted" and says so.
 
     Args:
         folder: see `docs/results_folder.md`; older ones without a format as well.
@@ -36,7 +36,7 @@ def load(folder: str | Path) -> Result:
         return _load_old(folder)
     table = stored_table(folder, run.columns, run.others)
     try:
-        result = result_of(run.result, table.mapped(), run.units)
+        result = result_of(run.result, table.all(), run.units)
     except (TypeError, ValueError, KeyError, AttributeError) as error:
         raise ResourceError(f"{folder}: its run.json is damaged: {error}") from error
     return _cut_off(result, run, folder) if run.state is State.RUNNING else result

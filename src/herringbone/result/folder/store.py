@@ -1,6 +1,6 @@
 """A results folder that is being written."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from herringbone.core.table import KeptRows, TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State
 from herringbone.result.folder.others import OtherFile
 from herringbone.result.folder.result_file import stored_result
+from herringbone.result.folder.room import check_room
 from herringbone.result.folder.rows import RowFile
 from herringbone.result.folder.run_file import RunFile, write_run_file
 from herringbone.result.folder.state_file import remove_states, write_state
@@ -20,25 +21,34 @@ from herringbone.result.result import TIME, Result
 
 
 class Store:
-    """Rows go into a folder, which has been made and emptied.
+    """Rows go into a folder.
 
     Args:
         folder: where they go.
         run: what is known of the run; columns are filled in.
         start: all that is known of its result before there are rows.
+        prepare: makes the folder ready as soon as there are columns; it is ready if not given.
 
     Attributes:
         run: what stands in `run.json`.
     """
 
-    def __init__(self, folder: Path, run: RunFile, start: Result) -> None:
-        self.folder, self._start = folder, start
+    def __init__(
+        self,
+        folder: Path,
+        run: RunFile,
+        start: Result,
+        prepare: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.folder, self._prepare = folder, prepare
         self.run = replace(run, state=State.RUNNING, result=stored_result(start))
         self._rows: RowFile | None = None
         self._others: OtherFile | None = None
 
-    def begin(self, columns: TableColumns) -> None:
+    def begin(self, columns: TableColumns, rows: int = 0) -> None:
         """See `RowSink`; raises HerringboneError."""
+        check_room(self.folder, rows, len(columns.names))
+        self._prepare()
         self.run = self._described(columns)
         self._rows = RowFile(self.folder / ROWS, len(self.run.columns))
         if self.run.others:
@@ -54,7 +64,7 @@ class Store:
     @property
     def rows(self) -> int:
         """Rows that are there."""
-        return self._file.rows
+        return self._rows.rows if self._rows else 0
 
     @property
     def _file(self) -> RowFile:

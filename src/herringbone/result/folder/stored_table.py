@@ -49,18 +49,23 @@ class StoredTable:
         values = read_rows(self.folder / ROWS, len(self.columns), first, self.rows)
         return self._frame(values, self._others(first))
 
-    def mapped(self) -> pd.DataFrame:
-        """All rows; reals are read when they are used. Raises HerringboneError."""
+    def all(self) -> pd.DataFrame:
+        """All rows; reals of long runs are read when they are used. Raises HerringboneError."""
+        if self.rows <= self.kept:
+            return self.last(self.rows)
         values = mapped_rows(self.folder / ROWS, len(self.columns), self.rows)
-        return self._frame(values, self._others(0))
+        return self._frame(values, self._others(0), copy=False)
 
     def _others(self, first: int) -> dict[str, np.ndarray]:
         if not self.others:
             return {}
         return read_others(self.folder / OTHERS, self.others, first, self.rows)
 
-    def _frame(self, values: np.ndarray, others: Mapping[str, np.ndarray]) -> pd.DataFrame:
-        data = pd.DataFrame(values, columns=list(self.columns), copy=False)
+    def _frame(
+        self, values: np.ndarray, others: Mapping[str, np.ndarray], *, copy: bool = True
+    ) -> pd.DataFrame:
+        """As the table of a run: copied, so that its means are summed in the same order."""
+        data = pd.DataFrame(values, columns=list(self.columns), copy=copy)
         if not others:
             return data
         return pd.concat([data, pd.DataFrame(dict(others))], axis=1)
@@ -78,7 +83,7 @@ class StoredTable:
             return
         others = self._other_pieces() if self.others else iter(dict, None)
         for values, more in zip(self.reals(), others, strict=False):
-            yield self._frame(values, more)
+            yield self._frame(values, more, copy=False)
 
     def _other_pieces(self) -> Iterator[dict[str, np.ndarray]]:
         file = self.folder / OTHERS

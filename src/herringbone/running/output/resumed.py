@@ -1,6 +1,6 @@
 """A run that goes on: its folder, how it was asked for, and where it goes on."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -46,10 +46,15 @@ class Resumed:
                 "bring them back, or begin anew with --overwrite"
             )
 
-    def store(self, start: Result, state: Mapping[str, np.ndarray] | None) -> CheckedStore:
-        """Where the rows of the run go on."""
+    def store(
+        self,
+        start: Result,
+        state: Mapping[str, np.ndarray] | None,
+        prepare: Callable[[], None],
+    ) -> CheckedStore:
+        """Where the rows of the run go on; see `CheckedStore`."""
         done = 0 if state is None else int(state["rows"])
-        return CheckedStore(self.folder, self.run, start, self.rows, done)
+        return CheckedStore(self.folder, self.run, start, self.rows, done, prepare)
 
     def replayed(self) -> "Resumed":
         """The same, from the start."""

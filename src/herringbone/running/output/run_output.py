@@ -60,16 +60,16 @@ class RunOutput:
         return self._start / self.shown
 
     def claim(self, system: System, scene: Scene, options: object) -> None:
-        """Choose the folder, before anything is computed.
+        """Choose the folder, before anything is computed or written.
 
         Raises:
-            HerringboneError: another run is there, or the folder cannot be made.
+            HerringboneError: another run is there.
         """
         settings = settings_of(system, scene, options)
         key = key_of(settings)
         if self.resumed is not None:
             self.resumed.check(settings)
-            self._lock, self._run = FolderLock(self.path), self.resumed.run
+            self._run = self.resumed.run
             return
         wanted = self.folder or Path("results") / f"{self.system or system.name}-{scene.name}"
         named = self.folder is not None
@@ -80,14 +80,15 @@ class RunOutput:
                 f"results go to {self.shown}: {wanted} holds a run of other settings, or of an "
                 "older version; --overwrite overwrites it"
             )
-        self._lock = FolderLock(self.path)
         self._run = RunFile(
             State.RUNNING, (), {}, key=key, settings=settings, asked=self.asked,
             folder=str(self._start),
         )  # fmt: skip
 
     def stream(self, start: Result, every: int = 1, *, keeps_all: bool = False) -> Streaming:
-        """Where the rows of the run go; what another run has left there is removed.
+        """Where the rows of the run go.
+
+        With the first of them the folder is made, and what another run has left there is removed.
 
         Args:
             start: all that is known of the result before there are rows.
@@ -99,13 +100,18 @@ class RunOutput:
         """
         if self.resumed is not None:
             state = None if keeps_all else self.resumed.state
-            self._store = self.resumed.store(start, state)
+            self._store = self.resumed.store(start, state, self._take)
             return Streaming(self._store, every, keeps_all, state)
-        self._empty()
-        self._store = Store(self.path, self._run, start)
+        self._store = Store(self.path, self._run, start, self._empty)
         return Streaming(self._store, every, keeps_all)
 
+    def _take(self) -> None:
+        """Make the folder, and keep others out of it."""
+        if self._lock is None:
+            self._lock = FolderLock(self.path)
+
     def _empty(self) -> None:
+        self._take()
         try:
             remove_results(self.path)
         except OSError as error:
@@ -136,6 +142,10 @@ class RunOutput:
         store, self._store = self._store, None
         try:
             self._written = finish_report(store, result, self.shown, parquet=self.parquet).files
+        except HerringboneError as error:
+            raise HerringboneError(
+                f"{error}; all records are in {self.shown}, and --resume writes the rest"
+            ) from error
         finally:
             store.close()
         self._run = store.run

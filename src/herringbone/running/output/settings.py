@@ -8,9 +8,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from herringbone.core import HerringboneError
 from herringbone.core.caching.keys import digest_of, packed_key
-from herringbone.core.errors import reason
 from herringbone.core.files import is_file
 from herringbone.cosim.structure.system import System
 from herringbone.scenes import Scene
@@ -26,9 +24,6 @@ def settings_of(system: System, scene: Scene, options: object) -> dict[str, str]
         system: with all values.
         scene: of the run.
         options: what else is asked for; its text tells it.
-
-    Raises:
-        HerringboneError: a file cannot be read.
     """
     plain = replace(scene, description="", gears={}, housings={}, values={})
     structure = (system.connections, sorted(system.channels.items()))
@@ -62,14 +57,14 @@ def _told(value: object) -> str:
 
 
 def _content(file: Path) -> str:
-    """Digest of a file's content; raises HerringboneError."""
+    """Digest of a file's content."""
     digest = hashlib.sha256()
     try:
         with file.open("rb") as stream:
             while block := stream.read(_BLOCK):
                 digest.update(block)
-    except OSError as error:
-        raise HerringboneError(f"cannot read {file}: {reason(error)}") from error
+    except OSError:  # whoever needs it says so
+        return "not readable"
     return digest.hexdigest()
 
 
