@@ -77,6 +77,7 @@ class Hosting:
         tolerance: name of the local that the wrapper sets to the host's tolerance.
         experiment: the default experiment.
         exchange: model exchange is offered.
+        advice: what is known of communication steps, as rows of a table; the first one is its head.
     """
 
     settle: Callable[[np.ndarray, float], int]
@@ -85,3 +86,4 @@ class Hosting:
     tolerance: str
     experiment: Experiment
     exchange: bool
+    advice: Callable[[], list[tuple[str, ...]]]

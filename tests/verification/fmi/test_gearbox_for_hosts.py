@@ -1,6 +1,7 @@
 """The gearbox as an FMU for hosts: what it shows, how it starts, what a flange takes."""
 
 import math
+import re
 from functools import cache
 from xml.etree.ElementTree import fromstring
 from zipfile import ZipFile
@@ -248,3 +249,38 @@ def test_reference_results_are_replayed(fmi, exported, tmp_path):
     problems = check_fmu(wrong)
     assert len(problems) == head.count(",")
     assert "reference results: wheel.w = 34.9" in "".join(problems)
+
+
+def behind_a_shaft(host, step, order, inertia=0.02, stiffness=6e4, damping=5.0):
+    """Largest deviation of the shaft's torque [N m] late in a run of a hand-written loop."""
+    phi, w = host.get("pinion.phi", "pinion.w")
+    there, speed, before, deviations = phi + 200.0 / stiffness, w, 200.0, []
+    for k in range(round(0.4 / step)):
+        tau = stiffness * (there - phi) + damping * (speed - w)
+        slope = (tau - before) / step if order and k else 0.0
+        host.set({"pinion.tau": tau})
+        if order:
+            host.slave.setRealInputDerivatives([host.reference["pinion.tau"]], [1], [slope])
+        host.step(k * step, step)
+        jerk, now = -slope / inertia, (200.0 - tau) / inertia
+        there += speed * step + now * step**2 / 2.0 + jerk * step**3 / 6.0
+        speed += now * step + jerk * step**2 / 2.0
+        phi, w = host.get("pinion.phi", "pinion.w")
+        before = tau
+        deviations.append(abs(tau - 200.0))
+        if deviations[-1] > 5000.0:
+            return math.inf
+    return max(deviations[-len(deviations) // 4 :])
+
+
+@pytest.mark.parametrize("order", [0, 1])
+def test_documented_step_limit(order, exported, tmp_path):
+    with ZipFile(exported(0)) as archive:
+        page = archive.read("documentation/index.html").decode()
+    row = re.search(r"<td>pinion</td><td>torque</td><td>0.02 kg.*?</td>(.*?)</tr>", page)
+    limit = 1e-6 * float(re.findall(r"<td>(\d+) us</td>", row[1])[order])
+    below = behind_a_shaft(Fmi2Host(exported(0), tmp_path / "b"), 0.9 * limit, order)
+    above = behind_a_shaft(Fmi2Host(exported(0), tmp_path / "a"), 1.1 * limit, order)
+    calm = behind_a_shaft(Fmi2Host(exported(0), tmp_path / "c"), 0.5 * limit, order)
+    assert below < 3.0 * calm + 0.5  # N m
+    assert above > 10.0 * calm

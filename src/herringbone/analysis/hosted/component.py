@@ -18,6 +18,7 @@ from herringbone.analysis.hosted.declaration import (
 )
 from herringbone.analysis.hosted.places import Places, elastic_states
 from herringbone.analysis.hosted.source import own_lines
+from herringbone.analysis.hosted.step_limits import advice
 from herringbone.analysis.twin.composite import Composite
 from herringbone.analysis.twin.composite_parts import (
     Parts,
@@ -107,9 +108,11 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
             TOLERANCE,
             EXPERIMENT,
             wanted.exchange,
+            lambda: advice(composite, boundary.flanges),
         ),
     )
-    return Composite(component, dict(resources_of(parts.instances)))
+    composite = Composite(component, dict(resources_of(parts.instances)))
+    return composite
 
 
 def _equations(boundary: Boundary, parts: Parts) -> str:

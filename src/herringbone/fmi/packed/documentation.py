@@ -31,18 +31,33 @@ _HOSTED = (
 )
 
 
-def documentation(component: Component, platforms: Iterable[Platform], more: str = "") -> bytes:
-    """The page; `more` is HTML that follows the signs."""
+_STEPS = (
+    "Largest stable communication steps at the start, with an inertia at one flange and nothing "
+    "else at the others, where the host evaluates its shaft at the communication points; inputs "
+    "held, or with their first derivatives. `herringbone stability FILE.fmu --flange PORT "
+    "--inertia J` asks for others, and for shafts that are stepped in parallel. Accuracy asks for "
+    "less."
+)
+
+
+def documentation(component: Component, platforms: Iterable[Platform]) -> bytes:
+    """The page."""
     declaration = component.declaration
     binaries = "".join(
         f"<li>{p.name}{'' if p.tested else f' ({_UNTESTED})'}</li>" for p in platforms
     )
-    hosted = f"<h2>Flanges and start</h2><p>{html.escape(_HOSTED)}</p>" if component.hosting else ""
+    hosted = ""
+    if component.hosting:
+        hosted = (
+            f"<h2>Flanges and start</h2><p>{html.escape(_HOSTED)}</p>"
+            f"<h2>Communication steps</h2><p>{html.escape(_STEPS)}</p>"
+            f"{_table(component.hosting.advice())}"
+        )
     text = (
         f"<!DOCTYPE html><html><head><meta charset='utf-8'><title>{component.name}</title></head>"
         f"<body><h1>{component.name}</h1><p>{html.escape(declaration.description)}.</p>"
         f"<h2>Binaries</h2><ul>{binaries}</ul>"
-        f"<h2>Signs</h2><p>{html.escape(_SIGNS)}</p>{hosted}{more}"
+        f"<h2>Signs</h2><p>{html.escape(_SIGNS)}</p>{hosted}"
         f"<h2>Variables</h2>{_variables(component)}"
         f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
     )
@@ -56,16 +71,17 @@ def licence() -> bytes:
 
 def _variables(component: Component) -> str:
     shown = interface.reals(component.declaration).values()
-    rows = "".join(f"<tr>{''.join(map(_cell, _row(v)))}</tr>" for v in shown)
-    texts = "".join(
-        f"<tr>{''.join(map(_cell, (t.name, 'parameter', '', t.start, '', t.description)))}</tr>"
-        for t in component.declaration.texts
+    texts = (
+        (t.name, "parameter", "", t.start, "", t.description) for t in component.declaration.texts
     )
-    head = "".join(
-        f"<th>{name}</th>"
-        for name in ("name", "causality", "unit", "start", "range", "description")
-    )
-    return f"<table><tr>{head}</tr>{rows}{texts}</table>"
+    return _table([_HEAD, *map(_row, shown), *texts])
+
+
+def _table(rows: Iterable[tuple[str, ...]]) -> str:
+    """The first row is the head."""
+    lines = [f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows]
+    lines[0] = lines[0].replace("td>", "th>")
+    return f"<table>{''.join(lines)}</table>"
 
 
 def _cell(text: str) -> str:
