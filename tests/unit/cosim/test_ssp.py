@@ -212,10 +212,10 @@ def test_geometry_and_foreign_annotations_are_passed_over(edited, system):
 
 REFUSED_STRUCTURES = {
     "version": ('version="1.0" name="chain"', 'version="2.0" name="chain"', "SSP version '2.0'"),
-    "nested system": (
+    "values of a nested system": (
         "<ssd:Elements>",
-        '<ssd:Elements><ssd:System name="inner"/>',
-        "nested system 'inner' is not supported",
+        '<ssd:Elements><ssd:System name="inner"><ssd:ParameterBindings/></ssd:System>',
+        "nested system 'inner' has values; give them to its components",
     ),
     "signal dictionary reference": (
         "<ssd:Elements>",
@@ -416,3 +416,23 @@ def test_nested_systems_stay_so_and_are_wired_alike(system, fmus, tmp_path):
     for start, end in whole.connections:
         (part, output), (target, into) = whole.split(start), whole.split(end)
         assert source((target, into)) == (part, output)
+
+
+def test_nested_systems_are_read_again(system, fmus, tmp_path):
+    """Paths, values and connections; a connector that nothing arrives at is refused."""
+    whole, file = replace(nested(system), ports={}), tmp_path / "nested.ssp"
+    write_ssp(whole, fmus, file, step=1e-5, t_end=0.25, nested=True)
+    found = read_ssp(file)
+    assert sorted(found.paths) == sorted(whole.paths)
+    assert set(found.connections) == set(whole.connections)
+    for part in whole.parts:
+        assert found.part(part.name).values == part.values
+    folder = tmp_path / "unpacked"
+    with zipfile.ZipFile(file) as archive:
+        archive.extractall(folder)
+    text = (folder / SSD).read_text(encoding="utf-8")
+    cut = text.replace('endConnector="right__f"', 'endConnector="other"')
+    assert cut != text
+    (folder / SSD).write_text(cut, encoding="utf-8")
+    with pytest.raises(StructureError, match=r"'box__right.f': no output of a component arrives"):
+        read_ssp(folder)

@@ -7,12 +7,14 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.equilibrium import equilibrium
+from herringbone.analysis.stability.limits import step_limits
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.drivetrain.elastic_shaft import ELASTIC_SHAFT, MODES
 from herringbone.components.drivetrain.freewheel import FREEWHEEL
 from herringbone.components.drivetrain.geared_shaft import GEARED_SHAFT
 from herringbone.components.drivetrain.torque_source import TORQUE_SOURCE
 from herringbone.core import Instance
+from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.scenes import Scene, Start
 
@@ -255,8 +257,12 @@ def test_an_engaged_freewheel_is_a_shaft_coupling():
     assert found["flange_a.tau"] == -found["torque"] == -found["flange_b.tau"]
 
 
-def test_a_drivetrain_of_all_parts_agrees_with_its_twin_and_starts_in_equilibrium():
-    """Speed source, freewheel, elastic shaft, geared shaft, inertia, load: li at 0.1 ms."""
+def all_parts(ripple):
+    """Speed source, freewheel, elastic shaft, geared shaft, inertia, load."""
+    load = {
+        "nominal_torque": -200.0, "nominal_speed": 40.0, "quadratic_share": 1.0,
+        "order_1.order": 5.0, "order_1.amplitude": ripple, "ramp_time": 0.01,
+    }  # fmt: skip
     found = system(
         {
             "grid": ("speed_source", {"speed_setpoint": 100.0}),
@@ -264,28 +270,45 @@ def test_a_drivetrain_of_all_parts_agrees_with_its_twin_and_starts_in_equilibriu
             "line": ("elastic_shaft", {"inertia": 0.5, "stiffness": 2e5}),
             "stage": ("geared_shaft", {"ratio": RATIO, "efficiency": 0.95}),
             "drum": ("rotating_inertia", {"inertia": J2}),
-            "load": (
-                "torque_source",
-                {"nominal_torque": -200.0, "nominal_speed": 40.0, "quadratic_share": 1.0,
-                 "order_1.order": 5.0, "order_1.amplitude": 30.0, "ramp_time": 0.01},
-            ),
+            "load": ("torque_source", load),
         },
         ("grid.flange", "freewheel.flange_a"),
         ("line.flange_a", "freewheel.flange_b"),
         ("line.flange_b", "stage.flange_a"),
         ("drum.flange_a", "stage.flange_b"),
         ("drum.flange_b", "load.flange"),
-    )  # fmt: skip
-    scene = Scene("s", "", 0.05, 1e-4, Start.EQUILIBRIUM)
+    )
+    return found.with_values(equilibrium(found).values)
+
+
+def test_a_drivetrain_of_all_parts_agrees_with_its_twin_and_starts_in_equilibrium():
+    """li at 0.1 ms, order 5 of the load."""
+    found = all_parts(30.0)
+    scene = Scene("s", "", 0.05, 1e-4, Start.REST)
     result = hb.run(found, scene=scene, algorithm="li:degree=3", step=1e-4, fmu="in-process")
     assert result.outcome.completed
     load = 200.0 * (100.0 / RATIO / 40.0) ** 2
     assert result["stage.torque"].iloc[0] == pytest.approx(load / RATIO / 0.95, rel=1e-4)
     assert result["freewheel.torque"].iloc[0] == pytest.approx(result["stage.torque"].iloc[0])
     columns = ["freewheel.torque", "stage.torque", "drum.flange_a.w"]
-    start = found.with_values(equilibrium(found).values)
-    exact = Twin(start).solve(result.data["time"].to_numpy(), columns)
+    exact = Twin(found).solve(result.data["time"].to_numpy(), columns)
     for column, wanted in zip(columns, exact.T, strict=True):
         swing = np.ptp(wanted)
         assert swing > 0.0
         assert np.abs(result[column] - wanted).max() < 1e-3 * swing, column
+
+
+def test_its_limit_of_stability_is_known():
+    """A kick dies out in a step 10 % below the predicted limit, and grows 10 % above."""
+    found = all_parts(0.0)
+    algorithm = Jacobi(2)
+    limit = step_limits(found, algorithm).limit
+    later = {}
+    for share in (0.9, 1.1):
+        step = share * limit
+        scene = Scene("s", "", 400 * step, step, Start.REST, start_offset={"drum.speed": 1e-3})
+        run = hb.run(found, scene=scene, algorithm=algorithm, step=step, fmu="in-process")
+        torque = (run["stage.torque"] - run["stage.torque"].iloc[0]).abs()
+        later[share] = torque[200:].max() / torque[:200].max()
+    assert later[0.9] < 1.0
+    assert later[1.1] > 1.5

@@ -1,4 +1,4 @@
-"""Reading SSP 1.0 files: one flat system of FMI 2.0 co-simulation FMUs, with parameter values.
+"""Reading SSP 1.0 files: a system of FMI 2.0 co-simulation FMUs, with parameter values.
 
 What is not of that subset is refused by name; nothing is left out silently but geometry and the
 annotations of other tools. SSP allows any names; what is no identifier is mapped to one (see
@@ -21,6 +21,7 @@ from herringbone.core.reading.texts import read_bytes
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
 from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.fmu.variables import read_variables
+from herringbone.cosim.ssp.flatten import flattened
 from herringbone.cosim.ssp.format import (
     CHANNELS_ANNOTATION,
     FMU_TYPE,
@@ -98,6 +99,7 @@ class _Reader:
             raise self.refusal("it contains no system")
         if element.find("ssd:SignalDictionaries", NAMESPACES) is not None:
             raise self.refusal("signal dictionaries are not supported; connect components directly")
+        element = flattened(element, self.refusal)
         name = self.renamed(element.get("name") or root.get("name") or self.file.stem, "system")
         self.name_components(element)
         parts: list[PartSpec] = []
@@ -154,8 +156,6 @@ class _Reader:
 
     def part(self, element: Element) -> tuple[PartSpec, Mapping[str, PartVariable]]:
         kind, name = local_name(element), element.get("name", "")
-        if kind == "System":
-            raise self.refusal(f"nested system '{name}' is not supported; flatten it")
         if kind == "SignalDictionaryReference":
             raise self.refusal(
                 f"signal dictionary reference '{name}' is not supported; connect directly"

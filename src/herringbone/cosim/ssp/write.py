@@ -1,13 +1,13 @@
 """Writing a system as an SSP 1.0 file that other masters read.
 
-What masters differ in is avoided: one flat system, the customary prefixes declared on the root
-element only, one parameter file per component with bare variable names and the set name
-`PARAMETER_SET`. libcosim takes the step from the annotation in the default experiment, OMSimulator
-from the one in the system. libcosim sets start values of states only from its own format, which
-lies in the file as well (`osp_structure`).
+What masters differ in is avoided: one flat system if nothing else is asked for, the customary
+prefixes declared on the root element only, one parameter file per component with bare variable
+names and the set name `PARAMETER_SET`. libcosim takes the step from the annotation in the default
+experiment, OMSimulator from the one in the system. libcosim sets start values of states only from
+its own format, which lies in the file as well (`osp_structure`).
 
-Names of nested parts are flat there (see `core.part_path.flat_name`); an annotation keeps their
-paths.
+Names of nested parts are flat in one system (see `core.part_path.flat_name`); an annotation keeps
+their paths.
 
 Connectors are the connected variables and all outputs that this master would record; signal nodes
 stay out, so that other masters hold inputs over a step.

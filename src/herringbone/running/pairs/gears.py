@@ -94,6 +94,7 @@ def _values(
         notes += [
             f"{part}: its gear ratio is not set, as there are {len(pairs)} gear pairs"
             for part in known.with_role(Role.CONTROLLER)
+            if known.column(part, Quantity.GEAR_RATIO)
         ]
     return values, notes
 

@@ -1,0 +1,109 @@
+"""Nested systems of an SSP 1.0 file as one flat system, which the reader knows."""
+
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from xml.etree.ElementTree import Element, SubElement
+
+from herringbone.core import StructureError
+from herringbone.core.names import is_identifier
+from herringbone.cosim.ssp.format import NAMESPACES, PARTS_ANNOTATION, local_name, qualified
+
+Refusal = Callable[[str], StructureError]
+_SEPARATOR = "__"
+_ENDS = ("start", "end")
+
+
+def flattened(system: Element, refusal: Refusal) -> Element:
+    """The system with all components in it; the system itself if it contains no other.
+
+    Components are called `outer__inner`; an annotation says their paths. Connections are followed
+    through the connectors of the systems between.
+
+    Raises:
+        StructureError: a nested system has values, or a connection leads to no component.
+    """
+    elements = system.find("ssd:Elements", NAMESPACES)
+    if elements is None or not any(local_name(child) == "System" for child in elements):
+        return system
+    flat = Element(system.tag, dict(system.attrib))
+    for child in system:
+        if local_name(child) not in {"Elements", "Connections"}:
+            flat.append(child)
+    inside = SubElement(flat, qualified("ssd:Elements"))
+    paths: dict[str, str] = {}
+    for path, component in _components(system, "", refusal):
+        inside.append(component)
+        if path != component.get("name"):
+            paths[component.get("name", "")] = path
+    connections = SubElement(flat, qualified("ssd:Connections"))
+    for connection in _connections(system, {c.get("name", "") for c in inside}, refusal):
+        connections.append(connection)
+    _annotate(flat, paths)
+    return flat
+
+
+def _components(system: Element, path: str, refusal: Refusal) -> Iterator[tuple[str, Element]]:
+    """Paths and elements of all components, which get flat names."""
+    for child in system.iterfind("ssd:Elements/*", NAMESPACES):
+        inner = f"{path}.{child.get('name', '')}" if path else child.get("name", "")
+        if local_name(child) != "System":
+            component = deepcopy(child)
+            component.set("name", _flat(inner))
+            yield inner, component
+            continue
+        if child.find("ssd:ParameterBindings", NAMESPACES) is not None:
+            raise refusal(f"nested system '{inner}' has values; give them to its components")
+        if child.find("ssd:SignalDictionaries", NAMESPACES) is not None:
+            raise refusal(f"nested system '{inner}' has signal dictionaries; connect directly")
+        yield from _components(child, inner, refusal)
+
+
+def _links(system: Element, path: str) -> Iterator[Element]:
+    """All connections, whose elements get flat names; a system's is that of its own."""
+    for connection in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
+        link = deepcopy(connection)
+        for end in _ENDS:
+            name = connection.get(f"{end}Element")
+            inner = f"{path}.{name}" if path and name else name or path
+            link.set(f"{end}Element", _flat(inner))
+        yield link
+    for child in system.iterfind("ssd:Elements/ssd:System", NAMESPACES):
+        name = child.get("name", "")
+        yield from _links(child, f"{path}.{name}" if path else name)
+
+
+def _connections(system: Element, components: set[str], refusal: Refusal) -> Iterator[Element]:
+    """Connections of components, followed through connectors of systems."""
+    links = list(_links(system, ""))
+    arriving = {(x.get("endElement"), x.get("endConnector")): x for x in links}
+    for link in links:
+        if link.get("endElement") not in components:
+            continue
+        found, seen = link, 1
+        while (start := found.get("startElement")) not in components:
+            before = arriving.get((start, found.get("startConnector")))
+            if before is None or seen > len(links):
+                raise refusal(
+                    f"connection '{link.get('endElement')}.{link.get('endConnector')}': no output "
+                    "of a component arrives there"
+                )
+            link.extend(child for child in before)
+            found, seen = before, seen + 1
+        for key in ("startElement", "startConnector"):
+            link.set(key, found.get(key, ""))
+        yield link
+
+
+def _annotate(system: Element, paths: dict[str, str]) -> None:
+    """Write the paths of components whose names are flat now, where they are identifiers."""
+    known = {n: p for n, p in paths.items() if all(map(is_identifier, p.split(".")))}
+    annotations = SubElement(system, qualified("ssd:Annotations"))
+    annotation = SubElement(annotations, qualified("ssc:Annotation"), type=PARTS_ANNOTATION)
+    parts = SubElement(annotation, qualified("hb:Parts"))
+    for name, path in known.items():
+        SubElement(parts, qualified("hb:Part"), name=name, path=path)
+
+
+def _flat(path: str) -> str:
+    """Path as one name."""
+    return path.replace(".", _SEPARATOR)
