@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import schur
 
+from herringbone.analysis.flange.hosted_flange import Host, host_limits
 from herringbone.analysis.hosted.boundary import HostFlange
-from herringbone.analysis.stability.hosted_flange import Host, host_limits
-from herringbone.analysis.stability.identification import LinearModel
+from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.twin.composite import Composite
 from herringbone.core import ParameterError
 from herringbone.core.hosting import Given
