@@ -6,16 +6,14 @@ from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import StructureError
 from herringbone.core.part import PartVariable
-from herringbone.core.part_path import flat_name
 from herringbone.cosim.layouts.layout import record_names
+from herringbone.cosim.ssp.annotations import add_experiment, add_system_annotations, add_units
 from herringbone.cosim.ssp.boxes import Box, Corners, boxes, coordinates
 from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import (
-    CHANNELS_ANNOTATION,
     FMU_TYPE,
     NAMESPACES,
     PARAMETER_TYPE,
-    PARTS_ANNOTATION,
     VERSION,
 )
 from herringbone.cosim.structure.network import Network
@@ -73,9 +71,9 @@ def structure(
             connectors[p].append(variable.name)
     inner = SubElement(root, "ssd:System", name=system.name, description=system.description)
     _fill_system(inner, tree, tree[""], parts, connectors, sources)
-    _add_system_annotations(inner, system, step, flat=not nested)
-    _add_units(root, parts, connectors)
-    _add_experiment(root, step, t_end)
+    add_system_annotations(inner, system, step, flat=not nested)
+    add_units(root, parts, connectors)
+    add_experiment(root, step, t_end)
     return root
 
 
@@ -162,60 +160,3 @@ def _connector_type(part: DescribedPart, variable: PartVariable) -> str:
             "without exporting it"
         )
     return f"ssc:{_CONNECTORS[variable.type]}"
-
-
-def _add_system_annotations(element: Element, system: System, step: float, *, flat: bool) -> None:
-    annotations = SubElement(element, "ssd:Annotations")
-    annotation = SubElement(annotations, "ssc:Annotation", type="org.openmodelica")
-    information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
-    SubElement(
-        information,
-        "oms:FixedStepMaster",
-        description="oms-ma",
-        stepSize=repr(step),
-        absoluteTolerance="1e-4",
-        relativeTolerance="1e-4",
-    )
-    scoped = [path for path in system.paths if path.scope and flat]
-    if scoped:
-        annotation = SubElement(annotations, "ssc:Annotation", type=PARTS_ANNOTATION)
-        names = SubElement(annotation, "hb:Parts")
-        for path in scoped:
-            SubElement(names, "hb:Part", name=flat_name(path), path=path)
-    if system.channels:
-        annotation = SubElement(annotations, "ssc:Annotation", type=CHANNELS_ANNOTATION)
-        channels = SubElement(annotation, "hb:Channels")
-        for name, patterns in system.channels.items():
-            SubElement(channels, "hb:Channel", name=name, columns=" ".join(patterns))
-
-
-def _add_units(
-    root: Element, parts: Sequence[DescribedPart], connectors: Sequence[Sequence[str]]
-) -> None:
-    """The units of all connectors, as their FMUs define them."""
-    found: dict[str, tuple] = {}
-    for part, names in zip(parts, connectors, strict=True):
-        for variable in (part.variables[name] for name in names):
-            if variable.unit is None or variable.dimension is None:
-                continue
-            if found.setdefault(variable.unit, variable.dimension) != variable.dimension:
-                raise StructureError(
-                    f"{part.name}.{variable.name}: unit '{variable.unit}' is defined otherwise in "
-                    "another FMU; rename one"
-                )
-    if not found:
-        return
-    units = SubElement(root, "ssd:Units")
-    for name, (factor, offset, powers) in sorted(found.items()):
-        base = {base: str(power) for base, power in powers}
-        base |= {} if factor == 1.0 else {"factor": repr(factor)}
-        base |= {} if offset == 0.0 else {"offset": repr(offset)}
-        SubElement(SubElement(units, "ssc:Unit", name=name), "ssc:BaseUnit", base)
-
-
-def _add_experiment(root: Element, step: float, t_end: float) -> None:
-    experiment = SubElement(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(t_end))
-    annotations = SubElement(experiment, "ssd:Annotations")
-    annotation = SubElement(annotations, "ssc:Annotation", type="com.opensimulationplatform")
-    algorithm = SubElement(annotation, "osp:Algorithm")
-    SubElement(algorithm, "osp:FixedStepAlgorithm", baseStepSize=repr(step))
