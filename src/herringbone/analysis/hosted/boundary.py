@@ -16,6 +16,7 @@ _INSIDE = {Role.GEAR_PAIR, Role.BEARING, Role.HOUSING}
 _TRANSMISSION_ERROR = "transmission_error"
 _MOTION_OF_SEATS = "v_"
 _FORCE = "f_"
+_OF_FLANGE = ("tau", "phi", "w", "a")
 _OF_PAIR = (
     "mesh_damping_ratio", "backlash", "symmetry_deviation", "ramp_turns",
 )  # fmt: skip
@@ -57,6 +58,8 @@ class Boundary:
 
     def name(self, full: str) -> str:
         """What the host calls a variable `instance.variable`."""
+        if full in self._short:
+            return self._short[full]
         for start, short in self._shorter.items():
             if full.startswith(start):
                 return short + full[len(start) :]
@@ -64,14 +67,13 @@ class Boundary:
 
     @cached_property
     def _shorter(self) -> dict[str, str]:
+        """What paths that begin so are shortened to."""
         known = anatomy(self.system)
         found = {}
         for f in self.flanges:
             if f.shaft:
                 found[f"{f.shaft}.flange_a."] = f"{f.name}."
                 found[f"{f.shaft}."] = f"{f.name}.shaft_"
-            else:
-                found[f"{f.path}."] = f"{f.name}."
         for role, kind, name in (
             (Role.BEARING, PortKind.JOURNAL, "bearing"),
             (Role.HOUSING, PortKind.SEAT, "seat"),
@@ -80,8 +82,15 @@ class Boundary:
             if len(parts) == 1:
                 for port in known.ports(parts[0], kind):
                     found[f"{parts[0]}.{port.name}."] = f"{name}.{port.place}."
-        for path in self._of_meshes:
-            found[path] = path.removeprefix(f"{self.pair}.")
+        return found
+
+    @cached_property
+    def _short(self) -> dict[str, str]:
+        """Variables of the gear pair that are called by their own names, or by the flange's."""
+        found = {path: path.removeprefix(f"{self.pair}.") for path in self._of_meshes}
+        for f in self.flanges:
+            if not f.shaft:
+                found |= {f"{f.path}.{q}": f"{f.name}.{q}" for q in _OF_FLANGE}
         return found
 
     @cached_property
