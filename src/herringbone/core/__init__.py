@@ -13,6 +13,7 @@ from herringbone.core.errors import (
     reason,
 )
 from herringbone.core.instance import Instance
+from herringbone.core.laws import Laws
 from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 from herringbone.core.variable import (
     Column,
@@ -36,6 +37,7 @@ __all__ = [
     "HerringboneError",
     "Instance",
     "Kernels",
+    "Laws",
     "Outcome",
     "OutcomeKind",
     "ParameterError",

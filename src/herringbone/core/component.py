@@ -14,6 +14,7 @@ from herringbone.core.paths import component_folder
 
 if TYPE_CHECKING:
     from herringbone.core.instance import Instance
+    from herringbone.core.laws import Laws
 
 
 class Kernels(NamedTuple):
@@ -85,6 +86,8 @@ class Component:
             it, or none can.
         of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
             given the pair and the part's parameters, as they are without the pair. None: none do.
+        laws: its scalar laws, apart from the linear rest; None: the component is linear, or what it
+            has is not of that form.
         folder: where script, README and golden result lie, and `resources`; that of its name if
             not given.
     """
@@ -104,6 +107,7 @@ class Component:
     longest_step: Callable[[np.ndarray], float] = unbounded
     freeze: Freeze | None = None
     of_pair: OfPair | None = None
+    laws: "Laws | None" = None
     folder: Path = field(default=Path())
 
     def __post_init__(self) -> None:
