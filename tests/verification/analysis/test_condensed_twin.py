@@ -1,5 +1,6 @@
 """The twin by its condensed core, against Runge-Kutta on the equations as the kernels have them."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.twin import reference
 from herringbone.analysis.twin.condensed import solution
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
@@ -137,6 +139,18 @@ def test_restart_at_breakpoints():
     assert found[:, 0] == pytest.approx([0.0, 300.0, 600.0, 600.0])
     exact = Twin(ramped).solve(times, columns)
     assert found == pytest.approx(exact, rel=1e-6, abs=1e-5)
+
+
+def test_reference_is_the_condensed_core_where_that_is_exact(monkeypatch):
+    """Its own measure bounds its error; where it is not enough, Runge-Kutta comes in."""
+    groups = {"bearing": BEARING, "seat": SEAT}
+    found = reference.reference(rig("loaded"), TIMES, groups)
+    stated = float(re.search(r"core, exact to (\S+) %", found.how)[1]) / 100.0
+    assert errors(found.values, "loaded") < stated + 3e-9
+    assert stated < 1e-7
+    monkeypatch.setattr(reference, "ENOUGH", 1e-12)
+    found = reference.reference(rig("loaded"), TIMES[:51], groups)
+    assert "Runge-Kutta at 1e-10: the condensed core of test_rig is exact to" in found.how
 
 
 def test_what_has_no_condensed_core():

@@ -1,9 +1,8 @@
 """The compiled march: steps of the condensed core, laws called by their addresses."""
 
-from typing import NamedTuple
-
 import numpy as np
 
+from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.condensed.collocation import (
@@ -31,103 +30,21 @@ _call_law = c_call("address", "address", "address", "address", "address")
 _call_signals = c_call("address", "real")
 
 
-class Calls(NamedTuple):
-    """Laws and sources by address; offsets by part, totals at the end.
-
-    Attributes:
-        blocks: the blocks of all parts, one behind the other; laws may write into theirs.
-        law: (parts,) addresses of the laws.
-        block: (parts,) where their blocks begin.
-        argument, value, tangent, indicator: (parts + 1,) offsets.
-        source: (sources,) addresses of functions that write a source's signals.
-        source_block: (sources,) where their blocks begin.
-        signal: (signals,) places of the signals.
-    """
-
-    blocks: np.ndarray
-    law: np.ndarray
-    block: np.ndarray
-    argument: np.ndarray
-    value: np.ndarray
-    tangent: np.ndarray
-    indicator: np.ndarray
-    source: np.ndarray
-    source_block: np.ndarray
-    signal: np.ndarray
-
-
-class Fixed(NamedTuple):
-    """What depends on the system and the degree alone.
-
-    Attributes:
-        of_angles: (arguments, rotations).
-        offset: (arguments,), of the angles at the start.
-        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, continued;
-            the middle one is of equal steps, later ones of shorter ones.
-        nodes: (nodes,) places in a step.
-    """
-
-    of_angles: np.ndarray
-    offset: np.ndarray
-    ahead: np.ndarray
-    nodes: np.ndarray
-
-
-class State(NamedTuple):
-    """Where a march stands.
-
-    Attributes:
-        x, y: (modes,) real and imaginary parts of the coordinates.
-        angle: (rotations,) since the start [rad]: a sum of small steps keeps its digits.
-        u: (inputs,) of the step that was taken last.
-        place: base step, place in it in shortest steps, rung, rung of the last step (-1: none, or
-            the laws bent in it).
-        counted: see `STEPS`.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    angle: np.ndarray
-    u: np.ndarray
-    place: np.ndarray
-    counted: np.ndarray
-
-
-class Samples(NamedTuple):
-    """What is kept for each time that is wanted: the step that contains it.
-
-    Attributes:
-        times: ascending [s].
-        x, y, angle, u: as of `State`, at the start of the step.
-        since: [s] since the start of the step.
-        length: of the step [s].
-    """
-
-    times: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    angle: np.ndarray
-    u: np.ndarray
-    since: np.ndarray
-    length: np.ndarray
-
-
 @inlined
-def _evaluate(calls: Calls, nodes: Nodes) -> None:
-    """Laws at all nodes but the first, from the arguments there."""
+def _call_laws(calls: Calls, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    """Values, tangents and indicators of all laws at their arguments."""
     blocks = calls.blocks.ctypes.data
-    for i in range(len(nodes.z)):
-        for p in range(calls.law.size):
-            _call_law(
-                calls.law[p],
-                (
-                    blocks + _REAL * calls.block[p],
-                    nodes.z[i].ctypes.data + _REAL * calls.argument[p],
-                    nodes.f[i].ctypes.data + _REAL * calls.value[p],
-                    nodes.k[i].ctypes.data + _REAL * calls.tangent[p],
-                    nodes.e[i + 1].ctypes.data + _REAL * calls.indicator[p],
-                ),
-            )
+    for p in range(calls.law.size):
+        _call_law(
+            calls.law[p],
+            (
+                blocks + _REAL * calls.block[p],
+                z.ctypes.data + _REAL * calls.argument[p],
+                f.ctypes.data + _REAL * calls.value[p],
+                k.ctypes.data + _REAL * calls.tangent[p],
+                e.ctypes.data + _REAL * calls.indicator[p],
+            ),
+        )
 
 
 @kernel
@@ -199,7 +116,8 @@ def _solve_step(
     for _ in range(MOST_ITERATIONS):
         copy(room, z)
         add_inputs(rungs.of_inputs[rung], u, 0, z)
-        _evaluate(calls, nodes)
+        for i in range(inner):
+            _call_laws(calls, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
         state.counted[EVALUATIONS] += 1
         residual = residuals(table, nodes, u, r)
         iteration_matrix(table, nodes, rungs.along[rung], matrix)
@@ -235,18 +153,8 @@ def begin(calls: Calls, table: Table, nodes: Nodes, u: np.ndarray) -> None:
 
     From the arguments, which stand in `nodes.z[0]`.
     """
-    blocks, count = calls.blocks.ctypes.data, len(nodes.e)
-    for p in range(calls.law.size):
-        _call_law(
-            calls.law[p],
-            (
-                blocks + _REAL * calls.block[p],
-                nodes.z[0].ctypes.data + _REAL * calls.argument[p],
-                nodes.f[0].ctypes.data + _REAL * calls.value[p],
-                nodes.k[0].ctypes.data + _REAL * calls.tangent[p],
-                nodes.e[0].ctypes.data + _REAL * calls.indicator[p],
-            ),
-        )
+    count = len(nodes.e)
+    _call_laws(calls, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
     for value in range(table.unknown.size):
         rest = nodes.f[0, value]
         for j in range(len(nodes.z[0])):

@@ -7,13 +7,11 @@ import numpy as np
 from herringbone.analysis.twin.condensed.march import (
     DONE,
     NOT_CONVERGED,
-    Fixed,
-    Samples,
-    State,
     begin,
     call_sources,
     march,
 )
+from herringbone.analysis.twin.condensed.march_arrays import Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
@@ -29,7 +27,7 @@ HALVINGS = 7
 """Rungs below the base step."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
-_GAUSS = np.polynomial.legendre.leggauss(8)
+_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 class Solution:

@@ -7,7 +7,7 @@ from itertools import accumulate
 import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations, laws_of
-from herringbone.analysis.twin.condensed.march import Calls
+from herringbone.analysis.twin.condensed.march_arrays import Calls
 from herringbone.analysis.twin.condensed.modes import Modes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import law_address, signals_address

@@ -5,6 +5,7 @@ begins or ends, the end of the damping gate, a limit), steps are halved down to 
 """
 
 from collections.abc import Callable, Sequence
+from copy import copy
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -45,6 +46,12 @@ class CondensedTwin:
         with threadpool_limits(limits=1, user_api="blas"):
             self._system = Condensed(twin, equations, make_modes(twin, equations))
         self.counts = np.zeros(3, dtype=np.int64)
+
+    def with_step(self, step: float) -> "CondensedTwin":
+        """The same twin with another longest base step [s]."""
+        found = copy(self)
+        found._step = step
+        return found
 
     def solve(
         self,
