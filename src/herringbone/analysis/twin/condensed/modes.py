@@ -55,14 +55,16 @@ class Modes:
     start: np.ndarray
     angles: np.ndarray
 
-    def states(self, coordinates: np.ndarray, angles: np.ndarray) -> np.ndarray:
-        """States (n, times) from coordinates (modes, times) and turns since the start.
+    def states(self, x: np.ndarray, y: np.ndarray, angles: np.ndarray) -> np.ndarray:
+        """States (n, times).
 
-        These are (rotations, times) [rad].
+        Args:
+            x, y: (times, modes) real and imaginary parts of the coordinates.
+            angles: (times, rotations) since the start [rad].
         """
-        moving = self.shapes.real @ coordinates.real - self.shapes.imag @ coordinates.imag
         still = self.constant + self.rigid @ self.angles
-        return moving + self.rigid @ angles + still[:, None]
+        together = np.hstack([self.shapes.real, -self.shapes.imag, self.rigid, still[:, None]])
+        return together @ np.hstack([x, y, angles, np.ones((len(x), 1))]).T
 
 
 def mean_tangent(twin: Twin, equations: Equations) -> np.ndarray:

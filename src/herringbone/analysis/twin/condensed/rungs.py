@@ -19,7 +19,7 @@ LOBATTO = {
     4: (0.0, 0.5 - math.sqrt(21.0) / 14.0, 0.5, 0.5 + math.sqrt(21.0) / 14.0, 1.0),
 }
 """Nodes of a step by the degree of the polynomials through them."""
-_SERIES = 24  # terms, for arguments up to 1
+_SERIES = 18  # terms, for arguments up to 1
 
 
 class Rungs(NamedTuple):
@@ -47,46 +47,46 @@ class Rungs(NamedTuple):
 
 
 def powers(rates: np.ndarray, t: np.ndarray | float, degree: int) -> np.ndarray:
-    """(degree + 1, *shape of rates x t): integrals of exp(rate (t - s)) (s / t)^j from 0 to t."""
+    """Integrals of exp(rate (t - s)) (s / t)^j from 0 to t, j = 0 ... degree.
+
+    They are t g_j with g_j = sum of j! z^k / (k + j + 1)!, z = rate t, and j g_(j-1) = 1 + z g_j.
+
+    Args:
+        rates: (modes,) or (modes, 1) [1/s].
+        t: times [s], which go together with the rates.
+        degree: largest power.
+
+    Returns:
+        (degree + 1, *shape of rates x t).
+    """
     z = rates * t
     small = np.abs(z) < 1.0
     near, far = np.where(small, z, 0.0), np.where(small, 1.0, z)
-    found = np.empty((degree + 1, *z.shape), dtype=complex)
+    term = np.full_like(near, 1.0 / (degree + 1))
+    downward = term.copy()
+    for k in range(_SERIES):
+        term *= near / (k + degree + 2)
+        downward += term
     upward = np.expm1(far) / far
+    found = np.empty((degree + 1, *z.shape), dtype=complex)
     for j in range(degree + 1):
         if j > 0:
             upward = (j * upward - 1.0) / far
-        term = np.full_like(near, 1.0 / (j + 1))
-        total = np.zeros_like(near)
-        for k in range(_SERIES):
-            total += term
-            term = term * near / (k + j + 2)
-        found[j] = np.where(small, total, upward)
+        found[j] = upward
+    for j in range(degree, -1, -1):
+        found[j] = np.where(small, downward, found[j])
+        downward = (1.0 + near * downward) / max(j, 1)
     return t * found
+
+
+def twice(once: np.ndarray, t: np.ndarray | float) -> np.ndarray:
+    """What `powers` gives for j = 0 ... n, integrated once more from 0 to t: j = 0 ... n - 1."""
+    return np.array([t * integral / (j + 1) for j, integral in enumerate(once[1:])])
 
 
 def coefficients(degree: int) -> np.ndarray:
     """(degree + 1, degree + 1): powers of s / h of the polynomial through values at the nodes."""
     return np.linalg.inv(np.vander(np.array(LOBATTO[degree]), increasing=True))
-
-
-def _twice(rates: np.ndarray, t: float, once: np.ndarray) -> np.ndarray:
-    """(degree + 1, modes): integrals of what `powers` gives, `once`, from 0 to t; (s / t)^j stays.
-
-    They are t^2 sum of j! z^k / (k + j + 2)!, z = rate t.
-    """
-    z = rates * t
-    small = np.abs(z) < 1.0
-    near, far = np.where(small, z, 0.0), np.where(small, 1.0, rates)
-    found = np.empty_like(once)
-    for j, integral in enumerate(once):
-        term = np.full_like(near, t * t / ((j + 1) * (j + 2)))
-        total = np.zeros_like(near)
-        for k in range(_SERIES):
-            total += term
-            term = term * near / (k + j + 3)
-        found[j] = np.where(small, total, (integral - t / (j + 1)) / far)
-    return found
 
 
 class _Rung:
@@ -98,12 +98,12 @@ class _Rung:
         rows, inputs = [], np.zeros((channels, degree + 1, degree, arguments))
         for i, c in enumerate(nodes[1:]):
             t, share = c * h, c ** np.arange(degree + 1)
-            growth = powers(modes.rates, t, 0)[0]
+            once = powers(modes.rates, t, degree + 1)
+            growth = once[0]
             rows.append(modes.arguments * np.exp(modes.rates * t))
             rows[-1] += modes.of_angles @ (modes.turns * growth)
-            once = powers(modes.rates, t, degree)
-            of_nodes = fit.T @ (once * share[:, None])
-            turned = fit.T @ (_twice(modes.rates, t, once) * share[:, None])
+            of_nodes = fit.T @ (once[:-1] * share[:, None])
+            turned = fit.T @ (twice(once, t) * share[:, None])
             driven = of_nodes[:, None] * modes.inputs.T
             angle = ((turned[:, None] * modes.inputs.T) @ modes.turns.T).real
             found = (driven @ modes.arguments.T).real

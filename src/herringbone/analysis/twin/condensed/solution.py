@@ -18,6 +18,7 @@ from herringbone.analysis.twin.condensed.rungs import (
     coefficients,
     make_rungs,
     powers,
+    twice,
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
@@ -27,7 +28,6 @@ HALVINGS = 7
 """Rungs below the base step."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
-_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 class Solution:
@@ -73,8 +73,10 @@ class Solution:
         """
         if t1 <= t0:
             yield self._modes.states(
-                np.repeat((self.state.x + 1j * self.state.y)[:, None], wanted.size, 1),
-                np.repeat(self.state.angle[:, None], wanted.size, 1),
+                *(
+                    np.tile(now, (wanted.size, 1))
+                    for now in (self.state.x, self.state.y, self.state.angle)
+                )
             )
             return
         rungs = self._rungs_of(h)
@@ -128,31 +130,26 @@ class Solution:
 
     def _states(self, samples: Samples, count: int) -> np.ndarray:
         """States (n, count) at the first times of the samples."""
-        q = (samples.x[:count] + 1j * samples.y[:count]).T
-        angle = samples.angle[:count].T.copy()
+        x, y, angle = samples.x[:count], samples.y[:count], samples.angle[:count]
         inside = np.flatnonzero(samples.since[:count] > _GRID * samples.length[:count])
         if inside.size:
-            start, since = q[:, inside], samples.since[inside]
-            of_powers = self._of_powers(samples.u[inside], samples.length[inside])
-            for place, weight in zip(*_GAUSS, strict=True):
-                t = 0.5 * since * (place + 1.0)
-                speed = (self._modes.turns @ self._later(start, of_powers, t)).real
-                angle[:, inside] += 0.5 * since * weight * speed
-            q[:, inside] = self._later(start, of_powers, since)
-        return self._modes.states(q, angle)
+            later = self._later(samples, inside)
+            x[inside], y[inside], angle[inside] = later[0].T.real, later[0].T.imag, later[1].T
+        return self._modes.states(x, y, angle)
 
-    def _of_powers(self, u: np.ndarray, length: np.ndarray) -> np.ndarray:
-        """(powers, modes, times): the modes' inputs by powers of the time in the step [1/s^j]."""
-        nodes = u.reshape(len(u), -1, self._degree + 1)
-        found = np.einsum("jn,tkn,mk->jmt", coefficients(self._degree), nodes, self._modes.inputs)
-        return found / length ** np.arange(self._degree + 1)[:, None, None]
-
-    def _later(self, q: np.ndarray, of_powers: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Coordinates (modes, times) a time t (times,) after the start of their step."""
-        rates = self._modes.rates[:, None]
-        grown = powers(rates, t[None, :], self._degree)
-        grown *= t ** np.arange(self._degree + 1)[:, None, None]
-        return np.exp(rates * t) * q + (grown * of_powers).sum(axis=0)
+    def _later(self, samples: Samples, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and angles (..., times) at times inside of steps."""
+        modes, degree = self._modes, self._degree
+        q = (samples.x[rows] + 1j * samples.y[rows]).T
+        t, length = samples.since[rows], samples.length[rows]
+        nodes = samples.u[rows].reshape(rows.size, -1, degree + 1)
+        driven = np.einsum("jn,tkn->jkt", coefficients(degree), nodes)
+        of_powers = modes.inputs @ driven  # powers, modes, times
+        of_powers *= ((t / length) ** np.arange(degree + 1)[:, None])[:, None]
+        once = powers(modes.rates[:, None], t[None, :], degree + 1)
+        growth = once[0] * q + (twice(once, t) * of_powers).sum(axis=0)
+        angle = samples.angle[rows].T + (modes.turns @ growth).real
+        return np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0), angle
 
     def _fail(self, status: int, t0: float, rungs: Rungs) -> None:
         count, inside = self.state.place[:2]
