@@ -94,6 +94,19 @@ def test_reaches_1e_6_in_separation():
     assert error_of("separation", 5e-6) < 3e-7
 
 
+def test_play_and_limits_bend_too():
+    """Bearings with play while teeth separate, and a motor at its torque limit."""
+    values = {f"bearing_supports.{gear}.radial_clearance": 2e-6 for gear in ("pinion", "wheel")}
+    system = rig("separation").with_values({**values, "drive_motor.torque_limit": 99.5})
+    columns = [*BEARING, "drive_motor.torque"]
+    exact = Twin(system).solve(TIMES, columns, 1e-11)
+    found = CondensedTwin(system).solve(TIMES, columns)
+    assert abs(exact[:, -1]).max() == 99.5
+    assert abs(exact[:, -1]).min() < 98.0
+    assert relative_error(found[:, :-1], exact[:, :-1]) < 1e-6
+    assert relative_error(found[:, -1:], exact[:, -1:]) < 1e-6
+
+
 def test_five_hours_later():
     """Revolutions take digits of the meshes' phases only: 2.3e-10 rad of 1.9e6 rad."""
     twin = Twin(rig("loaded"))
