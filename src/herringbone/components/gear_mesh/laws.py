@@ -77,12 +77,13 @@ def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.
     _place(b, z)
     eps, f[0], f[1], push_left, push_right = meshes(b)
     f[2], f[3] = push_left - b[at.COS] * f[0], push_right - b[at.COS] * f[1]
-    for i in range(4):
-        f[4 + i] = b[at.TORQUE + i]
     if b[at.DRAG] > 0.0:
         w = b[at.ANGLE + at.RATE]
-        f[4] -= motion.drag(b, w)
-        f[5] -= motion.drag(b, w + b[at.TWIST_P + at.RATE])
+        b[at.TORQUE] -= motion.drag(b, w)
+        b[at.TORQUE + 1] -= motion.drag(b, w + b[at.TWIST_P + at.RATE])
+    for i in range(2):  # differences, as they vanish where both sides are alike
+        f[4 + 2 * i] = b[at.TORQUE + 2 * i]
+        f[5 + 2 * i] = b[at.TORQUE + 1 + 2 * i] - b[at.TORQUE + 2 * i]
     gated = b[at.GATE] != 0.0
     for side in range(2):
         _, _, phase = approach(b, side, eps, 0.0)
@@ -101,8 +102,9 @@ def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.
 
 @kernel
 def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
-    for i in range(4):
-        b[at.TORQUE + i] = f[4 + i]
+    for i in range(2):
+        b[at.TORQUE + 2 * i] = f[4 + 2 * i]
+        b[at.TORQUE + 1 + 2 * i] = f[4 + 2 * i] + f[5 + 2 * i]
     push_left, push_right = f[2] + b[at.COS] * f[0], f[3] + b[at.COS] * f[1]
     motion.motions(b)
     motion.derivatives(b, dx, f[0], f[1], push_left, push_right, False)
@@ -153,7 +155,7 @@ LAWS = Laws(
     arguments=(*_MOTIONS, *(f"der({name})" for name in _MOTIONS)),
     values=(
         "normal force left", "normal force right", "push by phase left", "push by phase right",
-        "torque 1", "torque 2", "torque 3", "torque 4",
+        "torque 1", "torque 2 - torque 1", "torque 3", "torque 4 - torque 3",
     ),
     stiff=(0, 1, 0, 1),
     kinks=2 * _KINKS,

@@ -58,14 +58,14 @@ def call_sources(calls: Calls, t: float) -> None:
 
 @inlined
 def _signals(calls: Calls, fixed: Fixed, t: float, h: float, u: np.ndarray) -> None:
-    """Write the signals at the nodes of a step from t [s] on, and the channel that is 1."""
+    """Write the signals at the nodes of a step from t [s] on, and the last channel."""
     count, signals = fixed.nodes.size, calls.signal.size
     first = u.size - count * (signals + 1)
     for i in range(count):
         call_sources(calls, t + h * fixed.nodes[i])
         for k in range(signals):
             u[first + k * count + i] = calls.blocks[calls.signal[k]]
-        u[u.size - count + i] = 1.0
+        u[u.size - count + i] = fixed.one
 
 
 @inlined

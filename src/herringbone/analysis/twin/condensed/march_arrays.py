@@ -39,12 +39,14 @@ class Fixed(NamedTuple):
         ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, continued;
             the middle one is of equal steps, later ones of shorter ones.
         nodes: (nodes,) places in a step.
+        one: value of the last channel, 0 if nothing depends on it.
     """
 
     of_angles: np.ndarray
     offset: np.ndarray
     ahead: np.ndarray
     nodes: np.ndarray
+    one: float
 
 
 class State(NamedTuple):

@@ -49,7 +49,10 @@ class Solution:
             np.ones((degree + 1, calls.indicator[-1])),
         )
         nodes = np.array(LOBATTO[degree])
-        self._fixed = Fixed(modes.of_angles, modes.of_angles @ modes.angles, _ahead(degree), nodes)
+        offset = float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1]))
+        self._fixed = Fixed(
+            modes.of_angles, modes.of_angles @ modes.angles, _ahead(degree), nodes, offset
+        )
         self.state = State(
             np.ascontiguousarray(modes.start.real),
             np.ascontiguousarray(modes.start.imag),
