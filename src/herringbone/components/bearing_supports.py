@@ -31,7 +31,16 @@ import numpy as np
 
 from herringbone.components.ports import HALVES, journals, seats
 from herringbone.components.shipped_pair import SHIPPED_PAIR
-from herringbone.core import Component, Declaration, Kernels, Variable, input_, output, parameter
+from herringbone.core import (
+    Component,
+    Declaration,
+    Kernels,
+    Laws,
+    Variable,
+    input_,
+    output,
+    parameter,
+)
 from herringbone.core.pair_values import PairValues
 from herringbone.core.roles import GEARS, Quantity, Role
 from herringbone.kernels import steppers
@@ -216,22 +225,37 @@ def _radial(b: np.ndarray, gear: int, d: float, rate: float) -> float:
 
 
 @kernel
-def _out(b: np.ndarray, t: float) -> None:
+def _line_of_action(b: np.ndarray) -> tuple[float, float]:
+    """Its unit vector in the housing frame."""
     n_x, n_y = sine(b[_ANGLE]), cosine(b[_ANGLE])
-    if b[_FLANK] < 0.0:
-        n_x = -n_x
-    axial_share = 1.0 - 0.5 * b[_PER_SHAFT]
+    return -n_x if b[_FLANK] < 0.0 else n_x, n_y
+
+
+@kernel
+def _approach(b: np.ndarray, i: int, n_x: float, n_y: float) -> tuple[float, float]:
+    """Radial displacement of a half against its seat [m], and its rate [m/s]."""
+    d = b[_S_Y[i]] - (n_x * b[_SEAT_S_X[i]] + n_y * b[_SEAT_S_Y[i]])
+    return d, b[_V_Y[i]] - (n_x * b[_SEAT_V_X[i]] + n_y * b[_SEAT_V_Y[i]])
+
+
+@kernel
+def _forces(b: np.ndarray, i: int, n_x: float, n_y: float, radial: float) -> None:
+    """Write the forces of a half's bearing with a given radial force [N]."""
+    gear = i // 2
+    b[_F_Y[i]] = -radial
+    b[_SEAT_F_X[i]], b[_SEAT_F_Y[i]] = radial * n_x, radial * n_y
+    axial = b[_K_A[gear]] * (b[_S_Z[i]] - b[_SEAT_S_Z[i]])
+    axial += b[_C_A[gear]] * (b[_V_Z[i]] - b[_SEAT_V_Z[i]])
+    axial *= 1.0 - 0.5 * b[_PER_SHAFT]
+    b[_F_Z[i]], b[_SEAT_F_Z[i]] = -axial, axial
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    n_x, n_y = _line_of_action(b)
     for i in range(4):
-        gear = i // 2
-        d = b[_S_Y[i]] - (n_x * b[_SEAT_S_X[i]] + n_y * b[_SEAT_S_Y[i]])
-        rate = b[_V_Y[i]] - (n_x * b[_SEAT_V_X[i]] + n_y * b[_SEAT_V_Y[i]])
-        radial = _radial(b, gear, d, rate)
-        b[_F_Y[i]] = -radial
-        b[_SEAT_F_X[i]], b[_SEAT_F_Y[i]] = radial * n_x, radial * n_y
-        axial = b[_K_A[gear]] * (b[_S_Z[i]] - b[_SEAT_S_Z[i]])
-        axial += b[_C_A[gear]] * (b[_V_Z[i]] - b[_SEAT_V_Z[i]])
-        axial *= axial_share
-        b[_F_Z[i]], b[_SEAT_F_Z[i]] = -axial, axial
+        d, rate = _approach(b, i, n_x, n_y)
+        _forces(b, i, n_x, n_y, _radial(b, i // 2, d, rate))
 
 
 _advance = steppers.element_stepper(_out, _d)
@@ -242,4 +266,63 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, int(b[_DEGREE]))
 
 
-BEARING_SUPPORTS = Component(_d, Kernels(_step, _rhs, _out), __doc__, of_pair=_of_pair)
+@kernel
+def _gather(b: np.ndarray, z: np.ndarray) -> None:
+    n_x, n_y = _line_of_action(b)
+    for i in range(4):
+        z[i], z[4 + i] = _approach(b, i, n_x, n_y)
+
+
+@kernel
+def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    for i in range(4):
+        gear, d = i // 2, z[i]
+        play = 0.5 * b[_CLEARANCE[gear]]
+        loaded = abs(d) - play
+        f[i] = _radial(b, gear, d, z[4 + i])
+        carries = play == 0.0 or f[i] != 0.0
+        k[i] = b[_K_R[gear]] if carries else 0.0
+        g = max(0.0, min(1.0, loaded / (0.2 * play))) if play > 0.0 else 1.0
+        k[4 + i] = b[_C_R[gear]] * g if carries else 0.0
+        e[i] = 1.0 if carries else -1.0
+        e[4 + i] = loaded - 0.2 * play if play > 0.0 else 1.0
+
+
+@kernel
+def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
+    n_x, n_y = _line_of_action(b)
+    for i in range(4):
+        _forces(b, i, n_x, n_y, f[i])
+
+
+def _each(block: np.ndarray) -> np.ndarray:
+    """Stiffness along the displacement, damping along its rate."""
+    del block
+    return np.eye(8)
+
+
+def _without_play(block: np.ndarray) -> np.ndarray:
+    """Stiffness [N/m] and damping [N s/m] of loaded bearings."""
+    return np.array([block[places[i // 2]] for places in (_K_R, _C_R) for i in range(4)])
+
+
+def _has_play(block: np.ndarray) -> bool:
+    return any(block[i] > 0.0 for i in _CLEARANCE)
+
+
+_LAWS = Laws(
+    arguments=tuple(
+        f"{what} at {half}" for what in ("displacement", "its rate") for half in HALVES
+    ),
+    values=tuple(f"radial force at {half}" for half in HALVES),
+    stiff=(0, 1, 2, 3, 0, 1, 2, 3),
+    kinks=8,
+    gather=_gather,
+    evaluate=_evaluate,
+    apply=_apply,
+    directions=_each,
+    mean=_without_play,
+    needed=_has_play,
+)
+
+BEARING_SUPPORTS = Component(_d, Kernels(_step, _rhs, _out), __doc__, of_pair=_of_pair, laws=_LAWS)

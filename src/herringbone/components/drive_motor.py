@@ -14,7 +14,7 @@ Source: K. J. Astrom and T. Hagglund, Advanced PID Control (2006), section 3.5 (
 import numpy as np
 
 from herringbone.components.ports import flange, flange_body
-from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.core import Component, Declaration, Kernels, Laws, input_, output, parameter, state
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
@@ -61,28 +61,48 @@ _MICRO_STEP, _DEGREE = _d.indices("micro_step", "interface_degree")
 
 
 @kernel
-def _torque(b: np.ndarray) -> tuple[float, float]:
-    """Torque [N m] and torque before the limit."""
-    demand = b[_K_P] * (b[_REFERENCE] - b[_SPEED]) + b[_K_I] * b[_INTEGRAL]
-    return max(-b[_LIMIT], min(demand, b[_LIMIT])), demand
+def _demand(b: np.ndarray) -> float:
+    """Torque [N m] before the limit."""
+    return b[_K_P] * (b[_REFERENCE] - b[_SPEED]) + b[_K_I] * b[_INTEGRAL]
+
+
+@kernel
+def _ramp(b: np.ndarray) -> float:
+    """Acceleration of the set point [rad/s2] before the limit."""
+    return (b[_SETPOINT] - b[_REFERENCE]) / b[_TIME_CONSTANT]
+
+
+@kernel
+def _limited(x: float, limit: float) -> float:
+    return max(-limit, min(x, limit))
+
+
+@kernel
+def _rates(b: np.ndarray, torque: float, demand: float, ramp: float, dx: np.ndarray) -> None:
+    dx[_ANGLE] = b[_SPEED]
+    dx[_SPEED] = (b[_TAU] + torque) / b[_INERTIA]
+    dx[_INTEGRAL] = b[_REFERENCE] - b[_SPEED] + (torque - demand) / b[_K_P]
+    dx[_REFERENCE] = ramp
 
 
 @kernel
 def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    torque, demand = _torque(b)
-    dx[_ANGLE] = b[_SPEED]
-    dx[_SPEED] = (b[_TAU] + torque) / b[_INERTIA]
-    dx[_INTEGRAL] = b[_REFERENCE] - b[_SPEED] + (torque - demand) / b[_K_P]
-    ramp = (b[_SETPOINT] - b[_REFERENCE]) / b[_TIME_CONSTANT]
-    dx[_REFERENCE] = max(-b[_MAX_ACCELERATION], min(ramp, b[_MAX_ACCELERATION]))
+    demand = _demand(b)
+    ramp = _limited(_ramp(b), b[_MAX_ACCELERATION])
+    _rates(b, _limited(demand, b[_LIMIT]), demand, ramp, dx)
+
+
+@kernel
+def _motion(b: np.ndarray, torque: float) -> None:
+    b[_PHI], b[_W] = b[_ANGLE], b[_SPEED]
+    b[_A] = (b[_TAU] + torque) / b[_INERTIA]
+    b[_TORQUE] = torque
 
 
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
-    torque, _ = _torque(b)
-    b[_PHI], b[_W] = b[_ANGLE], b[_SPEED]
-    b[_A] = (b[_TAU] + torque) / b[_INERTIA]
-    b[_TORQUE] = torque
+    torque = _limited(_demand(b), b[_LIMIT])
+    _motion(b, torque)
     power = torque * b[_SPEED]
     b[_POWER] = power / b[_EFFICIENCY] if power > 0.0 else power * b[_EFFICIENCY]
 
@@ -100,10 +120,55 @@ def _guess(block: np.ndarray) -> None:
     block[_SPEED] = block[_REFERENCE] = block[_SETPOINT]
 
 
+@kernel
+def _gather(b: np.ndarray, z: np.ndarray) -> None:
+    z[0], z[1] = _demand(b), _ramp(b)
+
+
+@kernel
+def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    for i in range(2):
+        limit = b[_LIMIT] if i == 0 else b[_MAX_ACCELERATION]
+        f[i] = _limited(z[i], limit)
+        e[i] = limit - abs(z[i])
+        k[i] = 1.0 if e[i] > 0.0 else 0.0
+
+
+@kernel
+def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
+    _motion(b, f[0])
+    _rates(b, f[0], _demand(b), f[1], dx)
+
+
+def _each(block: np.ndarray) -> np.ndarray:
+    """Each limit along its own argument."""
+    del block
+    return np.eye(2)
+
+
+def _inside(block: np.ndarray) -> np.ndarray:
+    """Tangents inside the limits."""
+    del block
+    return np.ones(2)
+
+
+_LAWS = Laws(
+    arguments=("torque before the limit", "acceleration of the set point before the limit"),
+    values=("torque", "acceleration of the set point"),
+    stiff=(0, 1),
+    kinks=2,
+    gather=_gather,
+    evaluate=_evaluate,
+    apply=_apply,
+    directions=_each,
+    mean=_inside,
+)
+
 DRIVE_MOTOR = Component(
     _d,
     Kernels(_step, _rhs, _out),
     __doc__,
     guess=_guess,
+    laws=_LAWS,
     longest_step=steppers.longest_step(_d, "micro_step"),
 )

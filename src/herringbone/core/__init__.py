@@ -14,6 +14,7 @@ from herringbone.core.errors import (
 )
 from herringbone.core.hosting import Experiment, Hosting, RunsOn
 from herringbone.core.instance import Instance
+from herringbone.core.laws import Laws
 from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 from herringbone.core.variable import (
     Column,
@@ -39,6 +40,7 @@ __all__ = [
     "Hosting",
     "Instance",
     "Kernels",
+    "Laws",
     "Outcome",
     "OutcomeKind",
     "ParameterError",

@@ -15,6 +15,7 @@ from herringbone.core.paths import component_folder
 
 if TYPE_CHECKING:
     from herringbone.core.instance import Instance
+    from herringbone.core.laws import Laws
 
 
 class Kernels(NamedTuple):
@@ -87,6 +88,8 @@ class Component:
         of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
             given the pair and the part's parameters, as they are without the pair. None: none do.
         hosting: what it asks of its native FMU besides; None: nothing.
+        laws: its scalar laws, apart from the linear rest; None: the component is linear, or what it
+            has is not of that form.
         folder: where script, README and golden result lie, and `resources`; that of its name if
             not given.
     """
@@ -107,6 +110,7 @@ class Component:
     freeze: Freeze | None = None
     of_pair: OfPair | None = None
     hosting: Hosting | None = None
+    laws: "Laws | None" = None
     folder: Path = field(default=Path())
 
     def __post_init__(self) -> None:

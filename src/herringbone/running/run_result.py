@@ -11,7 +11,7 @@ from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, er
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.figures.settling import unsettled
-from herringbone.analysis.twin.monolithic import Twin
+from herringbone.analysis.twin.reference import reference
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.roles import Quantity
@@ -135,8 +135,12 @@ def compared(result: Result, every: Result, system: System) -> Result:
         every: with all communication points.
         system: of the run.
     """
-    error = twin_error(every, system)
-    return with_coupling_row(replace(result, error=error))
+    found = twin_error(every, system)
+    if found is None:
+        return with_coupling_row(result)
+    error, how = found
+    info = replace(result.info, notes=(*result.info.notes, how))
+    return with_coupling_row(replace(result, error=error, info=info))
 
 
 def with_coupling_row(result: Result) -> Result:
@@ -167,22 +171,23 @@ def _resources(system: System) -> dict[str, str]:
     }
 
 
-def twin_error(result: Result, system: System) -> dict[str, float] | None:
+def twin_error(result: Result, system: System) -> tuple[dict[str, float], str] | None:
     """Errors against the monolithic twin at the communication points that were reached.
 
-    By channel group; None without channels or macro steps.
+    By channel group, and which twin it was; None without channels or macro steps.
     """
     groups = {name: result.channel(name) for name in system.channels}
     columns = [column for names in groups.values() for column in names]
     time = result.data[TIME].to_numpy()
     if time.size < 2 or not columns:
         return None
-    twin = pd.DataFrame(Twin(system).solve(time, columns), columns=columns)
+    exact, how = reference(system, time, groups)
+    twin = pd.DataFrame(exact, columns=columns)
     uneven = time if result.info.steps else None
     return {
         name: relative_error(result.data[names].to_numpy(), twin[names].to_numpy(), uneven)
         for name, names in groups.items()
-    }
+    }, how
 
 
 def decimated(result: Result, record_step: float) -> Result:

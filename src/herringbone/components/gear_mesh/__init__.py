@@ -171,6 +171,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.frozen import freeze_mesh
+from herringbone.components.gear_mesh.laws import LAWS
 from herringbone.components.gear_mesh.loading import LOADER
 from herringbone.components.gear_mesh.of_pair import of_pair
 from herringbone.components.gear_mesh.ramp import start
@@ -222,4 +223,5 @@ GEAR_MESH = Component(
     longest_step=steppers.longest_step(at.DECLARATION, "micro_step"),
     freeze=freeze_mesh,
     of_pair=of_pair,
+    laws=LAWS,
 )

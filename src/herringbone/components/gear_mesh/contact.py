@@ -68,7 +68,7 @@ def _flank(
 
 
 @kernel
-def _approach(b: np.ndarray, side: int, eps: float, eps_rate: float) -> tuple[float, float, float]:
+def approach(b: np.ndarray, side: int, eps: float, eps_rate: float) -> tuple[float, float, float]:
     """delta [m], its rate [m/s] and the phase [mesh periods] of mesh 0 (left) or 1 (right)."""
     s = 1.0 - 2.0 * side
     y, z = at.Y + side, at.Z + side
@@ -124,8 +124,8 @@ def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
     for i in range(4):
         b[at.TORQUE + i] = b[at.HELD + 2 + i]
     eps, eps_rate, per_pinion, per_wheel = _apex(b)
-    left, left_rate, left_phase = _approach(b, 0, eps, eps_rate)
-    right, right_rate, right_phase = _approach(b, 1, eps, eps_rate)
+    left, left_rate, left_phase = approach(b, 0, eps, eps_rate)
+    right, right_rate, right_phase = approach(b, 1, eps, eps_rate)
     normal_left, push_left = _mesh(b, 0, left, left_rate, left_phase)
     normal_right, push_right = _mesh(b, 1, right, right_rate, right_phase)
     if b[at.F_A] != 0.0:

@@ -14,7 +14,7 @@ from herringbone.kernels.jit import kernel, rare
 
 
 @rare
-def _drag(b: np.ndarray, w: float) -> float:
+def drag(b: np.ndarray, w: float) -> float:
     """Drag torque [N m] on a pinion half at its speed [rad/s]."""
     return 0.5 * b[at.DRAG] * w / math.sqrt(1.0 + w * w)
 
@@ -58,15 +58,16 @@ def _swing(b: np.ndarray, gear: int, half: int, a: float, alpha: float) -> tuple
 
 
 @kernel
-def _derivatives(
+def derivatives(
     b: np.ndarray,
     dx: np.ndarray,
     normal_left: float,
     normal_right: float,
     push_left: float,
     push_right: float,
+    dragged: bool,
 ) -> None:
-    """Derivatives of all states under the forces of `meshes`."""
+    """Derivatives of all states under the forces of `meshes`, and of the drag if it acts."""
     for gear in range(2):
         if b[at.UNBALANCE[0] + gear * at.GEAR] > 0.0:
             _come_in(b, gear)
@@ -104,10 +105,10 @@ def _derivatives(
             force_right -= hold + b[at.AXIAL_DRAG] * b[z + 1 + at.RATE]
             turn_left -= rb * push_left
             turn_right -= rb * push_right
-            if b[at.DRAG] > 0.0:
+            if dragged and b[at.DRAG] > 0.0:
                 w = b[at.ANGLE + at.RATE]
-                turn_left -= _drag(b, w)
-                turn_right -= _drag(b, w + b[twist + at.RATE])
+                turn_left -= drag(b, w)
+                turn_right -= drag(b, w + b[twist + at.RATE])
         else:
             turn_left += rb * normal_left
             turn_right += rb * normal_right
@@ -131,7 +132,7 @@ def _derivatives(
 def _rates(b: np.ndarray, t: float, dx: np.ndarray) -> None:
     """Derivatives of all states, after `derive`."""
     _, normal_left, normal_right, push_left, push_right = meshes(b)
-    _derivatives(b, dx, normal_left, normal_right, push_left, push_right)
+    derivatives(b, dx, normal_left, normal_right, push_left, push_right, True)
 
 
 @kernel
@@ -142,7 +143,7 @@ def rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 
 
 @kernel
-def _motions(b: np.ndarray) -> None:
+def motions(b: np.ndarray) -> None:
     """Write positions and velocities at the ports."""
     for i in range(4):
         b[at.S_Y[i]], b[at.V_Y[i]] = b[at.Y + i], b[at.Y + at.RATE + i]
@@ -155,7 +156,7 @@ def _motions(b: np.ndarray) -> None:
 
 
 @kernel
-def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
+def accelerations(b: np.ndarray, dx: np.ndarray) -> None:
     """Write the outputs that depend on the inputs, from the derivatives of the states."""
     for i in range(4):
         b[at.A_Y[i]] = dx[at.Y + at.RATE + i]
@@ -170,7 +171,7 @@ def _accelerations(b: np.ndarray, dx: np.ndarray) -> None:
 @kernel
 def _results(b: np.ndarray, t: float) -> None:
     """Write all outputs, after `derive`."""
-    _motions(b)
+    motions(b)
     eps, normal_left, normal_right, push_left, push_right = meshes(b)
     b[at.OFFSET], b[at.FORCE[0]], b[at.FORCE[1]] = eps, normal_left, normal_right
     for side in range(2):
@@ -178,8 +179,8 @@ def _results(b: np.ndarray, t: float) -> None:
         b[at.DEFLECTION[side]] = drive if b[at.FLANK] >= 0.0 else -coast - b[at.BACKLASH]
     b[at.TE] = b[at.APPROACH] + 0.5 * (b[at.RB[0]] * b[at.TWIST_P] - b[at.RB[1]] * b[at.TWIST_W])
     dx = b[at.SCRATCH : at.SCRATCH + at.STATES]
-    _derivatives(b, dx, normal_left, normal_right, push_left, push_right)
-    _accelerations(b, dx)
+    derivatives(b, dx, normal_left, normal_right, push_left, push_right, True)
+    accelerations(b, dx)
 
 
 @kernel

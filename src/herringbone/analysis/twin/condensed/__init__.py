@@ -1,0 +1,1 @@
+"""The monolithic twin by its condensed core: the linear rest exact, the laws collocated."""

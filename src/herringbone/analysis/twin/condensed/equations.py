@@ -1,0 +1,199 @@
+"""A system's equations, taken apart into a linear rest, as matrices, and scalar laws.
+
+The rest is had from the components' own kernels at unit vectors, and checked to be linear.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import Instance, Laws, StructureError
+from herringbone.cosim.structure.connection import Connection
+
+_LINEAR = 1e-9
+"""Largest deviation from the matrices, over the largest of the terms that are added."""
+_SEED = 17
+
+
+@dataclass(frozen=True)
+class Equations:
+    """x' = a x + b u and z = c x + d u, with channels u: laws' values, sources' signals, a 1.
+
+    Attributes:
+        a: (states, states).
+        b: (states, channels).
+        c: (arguments, states).
+        d: (arguments, channels); without the laws' values.
+        laws: parts with laws, in the order of their values and arguments.
+        signals: part and index in the twin's block of each source's signal.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+    laws: tuple[int, ...]
+    signals: tuple[tuple[int, int], ...]
+
+    @property
+    def channels(self) -> int:
+        """How many channels there are."""
+        return self.b.shape[1]
+
+
+def laws_of(instance: Instance) -> Laws | None:
+    """The laws that a part needs with its parameters.
+
+    Raises:
+        StructureError: its equations cannot be taken apart.
+    """
+    laws = instance.component.laws
+    if laws is None or not laws.needed(instance.block):
+        return None
+    if why := laws.refusal(instance.block):
+        raise StructureError(f"{instance.name}: {why}, so that it is no linear part with laws")
+    return laws
+
+
+class _Given:
+    """Derivatives and arguments of a twin whose laws' values and sources' signals are given."""
+
+    def __init__(self, twin: Twin) -> None:
+        self._twin = twin
+        self._block = twin.block.copy()
+        self._first = twin.layout.block_first
+        self.laws = {p: found for p, i in enumerate(twin.instances) if (found := laws_of(i))}
+        for p, laws in self.laws.items():
+            laws.prepare(self._own(p))
+        sources = [p for p in twin.network.sources if not self._states(p)]
+        self._moving = [
+            p
+            for p in (*twin.network.sources, *twin.network.bodies, *twin.network.elements)
+            if p not in sources
+        ]
+        self._fed = {p: [self._places(c) for c in twin.network.inputs(p)] for p in self._moving}
+        used = {(c.source, c.output) for c in twin.network.connections if c.source in sources}
+        self.signals = tuple(
+            (p, self._first[p] + twin.instances[p].component.declaration.index[name])
+            for p, name in sorted(used)
+        )
+        self.values = sum(len(laws.values) for laws in self.laws.values())
+        self.arguments = sum(len(laws.arguments) for laws in self.laws.values())
+
+    def _own(self, p: int) -> np.ndarray:
+        return self._block[self._first[p] : self._first[p + 1]]
+
+    def _states(self, p: int) -> int:
+        return self._twin.instances[p].component.declaration.state_count
+
+    def _places(self, c: Connection) -> tuple[int, int]:
+        indices = [
+            self._twin.instances[p].component.declaration.index for p in (c.target, c.source)
+        ]
+        return self._first[c.target] + indices[0][c.input], self._first[c.source] + indices[1][
+            c.output
+        ]
+
+    def __call__(self, x: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (states,) and arguments at states and channels without the last."""
+        twin, block = self._twin, self._block
+        firsts = twin.layout.state_first
+        for p in range(len(twin.instances)):
+            block[self._first[p] : self._first[p] + self._states(p)] = x[firsts[p] : firsts[p + 1]]
+        for (_, place), value in zip(self.signals, u[self.values :], strict=True):
+            block[place] = value
+        given, at = {}, 0
+        for p, laws in self.laws.items():
+            given[p] = u[at : at + len(laws.values)]
+            at += len(laws.values)
+        dx = np.zeros_like(x)
+        for p in self._moving:
+            if p in twin.network.elements:
+                self._feed(p)
+            self._evaluate(p, given, dx[firsts[p] : firsts[p + 1]], rates=False)
+        for p in self._moving:
+            if p not in twin.network.elements:
+                self._feed(p)
+            if self._states(p):
+                self._evaluate(p, given, dx[firsts[p] : firsts[p + 1]], rates=True)
+        return dx, self._gathered()
+
+    def _feed(self, p: int) -> None:
+        for target, source in self._fed[p]:
+            self._block[target] = self._block[source]
+
+    def _evaluate(self, p: int, given: dict[int, np.ndarray], dx: np.ndarray, rates: bool) -> None:
+        kernels = self._twin.instances[p].component.kernels
+        if p in given:
+            self.laws[p].apply(self._own(p), 0.0, given[p], dx)
+        elif rates:
+            kernels.rhs(self._own(p), 0.0, dx)
+        else:
+            kernels.out(self._own(p), 0.0)
+
+    def _gathered(self) -> np.ndarray:
+        z = np.zeros(self.arguments)
+        at = 0
+        for p, laws in self.laws.items():
+            laws.gather(self._own(p), z[at : at + len(laws.arguments)])
+            at += len(laws.arguments)
+        return z
+
+
+def take_apart(twin: Twin) -> Equations:
+    """Matrices of a twin's linear rest, and its laws.
+
+    Raises:
+        StructureError: a part is neither linear nor declares its laws, or laws depend on each
+            other without delay.
+    """
+    given = _Given(twin)
+    n, m = twin.state.size, given.values + len(given.signals)
+    x0, u0 = np.zeros(n), np.zeros(m)
+    dx, z = given(x0, u0)
+    columns = [given(e, u0) for e in np.eye(n)]
+    inputs = [given(x0, e) for e in np.eye(m)]
+    found = Equations(
+        np.column_stack([c[0] - dx for c in columns]) if n else np.zeros((0, 0)),
+        np.column_stack([*(c[0] - dx for c in inputs), dx]),
+        np.column_stack([c[1] - z for c in columns]),
+        np.column_stack([*(c[1] - z for c in inputs), z]),
+        tuple(given.laws),
+        given.signals,
+    )
+    _check(twin, given, found)
+    return found
+
+
+def _check(twin: Twin, given: _Given, found: Equations) -> None:
+    """Refuse what differs from the matrices at the start and at places drawn around it."""
+    drawn = np.random.default_rng(_SEED)
+    start = twin.state
+    size = np.maximum(np.abs(start), 1e-3)
+    for spread in (0.0, 1.0, -1.0):
+        x = start + spread * size * drawn.uniform(0.5, 2.0, start.size)
+        u = drawn.uniform(-1e3, 1e3, found.channels - 1)
+        ones = np.append(u, 1.0)
+        for exact, a, b, what in zip(
+            given(x, u), (found.a, found.c), (found.b, found.d), ("rates", "arguments"), strict=True
+        ):
+            terms = (np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(ones)).max(initial=1e-300)
+            deviation = np.abs(exact - a @ x - b @ ones)
+            if (deviation > _LINEAR * terms).any():
+                where = f"rate of {_state_name(twin, int(deviation.argmax()))}"
+                raise StructureError(
+                    f"{twin.system.name}: the {where if what == 'rates' else 'arguments of a law'} "
+                    "is not linear beside the laws that its components declare"
+                )
+    if np.any(found.d[:, : given.values]):
+        raise StructureError(
+            f"{twin.system.name}: the arguments of a law depend on other laws without delay"
+        )
+
+
+def _state_name(twin: Twin, state: int) -> str:
+    p = int(np.searchsorted(twin.layout.state_first, state, side="right")) - 1
+    instance, own = twin.instances[p], state - twin.layout.state_first[p]
+    states = instance.component.declaration.states
+    return f"{instance.name}.{states[own].name if own < len(states) else f'state {own}'}"

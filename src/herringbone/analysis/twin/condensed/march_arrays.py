@@ -1,0 +1,88 @@
+"""The arrays of the compiled march."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Calls(NamedTuple):
+    """Laws and sources by address; offsets by part, totals at the end.
+
+    Attributes:
+        blocks: the blocks of all parts, one behind the other; laws may write into theirs.
+        law: (parts,) addresses of the laws.
+        block: (parts,) where their blocks begin.
+        argument, value, tangent, indicator: (parts + 1,) offsets.
+        source: (sources,) addresses of functions that write a source's signals.
+        source_block: (sources,) where their blocks begin.
+        signal: (signals,) places of the signals.
+    """
+
+    blocks: np.ndarray
+    law: np.ndarray
+    block: np.ndarray
+    argument: np.ndarray
+    value: np.ndarray
+    tangent: np.ndarray
+    indicator: np.ndarray
+    source: np.ndarray
+    source_block: np.ndarray
+    signal: np.ndarray
+
+
+class Fixed(NamedTuple):
+    """What depends on the system and the degree alone.
+
+    Attributes:
+        of_angles: (arguments, rotations).
+        offset: (arguments,), of the angles at the start.
+        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, continued;
+            the middle one is of equal steps, later ones of shorter ones.
+        nodes: (nodes,) places in a step.
+        one: value of the last channel, 0 if nothing depends on it.
+    """
+
+    of_angles: np.ndarray
+    offset: np.ndarray
+    ahead: np.ndarray
+    nodes: np.ndarray
+    one: float
+
+
+class State(NamedTuple):
+    """Where a march stands.
+
+    Attributes:
+        x, y: (modes,) real and imaginary parts of the coordinates.
+        angle: (rotations,) since the start [rad]: a sum of small steps keeps its digits.
+        u: (inputs,) of the step that was taken last.
+        place: base step, place in it in shortest steps, rung, rung of the last step (-1: none, or
+            the laws bent in it).
+        counted: see `STEPS`.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    angle: np.ndarray
+    u: np.ndarray
+    place: np.ndarray
+    counted: np.ndarray
+
+
+class Samples(NamedTuple):
+    """What is kept for each time that is wanted: the step that contains it.
+
+    Attributes:
+        times: ascending [s].
+        x, y, angle, u: as of `State`, at the start of the step.
+        since: [s] since the start of the step.
+        length: of the step [s].
+    """
+
+    times: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    angle: np.ndarray
+    u: np.ndarray
+    since: np.ndarray
+    length: np.ndarray

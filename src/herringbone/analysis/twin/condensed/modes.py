@@ -1,0 +1,181 @@
+"""Modal coordinates of the linear rest, with mean tangents of the laws in it.
+
+Angles that only grow stay outside: a system that rotates as a whole has states x = y + v theta, v
+rigid rotations, theta the angles of one state of each. The equations of y do not know theta, so
+that no digits are lost to revolutions.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig, matrix_balance, qr
+
+from herringbone.analysis.twin.condensed.equations import Equations, laws_of
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import StructureError
+
+_RIGID = 1e-12
+"""Singular value, over the largest one, below which a motion is rigid."""
+_WORST = 1e8
+"""Condition of the eigenvectors beyond which they are no coordinates."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """y = Re(shapes q), q' = rates q + inputs r, theta' = Re(turns q); r: channels as below.
+
+    One of each pair of conjugate modes is kept, its shape doubled. The channels r are those of the
+    equations, but laws' values are less their mean tangents times the arguments.
+
+    Attributes:
+        rates: (modes,) eigenvalues [1/s].
+        inputs: (modes, channels).
+        shapes: (states, modes), of all states; constant and reference states have none.
+        turns: (rotations, modes).
+        rigid: (states, rotations), v.
+        constant: (states,) values of states that never change, else 0.
+        arguments: (arguments, modes).
+        of_angles: (arguments, rotations).
+        of_channels: (arguments, channels).
+        tangent: (law values, arguments), the mean tangents.
+        start, angles: modal coordinates (modes,) and angles (rotations,) at the start.
+    """
+
+    rates: np.ndarray
+    inputs: np.ndarray
+    shapes: np.ndarray
+    turns: np.ndarray
+    rigid: np.ndarray
+    constant: np.ndarray
+    arguments: np.ndarray
+    of_angles: np.ndarray
+    of_channels: np.ndarray
+    tangent: np.ndarray
+    start: np.ndarray
+    angles: np.ndarray
+
+    def states(self, x: np.ndarray, y: np.ndarray, angles: np.ndarray) -> np.ndarray:
+        """States (n, times).
+
+        Args:
+            x, y: (times, modes) real and imaginary parts of the coordinates.
+            angles: (times, rotations) since the start [rad].
+        """
+        still = self.constant + self.rigid @ self.angles
+        together = np.hstack([self.shapes.real, -self.shapes.imag, self.rigid, still[:, None]])
+        return together @ np.hstack([x, y, angles, np.ones((len(x), 1))]).T
+
+
+def mean_tangent(twin: Twin, equations: Equations) -> np.ndarray:
+    """(law values, arguments): the laws' mean tangents, from parameters alone."""
+    tangent = np.zeros((sum(len(_laws(twin, p).values) for p in equations.laws), len(equations.c)))
+    value = argument = 0
+    for p in equations.laws:
+        laws, block = _laws(twin, p), twin.instances[p].block
+        own = slice(argument, argument + len(laws.arguments))
+        rows = zip(laws.stiff, laws.mean(block), laws.directions(block), strict=True)
+        for stiff, mean, direction in rows:
+            tangent[value + stiff, own] += mean * direction
+        value += len(laws.values)
+        argument = own.stop
+    return tangent
+
+
+def _laws(twin: Twin, p: int):  # noqa: ANN202
+    found = laws_of(twin.instances[p])
+    assert found is not None
+    return found
+
+
+def make_modes(twin: Twin, equations: Equations) -> Modes:
+    """Modal coordinates of a twin.
+
+    Raises:
+        StructureError: it has no modal coordinates, or rotates otherwise than with its angles.
+    """
+    tangent = mean_tangent(twin, equations)
+    values = len(tangent)
+    n, x0 = twin.state.size, twin.state
+    a = equations.a + equations.b[:, :values] @ tangent @ equations.c
+    b = equations.b.copy()
+    b[:, values:] += equations.b[:, :values] @ tangent @ equations.d[:, values:]
+    moving = _moving(a, b)
+    constant = np.where(moving, 0.0, x0)
+    b[:, -1] += a @ constant
+    rigid, references = _rotations(twin, a)
+    inside = np.array([i for i in range(n) if moving[i] and i not in references], dtype=int)
+    rest = a - rigid @ a[references]
+    driven = (b - rigid @ b[references])[inside]
+    if np.abs(b[references]).max(initial=0.0) > 0.0:
+        raise StructureError(f"{twin.system.name}: an angle is driven without inertia")
+    rates, shapes, inverse = _eigen(twin, rest[np.ix_(inside, inside)])
+    every = np.zeros((n, rates.size), dtype=complex)
+    every[inside] = shapes
+    angles = x0[references]
+    of_channels = equations.d.copy()
+    of_channels[:, -1] += equations.c @ constant
+    return Modes(
+        rates,
+        inverse @ driven,
+        every,
+        a[references] @ every,
+        rigid,
+        constant,
+        equations.c @ every,
+        equations.c @ rigid,
+        of_channels,
+        tangent,
+        inverse @ (x0 - rigid @ angles)[inside],
+        angles,
+    )
+
+
+def _moving(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """States that can change, (n,); the others have neither a rate nor anything that gives one."""
+    moving = np.ones(len(a), dtype=bool)
+    driven = b.any(axis=1)
+    while True:
+        now = moving & (driven | a[:, moving].any(axis=1))
+        if (now == moving).all():
+            return moving
+        moving = now
+
+
+def _rotations(twin: Twin, a: np.ndarray) -> tuple[np.ndarray, list[int]]:
+    """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references."""
+    turning = [
+        first + i
+        for first, instance in zip(twin.layout.state_first, twin.instances, strict=False)
+        for i, state in enumerate(instance.component.declaration.states)
+        if state.steady == "rotating"
+    ]
+    if not turning:
+        return np.zeros((len(a), 0)), []
+    _, sizes, rows = np.linalg.svd(a[:, turning])
+    free = rows[sizes <= _RIGID * max(sizes[0], 1.0)].T
+    if not free.size:
+        return np.zeros((len(a), 0)), []
+    _, _, order = qr(free.T, pivoting=True)
+    chosen = order[: free.shape[1]]
+    rigid = np.zeros((len(a), len(chosen)))
+    rigid[turning] = free @ np.linalg.inv(free[chosen])
+    return rigid, [turning[i] for i in chosen]
+
+
+def _eigen(twin: Twin, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Eigenvalues, doubled eigenvectors and inverse rows of one of each pair of modes."""
+    balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
+    rates, vectors = eig(balanced)
+    try:
+        inverse = np.linalg.inv(vectors)
+        condition = float(np.linalg.norm(vectors, 1) * np.linalg.norm(inverse, 1))
+    except np.linalg.LinAlgError:
+        condition = math.inf
+    if not condition < _WORST:
+        raise StructureError(
+            f"{twin.system.name}: its linear part has no modal coordinates (two modes are one)"
+        )
+    kept = rates.imag >= 0.0
+    weight = np.where(rates.imag[kept] > 0.0, 2.0, 1.0)
+    return rates[kept], scale[:, None] * vectors[:, kept] * weight, inverse[kept] / scale

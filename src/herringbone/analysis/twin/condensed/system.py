@@ -1,0 +1,93 @@
+"""What a march needs to know of a condensed system: addresses, offsets, tangents."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+
+from herringbone.analysis.twin.condensed.equations import Equations, laws_of
+from herringbone.analysis.twin.condensed.march_arrays import Calls
+from herringbone.analysis.twin.condensed.modes import Modes
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.components.law_addresses import law_address, signals_address
+from herringbone.core import Instance, Laws
+from herringbone.kernels.condensed.collocation import Table
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A twin with its equations taken apart, and their modal coordinates."""
+
+    twin: Twin
+    equations: Equations
+    modes: Modes
+
+    def _parts(self) -> Iterator[tuple[Instance, Laws]]:
+        for p in self.equations.laws:
+            instance = self.twin.instances[p]
+            if laws := laws_of(instance):
+                yield instance, laws
+
+    @property
+    def directions(self) -> np.ndarray:
+        """(tangents, arguments) of all laws."""
+        rows = [np.zeros((0, len(self.equations.c)))]
+        at = 0
+        for instance, laws in self._parts():
+            own = laws.directions(instance.block)
+            rows.append(np.zeros((len(own), len(self.equations.c))))
+            rows[-1][:, at : at + own.shape[1]] = own
+            at += own.shape[1]
+        return np.concatenate(rows)
+
+    @property
+    def stiff(self) -> list[int]:
+        """Which of all laws' values are unknowns of a step."""
+        every = [i in laws.stiff for _, laws in self._parts() for i in range(len(laws.values))]
+        return [i for i, stiff in enumerate(every) if stiff]
+
+    def calls(self) -> Calls:
+        """Addresses, and fresh blocks for them to work on."""
+        twin, first = self.twin, self.twin.layout.block_first
+        blocks = twin.block.copy()
+        for p, (_, laws) in zip(self.equations.laws, self._parts(), strict=True):
+            laws.prepare(blocks[first[p] : first[p + 1]])
+        sources = sorted({p for p, _ in self.equations.signals})
+        parts = list(self._parts())
+
+        def integers(values: object) -> np.ndarray:
+            return np.array(list(values), dtype=np.int64)  # type: ignore[call-overload]
+
+        def offsets(sizes: Iterator[int]) -> np.ndarray:
+            return integers(accumulate(sizes, initial=0))
+
+        return Calls(
+            blocks,
+            integers(law_address(instance.component.name) for instance, _ in parts),
+            integers(first[p] for p in self.equations.laws),
+            offsets(len(laws.arguments) for _, laws in parts),
+            offsets(len(laws.values) for _, laws in parts),
+            offsets(len(laws.stiff) for _, laws in parts),
+            offsets(laws.kinks for _, laws in parts),
+            integers(signals_address(twin.instances[p].component.name) for p in sources),
+            integers(first[p] for p in sources),
+            integers(place for _, place in self.equations.signals),
+        )
+
+    def table(self, calls: Calls) -> Table:
+        """Where values and tangents lie."""
+        unknown = np.full(calls.value[-1], -1)
+        unknown[self.stiff] = np.arange(len(self.stiff))
+        value: list[int] = []
+        mean: list[float] = []
+        for first, (instance, laws) in zip(calls.value, self._parts(), strict=False):
+            value += [int(first) + v for v in laws.stiff]
+            mean += laws.mean(instance.block).tolist()
+        return Table(
+            self.modes.tangent,
+            np.array(value, dtype=np.int64),
+            np.array(mean, dtype=float),
+            unknown,
+            np.full(calls.value[-1], np.finfo(float).tiny),
+        )

@@ -1,0 +1,1 @@
+"""The condensed core: linear parts advanced exactly, laws collocated; arrays only."""

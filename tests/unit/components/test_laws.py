@@ -1,0 +1,110 @@
+"""Declared laws: taken apart and put together, the equations are those of the kernels."""
+
+import numpy as np
+import pytest
+from support.deviating_teeth import PAIR, write_law, write_teeth
+
+from herringbone.components.registry import COMPONENTS
+from herringbone.core import Instance
+from herringbone.gears.stiffness.slices import SliceMesh
+
+WITH_LAWS = [name for name, c in COMPONENTS.items() if c.laws]
+MOVING = {
+    "gear_mesh": {
+        "approach": 7e-6, "angle": 0.4, "pinion_twist": 3e-5, "wheel_twist": -1e-5,
+        "z_1": 2e-6, "y_2": -1e-6, "der(angle)": 100.0, "der(approach)": 2e-3, "der(z_3)": 1e-3,
+        "symmetry_deviation": 1e-5, "drag_torque": 3.0, "pinion.tau": 200.0,
+    },
+    "bearing_supports": {
+        "shaft.pinion_left.s_y": 3e-5, "shaft.pinion_right.s_y": 2e-6,
+        "shaft.wheel_left.s_z": 1e-6, "shaft.wheel_right.v_y": 1e-3,
+        "seat.pinion_left.v_x": 2e-3, "pinion.radial_clearance": 2e-5,
+    },
+    "drive_motor": {
+        "speed": 90.0, "speed_reference": 100.0, "speed_setpoint": 150.0, "integral": 1.0,
+    },
+}  # fmt: skip
+
+
+def moving(name, **more):
+    instance = Instance(COMPONENTS[name], name)
+    for variable, value in {**MOVING[name], **more}.items():
+        instance.set(variable, value)
+    instance.initialise()
+    return instance
+
+
+def taken_apart(instance, t=0.0):
+    """Arguments, values, tangents, and the block and derivatives that they give."""
+    laws = instance.component.laws
+    b = instance.block.copy()
+    z, f = np.zeros(len(laws.arguments)), np.zeros(len(laws.values))
+    k, e = np.zeros(len(laws.stiff)), np.zeros(laws.kinks)
+    dx = np.zeros(max(1, instance.component.declaration.state_count))
+    laws.prepare(b)
+    laws.gather(b, z)
+    laws.evaluate(b.copy(), z, f, k, e)
+    laws.apply(b, t, f, dx)
+    return z, f, k, b, dx
+
+
+def connected(name):
+    """Outputs that other parts take: those of ports."""
+    declaration = COMPONENTS[name].declaration
+    return [declaration.index[v.name] for v in declaration.outputs if v.name.count(".") > 0
+            and not v.name.startswith("mesh_")]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WITH_LAWS)
+def test_laws_and_rest_are_the_equations(name):
+    """Rounding alone, of the sums that are made in another order."""
+    instance = moving(name)
+    component = instance.component
+    rates = np.zeros(max(1, component.declaration.state_count))
+    component.kernels.out(instance.block, 0.0)
+    component.kernels.rhs(instance.block, 0.0, rates)
+    *_, b, dx = taken_apart(instance)
+    assert np.abs(rates).max() > 1.0 or name == "bearing_supports"
+    assert dx == pytest.approx(rates, rel=1e-12, abs=1e-12 * np.abs(rates).max())
+    out = connected(name)
+    assert len(out) > 2
+    assert b[out] == pytest.approx(instance.block[out], rel=1e-12, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", WITH_LAWS)
+def test_tangents(name):
+    """Declared tangents against differences; the slope of the damping's gate is left out."""
+    instance = moving(name)
+    laws = instance.component.laws
+    z, f, k, *_ = taken_apart(instance)
+    b = instance.block.copy()
+    laws.prepare(b)
+    directions = laws.directions(b)
+    assert (laws.mean(b) > 0.0).all()
+    for row, value, tangent in zip(directions, laws.stiff, k, strict=True):
+        step = 1e-9 * row / (row @ row)
+        found = np.zeros_like(f)
+        laws.evaluate(b, z + step, found, np.zeros_like(k), np.zeros(laws.kinks))
+        assert (found[value] - f[value]) / 1e-9 == pytest.approx(tangent, rel=2e-3, abs=1e-3)
+
+
+def test_laws_of_deviating_teeth(tmp_path):
+    law = write_law(tmp_path / "law.csv", SliceMesh(PAIR, slices=60))
+    teeth = write_teeth(tmp_path / "teeth.csv", 6)
+    gear = moving("gear_mesh", pair_law=str(law), tooth_deviations=str(teeth), ramp_turns=0.0)
+    rates = np.zeros(24)
+    gear.component.kernels.rhs(gear.block, 0.0, rates)
+    assert taken_apart(gear)[-1] == pytest.approx(rates, rel=1e-12, abs=1e-9)
+    assert abs(taken_apart(gear)[1][4]) > 0.0
+
+
+def test_what_cannot_be_taken_apart():
+    gear = moving("gear_mesh")
+    assert gear.component.laws.refusal(gear.block) == ""
+    heavy = moving("gear_mesh", **{"pinion.unbalance": 1e-4})
+    assert "pinion.unbalance = 0.0001 kg.m" in heavy.component.laws.refusal(heavy.block)
+    bearing = moving("bearing_supports")
+    assert bearing.component.laws.needed(bearing.block)
+    assert not bearing.component.laws.needed(
+        moving("bearing_supports", **{"pinion.radial_clearance": 0.0}).block
+    )
