@@ -12,7 +12,7 @@ from herringbone.fmi.native import PLATFORMS, build_native_fmus, find_compiler
 from herringbone.running.system_fmu import export_fmu
 
 SYSTEMS = ("gearbox", "test_rig")
-_RESOURCES = "resources/"
+_DATA = "resources/", "documentation/", "extra/"
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class NativeFmu:
     Attributes:
         name: component or system.
         start_seconds: to instantiate and initialise, the median of the repeats.
-        bytes: size of the packed file without its resources.
+        bytes: size of the packed file without its resources, documentation and reference results.
         platforms: for which it has a binary.
     """
 
@@ -56,8 +56,8 @@ def _start_seconds(name: str, file: Path, repeats: int) -> float:
 
 
 def _size(file: Path) -> int:
-    """Packed size [bytes] without resources."""
+    """Packed size [bytes] without resources, documentation and reference results."""
     with zipfile.ZipFile(file) as archive:
         entries: Sequence[zipfile.ZipInfo] = archive.infolist()
-    resources = sum(e.compress_size for e in entries if e.filename.startswith(_RESOURCES))
-    return file.stat().st_size - resources
+    data = sum(e.compress_size for e in entries if e.filename.startswith(_DATA))
+    return file.stat().st_size - data

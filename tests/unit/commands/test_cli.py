@@ -53,7 +53,7 @@ def test_version(capsys):
     [
         ((), "the following arguments are required: COMMAND"),
         (("frobnicate",), "invalid choice: 'frobnicate'"),
-        (("run",), "the following arguments are required: system"),
+        (("export",), "the following arguments are required: system"),
         (("run", "test_rig", "--step", "abc"), "--step: invalid float value: 'abc'"),
         (("run", "test_rig", "--frobnicate"), "unrecognized arguments: --frobnicate"),
     ],

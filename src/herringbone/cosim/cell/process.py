@@ -224,7 +224,8 @@ def _signal(number: int) -> str:
 
 def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.inside.child"]
-    paths = os.pathsep.join(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
+    known = dict.fromkeys(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
+    paths = os.pathsep.join(filter(os.path.exists, known))  # pythonfmu adds one an instance
     try:
         return subprocess.Popen(
             [*command, str(block), str(words), str(os.getpid()), str(code), str(folder)],

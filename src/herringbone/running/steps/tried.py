@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from statistics import fmean
 
 from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.accuracy.step_power import left_of, step_power
@@ -24,7 +25,9 @@ _BLIND = 2.0
 """What the step is divided by as long as nothing is known of the error."""
 _FALLS = 0.3
 """Power below which the difference of two runs does not fall with their steps. Two such runs near
-each other tell, or three that are far apart, as those are where long steps are nearly unstable."""
+each other tell, or three that are far apart, as those are where long steps are nearly unstable; of
+noise, whose differences rise and fall, the mean of four."""
+_LONG = 4
 _PATIENCE, _TIMES = 60.0, 30.0
 """A run is not begun if it takes longer [s], and so many times as long as all before."""
 
@@ -121,9 +124,9 @@ class Search:
     def _over(self, outcome: Outcome, found: Coupled) -> str:
         """Why no other step is tried; "" if one is."""
         patience = 2 if self.tried and self.tried[-1].apart < _FAR else 3
-        flat = len(self.tried) > 1 + patience and all(
-            t.power < _FALLS for t in self.tried[-patience:]
-        )
+        powers = [t.power for t in self.tried[2:]]
+        flat = len(powers) >= patience and all(p < _FALLS for p in powers[-patience:])
+        flat = flat or (len(powers) >= _LONG and fmean(powers[-_LONG:]) < _FALLS)
         lost = not outcome.completed and not outcome.unstable and len(self.failed) >= _FAILURES
         reasons = {
             "the run with a shorter step was interrupted": outcome.kind is OutcomeKind.INTERRUPTED,
