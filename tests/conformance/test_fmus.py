@@ -205,11 +205,7 @@ def test_divergence_names_variable_value_time_and_remedy(started):
         ("load_motor", {"interface_degree": 1.5}, "interface_degree = 1.5: it must be a whole"),
         ("velocity_sensor", {"bits": 1.5}, "part.bits = 1.5: it must be a whole number"),
         ("load_motor", {"interface_degree": 5.0}, "interface_degree = 5: it must lie between"),
-        (
-            "load_motor",
-            {"torque": 5.0},
-            "part.torque = 5.0: it is an output",
-        ),
+        ("load_motor", {"torque": 5.0}, "part.torque = 5 N.m: a continuous output cannot be set"),
         ("gear_mesh", {"stiffness_table": "no%sne.csv"}, "part.stiffness_table = 'no%sne.csv'"),
         ("modal_housing", {"modes": "shapes.csv"}, "shapes.csv"),
         ("bench_controller", {"cycle": "../x.csv"}, "there is no file"),

@@ -30,6 +30,9 @@ class _SteppedPart(FmuPart):
     ) -> None:
         self.close()
 
+    def _refuse_calculated(self, name: str, what: str) -> None:
+        """Nothing: the FMU itself refuses what it computes."""
+
     def set_values(self, values: Mapping[str, float | str]) -> None:
         """Set variables by name; raises ParameterError."""
         for name, value in values.items():
