@@ -2,15 +2,13 @@
 
 import io
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import fields, is_dataclass
-from importlib.metadata import PackageNotFoundError, version
 from numbers import Integral, Real
 
 import numpy as np
 
 from herringbone.core.caching.files import read_stored, store
-from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
 from herringbone.core.paths import cache_folder
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem")
@@ -28,7 +26,7 @@ def content_key(module: str, *values: object) -> str:
     Raises:
         TypeError: a value of another type.
     """
-    return digest_of(kernels_key(module), *_versions(), _text(values))
+    return digest_of(kernels_key(module), *versions_of(*_LIBRARIES), _text(values))
 
 
 def _text(value: object) -> str:
@@ -45,14 +43,6 @@ def _text(value: object) -> str:
     if isinstance(value, Real):
         return repr(float(value))
     raise TypeError(f"{value!r} of {type(value).__name__} has no place in a key")
-
-
-def _versions() -> list[str]:
-    found = []
-    for library in _LIBRARIES:
-        with suppress(PackageNotFoundError):
-            found.append(f"{library} {version(library)}")
-    return found
 
 
 def stored_arrays(kind: str, key: str, make: Callable[[], Mapping[str, np.ndarray]]) -> Arrays:

@@ -1,25 +1,23 @@
 """What a part and a system depend on, by content: for the keys of what is kept about them."""
 
+import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.core.caching.keys import sources_key
+from herringbone.core.files import is_file
 from herringbone.cosim.structure.system import PartSpec, System
 
+_BLOCK = 1 << 20
 
-def contents_of(spec: PartSpec) -> Iterator[str | bytes]:
+
+def contents_of(spec: PartSpec) -> Iterator[str]:
     """The FMU or component of a part, its values, and the files that these name."""
-    if spec.fmu is None:
-        yield f"{spec.component} {sources_key()}"
-    else:
-        yield spec.fmu.read_bytes()
-    for name, value in sorted(spec.values.items()):
-        yield f"{name} {value!r}"
-        if isinstance(value, str) and _is_file(value):
-            yield Path(value).read_bytes()
+    yield f"{spec.component} {sources_key()}" if spec.fmu is None else digest_of_file(spec.fmu)
+    yield from values_of(spec)
 
 
-def contents_of_system(system: System) -> Iterator[str | bytes]:
+def contents_of_system(system: System) -> Iterator[str]:
     """Names, parts and connections; the order of both counts."""
     for spec in system.parts:
         yield str(spec.name)
@@ -28,8 +26,22 @@ def contents_of_system(system: System) -> Iterator[str | bytes]:
         yield " ".join(pair)
 
 
-def _is_file(text: str) -> bool:
+def values_of(spec: PartSpec) -> Iterator[str]:
+    """Values of a part; the content of a file in place of its name."""
+    for name, value in sorted(spec.values.items()):
+        if isinstance(value, str) and value and is_file(Path(value)):
+            yield f"{name} {digest_of_file(Path(value))}"
+        else:
+            yield f"{name} {value!r}"
+
+
+def digest_of_file(file: Path) -> str:
+    """Digest of a file's content."""
+    digest = hashlib.sha256()
     try:
-        return text != "" and Path(text).is_file()
-    except (OSError, ValueError):  # a text that is no path
-        return False
+        with file.open("rb") as stream:
+            while block := stream.read(_BLOCK):
+                digest.update(block)
+    except OSError:  # whoever needs it says so
+        return "not readable"
+    return digest.hexdigest()

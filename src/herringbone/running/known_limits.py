@@ -2,11 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from importlib.metadata import version
 
 from herringbone.analysis.stability.step_limits import StepLimits
 from herringbone.core.caching.files import keep, kept
-from herringbone.core.caching.keys import digest_of, kernels_key
+from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
 from herringbone.core.paths import cache_root
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
@@ -49,7 +48,7 @@ class KnownLimits:
     def _key(self, algorithm: Algorithm, simulated: bool) -> str:
         return digest_of(
             kernels_key(*_SOURCES),
-            *(version(library) for library in _LIBRARIES),
+            *versions_of(*_LIBRARIES),
             *contents_of_system(self.system),
             f"{algorithm!r} {simulated} {self.step!r}",
         )

@@ -17,7 +17,9 @@ compiled code cached under its name.
 import hashlib
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from herringbone.core.caching.files import keep, kept
@@ -53,6 +55,15 @@ def module_key(module: str, file: str) -> str:
         return kernels_key(module)
     syntax = syntax_of(Path(file).read_text(encoding="utf-8"))
     return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)))
+
+
+def versions_of(*libraries: str) -> list[str]:
+    """Names and versions of the libraries that are installed."""
+    found = []
+    for library in libraries:
+        with suppress(PackageNotFoundError):
+            found.append(f"{library} {version(library)}")
+    return found
 
 
 @cache

@@ -1,19 +1,15 @@
 """What a run depends on, as digests: two runs with the same ones have the same rows."""
 
-import hashlib
 import platform
 import sys
 from dataclasses import replace
 from functools import cache
-from importlib.metadata import version
-from pathlib import Path
 
-from herringbone.core.caching.keys import digest_of, packed_key
-from herringbone.core.files import is_file
+from herringbone.core.caching.keys import digest_of, packed_key, versions_of
 from herringbone.cosim.structure.system import System
+from herringbone.running.content import digest_of_file, values_of
 from herringbone.scenes import Scene
 
-_BLOCK = 1 << 20
 _LIBRARIES = "numpy", "numba", "scipy", "fmpy"
 
 
@@ -27,12 +23,8 @@ def settings_of(system: System, scene: Scene, options: object) -> dict[str, str]
     """
     plain = replace(scene, description="", gears={}, housings={}, values={})
     structure = (system.connections, sorted(system.channels.items()))
-    parts = [f"{p.name} {p.component} {p.fmu and _content(p.fmu)}" for p in system.parts]
-    values = [
-        f"{p.name}.{name} {_told(value)}"
-        for p in system.parts
-        for name, value in sorted(p.values.items())
-    ]
+    parts = [f"{p.name} {p.component} {p.fmu and digest_of_file(p.fmu)}" for p in system.parts]
+    values = [f"{p.name}.{told}" for p in system.parts for told in values_of(p)]
     scene_told = (plain.name, plain.t_end, plain.record_step, plain.start, plain.start_offset)
     return {
         "system": digest_of(system.name, repr(structure)),
@@ -49,27 +41,8 @@ def key_of(settings: dict[str, str]) -> str:
     return digest_of(*(f"{name} {digest}" for name, digest in sorted(settings.items())))
 
 
-def _told(value: object) -> str:
-    """A value; the content of a file in place of its name."""
-    if isinstance(value, str) and value and is_file(Path(value)):
-        return _content(Path(value))
-    return repr(value)
-
-
-def _content(file: Path) -> str:
-    """Digest of a file's content."""
-    digest = hashlib.sha256()
-    try:
-        with file.open("rb") as stream:
-            while block := stream.read(_BLOCK):
-                digest.update(block)
-    except OSError:  # whoever needs it says so
-        return "not readable"
-    return digest.hexdigest()
-
-
 @cache
 def _versions() -> str:
     """Of what computes: this package, Python, numerical libraries, the kind of processor."""
-    libraries = (version(name) for name in _LIBRARIES)
-    return digest_of(packed_key(), sys.version, platform.machine(), *libraries)
+    machine = sys.version, platform.machine()
+    return digest_of(packed_key(), *machine, *versions_of(*_LIBRARIES))
