@@ -150,11 +150,12 @@ def make_boundary(system: System, wanted: Wanted) -> Boundary:
             f"system '{system.name}' has no flange '{unknown[0]}'; it has {', '.join(system.ports)}"
         )
     (pair,) = anatomy(system).with_role(Role.GEAR_PAIR)
-    coupling = next(
-        c.name
+    elements = [
+        c.declaration
         for c in COMPONENTS.values()
         if Role.COUPLING in c.declaration.roles and not c.declaration.state_count
-    )
+    ]
+    coupling = min(elements, key=lambda declaration: len(declaration.parameters)).name
     flanges = []
     for name, path in system.ports.items():
         given = wanted.given.get(name, Given.TORQUE)

@@ -1,7 +1,7 @@
 """Largest stable communication steps of a gearbox, by what the host has at a flange.
 
 The equations are linearised in the equilibrium of the start; of the motions those are kept that the
-flange feels most, the others follow it at once. What the host does is in `stability.hosted_flange`.
+flange feels most, the others follow it at once. What the host does is in `flange.hosted_flange`.
 """
 
 from typing import NamedTuple

@@ -116,10 +116,7 @@ class CellPart:
 
     def _ask(self, call: str, *arguments: object) -> object:
         """Call a function of the part in the cell; raises HerringboneError."""
-        if (
-            _SEND(signals.send.address)(self._memory.ctypes.data) > _LAST_GOOD
-            and not self._cell.lost
-        ):
+        if self._sent() > _LAST_GOOD and not self._cell.lost:
             said = "; ".join(self._cell.ask("messages", self._number))
             raise FmuError(f"{self.name} refuses a step, a value or a state: {said}")
         return self._cell.ask(call, self._number, *arguments)

@@ -14,8 +14,6 @@ from herringbone.cosim.cell.system_calls import FUTEX
 if TYPE_CHECKING:
     from herringbone.cosim.cell.process import Cell
 
-BY_DEFAULT = True
-"""Whether foreign FMUs run in cells where nobody says."""
 DEADLINE = 60.0
 """Longest time that a call of an FMU takes, unless something else is asked for [s]."""
 _SPIN = 20e-6
@@ -50,7 +48,7 @@ class Policy:
         idle: cells by their FMU that may be used again; None: each is used once.
     """
 
-    in_process: bool = not BY_DEFAULT
+    in_process: bool = False
     deadline: float = DEADLINE
     remarks: list[Remark] = field(default_factory=list)
     idle: dict[str, list["Cell"]] | None = None
@@ -71,7 +69,7 @@ def housing_of_strangers(
     """Context in which foreign FMUs are opened so.
 
     Args:
-        in_process: in this process; None: as around this context, or else see `BY_DEFAULT`.
+        in_process: in this process; None: as around this context, or else in cells.
         deadline: longest time of a call [s]; if not given as around this context, or `DEADLINE`.
 
     Raises:
