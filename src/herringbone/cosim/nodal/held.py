@@ -17,7 +17,7 @@ by -r (l - t) to its end, is given as what is left after that, by the same momen
 import numpy as np
 from numba import carray
 
-from herringbone.cosim.loops.calls import at_address
+from herringbone.cosim.loops.calls import at_address, exchange_reals
 from herringbone.cosim.signature.rotation import Given
 from herringbone.kernels.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate
@@ -50,6 +50,25 @@ def hold(memory: np.ndarray, begin: float, end: float, step: float) -> None:
         if part.pieces == 1:
             odd = 0.0
         held[i], held[count + i] = even - odd, even + odd
+
+
+@allocating
+def give(memory: np.ndarray, values: np.ndarray) -> int:
+    """Set the inputs that are driven to values (inputs,), which may be `packed`; FMI status."""
+    part = memory[0]
+    driven = carray(at_address(part.driven), part.inputs, np.int64)
+    packed = carray(at_address(part.packed), part.inputs, np.float64)
+    references = carray(at_address(part.input_references), part.inputs, np.uint32)
+    packed_references = carray(at_address(part.packed_references), part.inputs, np.uint32)
+    count = 0
+    for i in range(part.inputs):
+        if driven[i] == 0:
+            continue
+        packed[count], packed_references[count] = values[i], references[i]
+        count += 1
+    if count == 0:
+        return 0
+    return exchange_reals(part.set_real, part.component, part.packed_references, count, part.packed)
 
 
 @allocating

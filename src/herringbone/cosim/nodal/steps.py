@@ -6,7 +6,7 @@ from numba import carray
 from herringbone.cosim.loops.calls import at_address, exchange_reals, state_call
 from herringbone.cosim.loops.calls import do_step as step_part
 from herringbone.cosim.loops.common import LAST_GOOD
-from herringbone.cosim.nodal.held import hold
+from herringbone.cosim.nodal.held import give, hold
 from herringbone.cosim.nodal.once import make_up, remember
 from herringbone.cosim.nodal.watch import compare
 from herringbone.cosim.signature.rotation import Given
@@ -35,26 +35,6 @@ def expand(memory: np.ndarray) -> None:
     coefficients = carray(at_address(part.coefficients), part.inputs * STRIDE, np.float64)
     for i in range(part.inputs):
         monomial(given, i * STRIDE, part.degree, coefficients, i * STRIDE)
-
-
-@allocating
-def _give(memory: np.ndarray, piece: int) -> int:
-    """Set the inputs of the part to what it holds in a piece; FMI status."""
-    part = memory[0]
-    driven = carray(at_address(part.driven), part.inputs, np.int64)
-    held = carray(at_address(part.held), 2 * part.inputs, np.float64)
-    packed = carray(at_address(part.packed), part.inputs, np.float64)
-    references = carray(at_address(part.input_references), part.inputs, np.uint32)
-    packed_references = carray(at_address(part.packed_references), part.inputs, np.uint32)
-    count = 0
-    for i in range(part.inputs):
-        if driven[i] == 0:
-            continue
-        packed[count], packed_references[count] = held[piece * part.inputs + i], references[i]
-        count += 1
-    if count == 0:
-        return 0
-    return exchange_reals(part.set_real, part.component, part.packed_references, count, part.packed)
 
 
 @allocating
@@ -105,7 +85,8 @@ def take(memory: np.ndarray, time: float, step: float, later: bool) -> int:
         if part.once:
             make_up(memory, step)
         for piece in range(part.pieces):
-            status = _give(memory, piece)
+            held = memory[0].held + _BYTES * piece * part.inputs
+            status = give(memory, carray(at_address(held), part.inputs, np.float64))
             if status > LAST_GOOD:
                 return status
             begin = time + ((node - 1) * part.pieces + piece) * length

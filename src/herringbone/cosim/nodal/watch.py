@@ -18,6 +18,7 @@ from numba import carray
 
 from herringbone.cosim.loops.calls import at_address, do_step, exchange_reals, state_call
 from herringbone.cosim.loops.common import LAST_GOOD
+from herringbone.cosim.nodal.held import give
 from herringbone.kernels.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate
 
@@ -142,20 +143,11 @@ def _give_end(memory: np.ndarray, number: int, change: float) -> int:
     """Set the inputs to their values at the end of the last step, one of them changed; status."""
     part = memory[0]
     coefficients = carray(at_address(part.coefficients), part.inputs * STRIDE, np.float64)
-    driven = carray(at_address(part.driven), part.inputs, np.int64)
     packed = carray(at_address(part.packed), part.inputs, np.float64)
-    references = carray(at_address(part.input_references), part.inputs, np.uint32)
-    packed_references = carray(at_address(part.packed_references), part.inputs, np.uint32)
-    count = 0
     for i in range(part.inputs):
-        if driven[i] == 0:
-            continue
-        packed[count] = evaluate(coefficients, i * STRIDE, part.degree, 1.0)
-        if i == number:
-            packed[count] += change
-        packed_references[count] = references[i]
-        count += 1
-    return exchange_reals(part.set_real, part.component, part.packed_references, count, part.packed)
+        packed[i] = evaluate(coefficients, i * STRIDE, part.degree, 1.0)
+    packed[number] += change
+    return give(memory, packed)
 
 
 @allocating
