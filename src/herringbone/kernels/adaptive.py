@@ -16,8 +16,8 @@ import numpy as np
 
 from herringbone.core.declaration import Declaration
 from herringbone.kernels.jit import inner, kernel
-from herringbone.kernels.signals import STRIDE, all_finite, evaluate, monomial, store_node
-from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs
+from herringbone.kernels.signals import STRIDE, all_finite, store_node
+from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
 
 TOO_SMALL = 3
 """Status of a step in which the tolerance asked for inner steps below SMALLEST."""
@@ -70,7 +70,6 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         TOO_LONG or TOO_SMALL.
     """
     n, visible = declaration.state_count, len(declaration.states)
-    inputs = len(declaration.inputs)
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
     following = declaration.index[next_step]
     sizes = tuple(v.nominal for v in declaration.states)
@@ -81,14 +80,8 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         ends.append(at_vector)
     vectors = tuple(ends)
     x0, slope, first, last, at = n, 2 * n, 3 * n, 4 * n, 5 * n
-    kept = at + STRIDE * inputs
 
-    @inner(declaration.name)
-    def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
-        if degree == 0:
-            return  # held
-        for i in range(inputs):
-            b[n + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
+    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
 
     @inner(declaration.name)
     def error_of(b: np.ndarray, w: np.ndarray, hs: float) -> float:
@@ -167,10 +160,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        if degree > 0:
-            for i in range(inputs):
-                monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)
-                w[kept + i] = b[n + i * STRIDE]
+        expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0
         rhs(b, t, w[:n])
@@ -183,9 +173,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
             begin = end
             out(b, t + end)
             store_node(b, first_output, outputs, node)
-        if degree > 0:
-            for i in range(inputs):
-                b[n + i * STRIDE] = w[kept + i]
+        restore_inputs(b, w, degree)
         if status == 0 and not all_finite(b, 0, n):
             status = NOT_FINITE
         return status

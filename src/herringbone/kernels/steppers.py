@@ -50,6 +50,43 @@ def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndar
     return longest
 
 
+def input_kernels(declaration: Declaration, at: int) -> tuple[Callable, Callable, Callable]:
+    """Compile what a body's stepper does with inputs that are polynomials over the macro step.
+
+    Args:
+        declaration: of the body.
+        at: where their room in the work space begins, STRIDE + 1 numbers for each.
+
+    Returns:
+        expand(b, w, degree), before the first inner step; set(b, w, degree, c), at the place c of
+        the macro step; restore(b, w, degree), to what the caller had set. At degree 0 inputs are
+        held, and all three do nothing.
+    """
+    first, count = declaration.first_input, len(declaration.inputs)
+    kept = at + STRIDE * count
+
+    @inner(declaration.name)
+    def expand_inputs(b: np.ndarray, w: np.ndarray, degree: int) -> None:
+        if degree > 0:
+            for i in range(count):
+                monomial(b, first + i * STRIDE, degree, w, at + i * STRIDE)
+                w[kept + i] = b[first + i * STRIDE]
+
+    @inner(declaration.name)
+    def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
+        if degree > 0:
+            for i in range(count):
+                b[first + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
+
+    @inner(declaration.name)
+    def restore_inputs(b: np.ndarray, w: np.ndarray, degree: int) -> None:
+        if degree > 0:
+            for i in range(count):
+                b[first + i * STRIDE] = w[kept + i]
+
+    return expand_inputs, set_inputs, restore_inputs
+
+
 def body_stepper(
     rhs: Rhs, out: Out, declaration: Declaration
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
@@ -64,17 +101,10 @@ def body_stepper(
         0, NOT_FINITE or, if MOST_MICRO_STEPS would not do, TOO_LONG.
     """
     n = declaration.state_count
-    inputs = len(declaration.inputs)
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
     x0, slope, at = n, 2 * n, 3 * n
-    kept = at + STRIDE * inputs
 
-    @inner(declaration.name)
-    def set_inputs(b: np.ndarray, w: np.ndarray, degree: int, c: float) -> None:
-        if degree == 0:
-            return  # held
-        for i in range(inputs):
-            b[n + i * STRIDE] = evaluate(w, at + i * STRIDE, degree, c)
+    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
 
     @inner(declaration.name)
     def step(
@@ -82,10 +112,7 @@ def body_stepper(
     ) -> int:
         if not h <= MOST_MICRO_STEPS * micro_step:
             return TOO_LONG
-        if degree > 0:
-            for i in range(inputs):
-                monomial(b, n + i * STRIDE, degree, w, at + i * STRIDE)
-                w[kept + i] = b[n + i * STRIDE]
+        expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         count = max(1, math.ceil(h / (intervals * micro_step) - 1e-9))
         total = intervals * count
@@ -116,9 +143,7 @@ def body_stepper(
             if (k + 1) % count == 0:
                 out(b, t + (k + 1) * hs)
                 store_node(b, first_output, outputs, (k + 1) // count)
-        if degree > 0:
-            for i in range(inputs):
-                b[n + i * STRIDE] = w[kept + i]
+        restore_inputs(b, w, degree)
         return 0 if all_finite(b, 0, n) else NOT_FINITE
 
     return step
