@@ -3,7 +3,18 @@
 from herringbone.core import Variable, input_, output
 from herringbone.core.roles import HALVES, Port, PortKind, Quantity
 
-__all__ = ["HALVES", "flange", "flange_body", "journals", "seats"]
+__all__ = [
+    "HALVES",
+    "MOTION",
+    "coupled_flanges",
+    "flange",
+    "flange_body",
+    "journals",
+    "seats",
+]
+
+MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
+"""What a part between two bodies takes, see `coupled_flanges`."""
 
 
 def flange_body(port: str, *, more: tuple[str, ...] = ()) -> tuple[Variable, ...]:
@@ -28,6 +39,29 @@ def flange_body(port: str, *, more: tuple[str, ...] = ()) -> tuple[Variable, ...
         ),
         output(a, "rad/s2", f"angular acceleration of {port}", feedthrough=(f"{port}.tau", *more)),
     )
+
+
+def coupled_flanges() -> tuple[Variable, ...]:
+    """The flanges of a massless part between two bodies: it takes motions and gives torques."""
+    motions = (
+        variable
+        for side in ("a", "b")
+        for variable in (
+            input_(f"flange_{side}.phi", "rad", f"angle of flange {side}"),
+            input_(f"flange_{side}.w", "rad/s", f"angular velocity of flange {side}"),
+        )
+    )
+    torques = (
+        output(
+            f"flange_{side}.tau",
+            "N.m",
+            f"torque on the body at {side}",
+            feedthrough=MOTION,
+            nodes=True,
+        )
+        for side in ("a", "b")
+    )
+    return (*motions, *torques)
 
 
 def flange(name: str, place: str = "") -> Port:

@@ -17,29 +17,22 @@ Source: Modelica.Mechanics.Rotational.Components.SpringDamper (names and signs).
 
 import numpy as np
 
-from herringbone.components.ports import flange
-from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
+from herringbone.components.ports import MOTION, coupled_flanges, flange
+from herringbone.core import Component, Declaration, Kernels, output, parameter
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
-
-_MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
 
 _d = Declaration(
     "shaft_coupling",
     "Massless torsional spring-damper with torque and speed transducer",
     [
-        input_("flange_a.phi", "rad", "angle of flange a"),
-        input_("flange_a.w", "rad/s", "angular velocity of flange a"),
-        input_("flange_b.phi", "rad", "angle of flange b"),
-        input_("flange_b.w", "rad/s", "angular velocity of flange b"),
-        output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
-        output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
+        *coupled_flanges(),
         output(
             "torque",
             "N.m",
             "torque handed from a to b",
-            feedthrough=_MOTION,
+            feedthrough=MOTION,
             quantity=Quantity.TORQUE,
         ),
         output("speed", "rad/s", "mean speed", feedthrough=("flange_a.w", "flange_b.w")),
@@ -69,12 +62,12 @@ _d = Declaration(
         ),
         parameter("phi_rel0", "rad", "twist at which there is no torque", 0.0),
     ],
-    work=steppers.element_work(len(_MOTION)),
+    work=steppers.element_work(len(MOTION)),
     roles=[Role.COUPLING],
     ports=[flange("flange_a"), flange("flange_b")],
 )
 
-_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
+_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*MOTION)
 _TAU_A, _TAU_B, _TORQUE, _SPEED, _PHI_REL, _W_REL = _d.indices(
     "flange_a.tau", "flange_b.tau", "torque", "speed", "phi_rel", "w_rel"
 )

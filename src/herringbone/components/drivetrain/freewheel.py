@@ -18,13 +18,12 @@ engagement in place of its discrete one.
 
 import numpy as np
 
-from herringbone.components.ports import flange
-from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
+from herringbone.components.ports import MOTION, coupled_flanges, flange
+from herringbone.core import Component, Declaration, Kernels, output, parameter, state
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
 
-_MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
 _ENGAGED = 1e-3
 """A usual twist [rad], where the search for an equilibrium begins."""
 
@@ -33,18 +32,13 @@ _d = Declaration(
     "Shaft coupling that one side may overrun",
     [
         state("free_angle", "rad", "by which a is ahead of b where the sprags engage"),
-        input_("flange_a.phi", "rad", "angle of flange a"),
-        input_("flange_a.w", "rad/s", "angular velocity of flange a"),
-        input_("flange_b.phi", "rad", "angle of flange b"),
-        input_("flange_b.w", "rad/s", "angular velocity of flange b"),
-        output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
-        output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
-        output("torque", "N.m", "torque handed from a to b", feedthrough=_MOTION,
+        *coupled_flanges(),
+        output("torque", "N.m", "torque handed from a to b", feedthrough=MOTION,
                quantity=Quantity.TORQUE),
         output("twist", "rad", "of the engaged sprags, z",
                feedthrough=("flange_a.phi", "flange_b.phi")),
         output("w_rel", "rad/s", "speed of a over b", feedthrough=("flange_a.w", "flange_b.w")),
-        output("twist_rate", "rad/s", "rate of the twist, z'", feedthrough=_MOTION, steady="zero"),
+        output("twist_rate", "rad/s", "rate of the twist, z'", feedthrough=MOTION, steady="zero"),
         parameter("stiffness", "N.m/rad", "torsional, engaged", 6e4, minimum=0,
                   quantity=Quantity.STIFFNESS),
         parameter("damping", "N.m.s/rad", "torsional, engaged", 5.0, minimum=0,
@@ -54,13 +48,13 @@ _d = Declaration(
         parameter("micro_step", "s", "longest Runge-Kutta step", 5e-5, minimum=1e-9, maximum=1e-4,
                   quantity=Quantity.MICRO_STEP),
     ],
-    work=steppers.body_work(1, len(_MOTION)),
+    work=steppers.body_work(1, len(MOTION)),
     roles=[Role.COUPLING],
     ports=[flange("flange_a"), flange("flange_b")],
 )  # fmt: skip
 
 _FREE = _d.index["free_angle"]
-_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
+_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*MOTION)
 _TAU_A, _TAU_B, _TORQUE, _TWIST, _W_REL, _RATE = _d.indices(
     "flange_a.tau", "flange_b.tau", "torque", "twist", "w_rel", "twist_rate"
 )

@@ -24,31 +24,24 @@ import math
 
 import numpy as np
 
-from herringbone.components.ports import flange
-from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
+from herringbone.components.ports import MOTION, coupled_flanges, flange
+from herringbone.core import Component, Declaration, Kernels, output, parameter
 from herringbone.core.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.jit import kernel
-
-_MOTION = ("flange_a.phi", "flange_a.w", "flange_b.phi", "flange_b.w")
 
 _d = Declaration(
     "geared_shaft",
     "Massless elastic shaft with a gear ratio and an efficiency",
     [
-        input_("flange_a.phi", "rad", "angle of flange a"),
-        input_("flange_a.w", "rad/s", "angular velocity of flange a"),
-        input_("flange_b.phi", "rad", "angle of flange b"),
-        input_("flange_b.w", "rad/s", "angular velocity of flange b"),
-        output("flange_a.tau", "N.m", "torque on the body at a", feedthrough=_MOTION, nodes=True),
-        output("flange_b.tau", "N.m", "torque on the body at b", feedthrough=_MOTION, nodes=True),
-        output("torque", "N.m", "torque that flange a gives", feedthrough=_MOTION,
+        *coupled_flanges(),
+        output("torque", "N.m", "torque that flange a gives", feedthrough=MOTION,
                quantity=Quantity.TORQUE),
         output("phi_rel", "rad", "twist as seen at a",
                feedthrough=("flange_a.phi", "flange_b.phi")),
         output("w_rel", "rad/s", "rate of the twist", feedthrough=("flange_a.w", "flange_b.w"),
                steady="zero"),
-        output("loss_power", "W", "power taken by damping and efficiency", feedthrough=_MOTION,
+        output("loss_power", "W", "power taken by damping and efficiency", feedthrough=MOTION,
                quantity=Quantity.LOSS_POWER),
         parameter("ratio", "1", "speed of a over speed of b", 1.0, minimum=1e-6),
         parameter("efficiency", "1", "power out over power in", 1.0, minimum=0.01, maximum=1),
@@ -60,12 +53,12 @@ _d = Declaration(
         parameter("smooth_speed", "rad/s", "speed at a below which losses fade", 1.0,
                   minimum=1e-6),
     ],
-    work=steppers.element_work(len(_MOTION)),
+    work=steppers.element_work(len(MOTION)),
     roles=[Role.COUPLING],
     ports=[flange("flange_a"), flange("flange_b")],
 )  # fmt: skip
 
-_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*_MOTION)
+_PHI_A, _W_A, _PHI_B, _W_B = _d.indices(*MOTION)
 _TAU_A, _TAU_B, _TORQUE, _PHI_REL, _W_REL, _LOSS = _d.indices(
     "flange_a.tau", "flange_b.tau", "torque", "phi_rel", "w_rel", "loss_power"
 )
