@@ -131,6 +131,19 @@ def test_misbehaviour(systems, monkeypatch, tmp_path, fmi, place, deed):
     check(systems[fmi], monkeypatch, tmp_path, place, deed)
 
 
+def test_endless_recursion_without_a_limit_of_the_stack(systems, monkeypatch, tmp_path):
+    """It ends in the cell, not when the machine's memory is full."""
+    resource = pytest.importorskip("resource")
+    soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
+    if hard != resource.RLIM_INFINITY:
+        pytest.skip("the stack is limited here")
+    resource.setrlimit(resource.RLIMIT_STACK, (hard, hard))
+    try:
+        check(systems[2], monkeypatch, tmp_path, Place.LATE_STEP, Deed.OVERFLOW)
+    finally:
+        resource.setrlimit(resource.RLIMIT_STACK, (soft, hard))
+
+
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_crash_in_trials_is_an_outcome_of_the_run(systems, monkeypatch, fmi):
     """What trials do not survive, the run does not survive either; it says so."""

@@ -29,6 +29,8 @@ from herringbone.cosim.fmu.part import FmuPart
 _SLEEP = 1.0
 _LOOK = 0.25
 """Seconds between looks at whether the master lives."""
+_STACK = 1 << 28
+"""Bytes of stack where the surroundings set no limit."""
 _KNOWN = set(FUNCTIONS.names or ())
 _SIMPLE = {
     "set", "get", "put_values", "get_values", "enter_initialization", "exit_initialization",
@@ -164,10 +166,18 @@ def watch(master: int, server: Server) -> None:
     os._exit(1)
 
 
+def limit_stack() -> None:
+    """Endless recursion shall be a signal; without a limit it fills the machine's memory first."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
+    if soft == resource.RLIM_INFINITY:
+        resource.setrlimit(resource.RLIMIT_STACK, (_STACK, hard))
+
+
 def main(block: int, capacity: int, master: int, code: Path, folder: str) -> None:
     """Serve one master."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit_stack()
     functions = loaded(code)
     leave_modes()
     use_adapters({name: functions.address(name) for name in ADAPTERS})
