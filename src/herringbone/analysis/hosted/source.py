@@ -10,10 +10,15 @@ change a bit.
 elastic coordinate is accelerated, and that shafts carry their initial torques. The whole turns with
 the start speed, and is accelerated by what is left over of the torques. The angle stays 0. It is
 searched with the teeth in contact on the drive flank, then on the coast flank.
+
+**Periodic start.** From there the motion is searched that repeats itself every mesh period, while
+the whole turns evenly; see `kernels.periodic_motion`.
 """
 
+import math
 from dataclasses import dataclass
 
+from herringbone.analysis.hosted.declaration import AS_SET, PERIODIC
 from herringbone.analysis.twin.composite_source import OwnLines
 
 
@@ -53,6 +58,11 @@ class StartPlaces:
         unknowns, sizes: elastic coordinates, and their usual sizes.
         rows: states whose derivatives are to vanish.
         state_sizes: usual sizes of all states.
+        coordinates, coordinate_sizes: elastic coordinates and the angle, each with its rate among
+            the states, and their usual sizes.
+        turning: states that are angles which turn evenly.
+        free: place of the angle among the coordinates if nothing holds it; else -1.
+        teeth: number of teeth that the angle is counted by, in the blocks of the parts.
         speed: state of the pinion's speed.
         initial_speed: parameter; -1: the first shaft gives it.
         start_mode, flank, inner_step, step_start, stepping, degree: as in the declaration.
@@ -71,6 +81,11 @@ class StartPlaces:
     sizes: tuple[float, ...]
     rows: tuple[int, ...]
     state_sizes: tuple[float, ...]
+    coordinates: tuple[tuple[int, int], ...]
+    coordinate_sizes: tuple[float, ...]
+    turning: tuple[int, ...]
+    free: int
+    teeth: int
     speed: int
     initial_speed: int
     start_mode: int
@@ -91,15 +106,20 @@ _KERNELS = """
 
 from herringbone.kernels.adaptive import LARGEST
 from herringbone.kernels.newton import NOT_FOUND, SETTLED, newton_solver
+from herringbone.kernels.periodic_motion import periodic_motion
 from herringbone.kernels.spectral_radius import spectral_radius
 
 UNKNOWNS = {unknowns!r}
 SIZES = {sizes!r}
 STATE_SIZES = {state_sizes!r}
+COORDINATES = {coordinates!r}
+COORDINATE_SIZES = {coordinate_sizes!r}
 ROWS = {rows!r}
 DERIVATIVES = {derivatives}
 TRIALS = (0.0, 3.0, 15.0)
 PART = 2.0
+NO_VIBRATION = 2
+TURN = {turn!r}
 
 
 @kernel
@@ -157,12 +177,29 @@ def on_flank(b: np.ndarray, t: float, flank: float) -> int:
     return NOT_FOUND
 
 
+vibrate = periodic_motion(
+    system_rhs, COORDINATES, COORDINATE_SIZES, {turning!r}, {free}, {states}, {scratch}, "{owner}"
+)
+
+
+@kernel
+def vibrating(b: np.ndarray) -> int:
+    teeth, w = b[{first} + {teeth}], b[{speed}]
+    if w == 0.0 or teeth == 0.0:
+        return SETTLED
+    degree = b[{degree}]
+    b[{stepping}], b[{degree}] = 1.0, 0.0
+    status = vibrate(b, TURN / abs(teeth * w))
+    b[{stepping}], b[{degree}] = 0.0, degree
+    return status
+
+
 @kernel
 def settle(b: np.ndarray, t: float) -> int:
     blocks = b[{first}:]
     status = SETTLED
     b[{step_start}] = t
-    if b[{start_mode}] == 0.0:
+    if b[{start_mode}] == {as_set_mode}:
         b[{flank}] = 1.0
 {as_set}    else:
         status = on_flank(b, t, 1.0)
@@ -172,6 +209,8 @@ def settle(b: np.ndarray, t: float) -> int:
             b[{flank}] = 1.0
             undeformed(b, t)
             twisted(b, t)
+        elif b[{start_mode}] == {periodic} and vibrating(b) != SETTLED:
+            status = NO_VIBRATION
     fastest = radius(b, t)
     b[{inner_step}] = LARGEST
     if fastest > 0.0:
@@ -255,6 +294,16 @@ def _start(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> str:
         flank=s.flank,
         inner_step=s.inner_step,
         state_sizes=s.state_sizes,
+        coordinates=s.coordinates,
+        coordinate_sizes=s.coordinate_sizes,
+        turning=s.turning,
+        free=s.free,
+        teeth=s.teeth,
+        stepping=s.stepping,
+        degree=s.degree,
+        turn=2.0 * math.pi,
+        periodic=float(PERIODIC),
+        as_set_mode=float(AS_SET),
         guess_count=len(s.guesses),
         forces="".join(f"            force += blocks[{i}]\n" for i in s.forces),
         step_start=s.step_start,
