@@ -29,7 +29,7 @@ class Killed(BaseException):
 def often(monkeypatch):
     """Rows leave the memory, and checkpoints are taken, after every chunk of the loop."""
     monkeypatch.setattr(checkpoints, "SECONDS", 0.0)
-    monkeypatch.setattr("herringbone.cosim.stream._SELDOM", 0.0)
+    monkeypatch.setattr("herringbone.cosim.rows.stream._SELDOM", 0.0)
     monkeypatch.setattr(os, "fsync", lambda descriptor: None)  # no machine loses its power here
     monkeypatch.setattr("herringbone.plotting.write_pictures", lambda result, folder: [])
 
@@ -189,7 +189,7 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
         raise Killed
 
     with monkeypatch.context() as patched:
-        patched.setattr("herringbone.running.report.write_csv", die)
+        patched.setattr("herringbone.running.reporting.report.write_csv", die)
         with pytest.raises(Killed):
             main([*RIG, "-o", str(folder)])
     assert hb.load(folder).outcome.completed

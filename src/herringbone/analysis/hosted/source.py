@@ -86,7 +86,7 @@ class StartPlaces:
 
 _KERNELS = """
 
-from herringbone.kernels.newton import NOT_FOUND, SETTLED, newton_solver
+from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED, newton_solver
 
 UNKNOWNS = {unknowns!r}
 SIZES = {sizes!r}

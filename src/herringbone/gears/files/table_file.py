@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 from herringbone.core import HerringboneError
-from herringbone.core.roles import SIDES
+from herringbone.core.declaring.roles import SIDES
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 
 class Table(NamedTuple):
