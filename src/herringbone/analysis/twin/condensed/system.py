@@ -84,8 +84,12 @@ class Condensed:
         for first, (instance, laws) in zip(calls.value, self._parts(), strict=False):
             value += [int(first) + v for v in laws.stiff]
             mean += laws.mean(instance.block).tolist()
+        rows, arguments = np.nonzero(self.modes.tangent)
+        first = np.searchsorted(rows, np.arange(len(self.modes.tangent) + 1))
         return Table(
-            self.modes.tangent,
+            first.astype(np.int64),
+            arguments.astype(np.int64),
+            self.modes.tangent[rows, arguments],
             np.array(value, dtype=np.int64),
             np.array(mean, dtype=float),
             unknown,
