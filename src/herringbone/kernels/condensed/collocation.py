@@ -133,6 +133,25 @@ def _bent(table: Table, nodes: Nodes, room: Room) -> int:
 
 
 @inlined
+def _bend_rows(
+    nodes: Nodes, along: np.ndarray, room: Room, t: int, first: int, mean: float
+) -> None:
+    """Add what one tangent's differences from its mean make of the rows from the first one on."""
+    inner, matrix, r = len(nodes.z), room.matrix, room.r
+    for i in range(inner):
+        rest = nodes.k[i, t] - mean
+        row = first + i
+        for unknown in range(room.row.size):
+            at = room.row[unknown]
+            for n in range(inner):
+                column = unknown * inner + n
+                if at >= 0:
+                    matrix[row, at * inner + n] -= rest * along[i, t, column]
+                elif r[column] != 0.0:
+                    room.right[row] += rest * along[i, t, column] * r[column]
+
+
+@inlined
 def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
     """Replace residuals by the corrections of the inputs, by one step of Newton.
 
@@ -148,26 +167,13 @@ def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
     count = _bent(table, nodes, room)
     matrix, right, r = room.matrix, room.right, room.r
     for k in range(count * inner):
+        right[k] = r[room.bent[k // inner] * inner + k % inner]
         for j in range(count * inner):
             matrix[k, j] = 1.0 if k == j else 0.0
-    for k in range(count):
-        for i in range(inner):
-            right[k * inner + i] = r[room.bent[k] * inner + i]
     for t in range(table.value.size):
         place = room.row[table.unknown[table.value[t]]]
-        if place < 0:
-            continue
-        for i in range(inner):
-            rest = nodes.k[i, t] - table.mean[t]
-            row = place * inner + i
-            for unknown in range(room.row.size):
-                at = room.row[unknown]
-                for n in range(inner):
-                    column = unknown * inner + n
-                    if at >= 0:
-                        matrix[row, at * inner + n] -= rest * along[i, t, column]
-                    elif r[column] != 0.0:
-                        right[row] += rest * along[i, t, column] * r[column]
+        if place >= 0:
+            _bend_rows(nodes, along, room, t, place * inner, table.mean[t])
     solve(matrix, right, count * inner)
     for k in range(count):
         for i in range(inner):

@@ -31,10 +31,14 @@ _call_signals = c_call("address", "real")
 
 
 @inlined
-def _call_laws(calls: Calls, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
-    """Values, tangents and indicators of all laws at their arguments."""
+def _call_laws(
+    calls: Calls, t: float, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray
+) -> None:
+    """Values, tangents and indicators of all laws at their arguments and a time [s]."""
     blocks = calls.blocks.ctypes.data
     for p in range(calls.law.size):
+        if calls.clock[p] >= 0:
+            calls.blocks[calls.clock[p]] = t
         _call_law(
             calls.law[p],
             (
@@ -121,6 +125,8 @@ def _solve_step(
     table: Table,
     nodes: Nodes,
     state: State,
+    t: float,
+    h: float,
     u: np.ndarray,
     free: np.ndarray,
     room: Room,
@@ -132,6 +138,7 @@ def _solve_step(
     Args:
         calls, fixed, table, nodes, state: of the march.
         of_inputs, along: of the rung.
+        t, h: start and length of the step [s].
         u: inputs of the step.
         free: arguments at all nodes without the laws' inputs.
         room, v, chosen: room for the iteration.
@@ -142,7 +149,14 @@ def _solve_step(
         copy(free, z)
         add_chosen(of_inputs, v, chosen, _differences(u, inner + 1, 0, values, v, chosen), z)
         for i in range(inner):
-            _call_laws(calls, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
+            _call_laws(
+                calls,
+                t + h * fixed.nodes[i + 1],
+                nodes.z[i],
+                nodes.f[i],
+                nodes.k[i],
+                nodes.e[i + 1],
+            )
         state.counted[EVALUATIONS] += 1
         residual = residuals(table, nodes, u, room.r)
         correct(table, nodes, along, room)
@@ -171,13 +185,13 @@ def _keep(
 
 
 @kernel
-def begin(calls: Calls, table: Table, nodes: Nodes, u: np.ndarray) -> None:
+def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> None:
     """Write the laws' inputs at the end of a step in `u`, and their indicators at the start.
 
-    From the arguments, which stand in `nodes.z[0]`.
+    From the arguments at the time t [s], which stand in `nodes.z[0]`.
     """
     count = len(nodes.e)
-    _call_laws(calls, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
+    _call_laws(calls, t, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
     for value in range(table.unknown.size):
         u[value * count + count - 1] = less_tangents(table, value, nodes.f[0, value], nodes.z[0])
 
@@ -243,8 +257,8 @@ def march(
         given = _differences(u, count, values, u.size // count, v, chosen)
         add_chosen(rungs.of_inputs[rung], v, chosen, given, free)
         solved = _solve_step(
-            calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, u, free,
-            room, v, chosen,
+            calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, t, h,
+            u, free, room, v, chosen,
         )  # fmt: skip
         bent = solved and turned(nodes)
         if rung < last and (bent or not solved):

@@ -12,6 +12,7 @@ class Calls(NamedTuple):
         blocks: the blocks of all parts, one behind the other; laws may write into theirs.
         law: (parts,) addresses of the laws.
         block: (parts,) where their blocks begin.
+        clock: (parts,) places in all blocks where they expect the time, or -1.
         argument, value, tangent, indicator: (parts + 1,) offsets.
         source: (sources,) addresses of functions that write a source's signals.
         source_block: (sources,) where their blocks begin.
@@ -21,6 +22,7 @@ class Calls(NamedTuple):
     blocks: np.ndarray
     law: np.ndarray
     block: np.ndarray
+    clock: np.ndarray
     argument: np.ndarray
     value: np.ndarray
     tangent: np.ndarray

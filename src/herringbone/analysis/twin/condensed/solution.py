@@ -38,6 +38,18 @@ _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
 
 
+class CoreStopped(HerringboneError):
+    """The laws have no solution in the shortest step, or a state is not finite.
+
+    Attributes:
+        time: at which it stops [s].
+    """
+
+    def __init__(self, message: str, time: float) -> None:
+        super().__init__(message)
+        self.time = time
+
+
 class Solution:
     """A march from the start values on.
 
@@ -100,7 +112,7 @@ class Solution:
             wanted: times in it, ascending.
 
         Raises:
-            HerringboneError: the laws have no solution in the shortest step, or it diverges.
+            CoreStopped: the laws have no solution in the shortest step, or it diverges.
         """
         self.enter(t0)
         for first in range(0, max(wanted.size, 1), _AT_ONCE):
@@ -114,7 +126,7 @@ class Solution:
         A time that never comes, infinity, leads to the end of the piece; it is left out.
 
         Raises:
-            HerringboneError: see `piece`.
+            CoreStopped: see `piece`.
         """
         samples, count = self._room(wanted), int(np.isfinite(wanted).sum())
         self.state.place[KEPT] = 0
@@ -159,7 +171,7 @@ class Solution:
         self._nodes.z[0] = (
             z + modes.of_angles @ (modes.angles + state.q[2 * m :]) + modes.of_channels @ channels
         )
-        begin(calls, self._table, self._nodes, state.u)
+        begin(calls, self._table, self._nodes, t, state.u)
 
     @property
     def _ends(self) -> np.ndarray:
@@ -206,9 +218,10 @@ class Solution:
         count, inside = self.state.place[:2]
         t = t0 + count * rungs.lengths[0] + inside * rungs.lengths[-1]
         why = "the laws have no solution" if status == NOT_CONVERGED else "a state is not finite"
-        raise HerringboneError(
+        raise CoreStopped(
             f"the condensed core of {self._system.twin.system.name} stops at {t:g} s, in a step of "
-            f"{rungs.lengths[-1]:g} s: {why}"
+            f"{rungs.lengths[-1]:g} s: {why}",
+            float(t),
         )
 
 

@@ -66,6 +66,10 @@ class Condensed:
             blocks,
             integers(law_address(instance.component.name) for instance, _ in parts),
             integers(first[p] for p in self.equations.laws),
+            integers(
+                -1 if laws.clock is None else first[p] + laws.clock
+                for p, (_, laws) in zip(self.equations.laws, parts, strict=True)
+            ),
             offsets(len(laws.arguments) for _, laws in parts),
             offsets(len(laws.values) for _, laws in parts),
             offsets(len(laws.stiff) for _, laws in parts),
