@@ -60,6 +60,14 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--no-probe", action="store_true",
         help="take foreign FMUs by what they declare, without trial steps on further instances",
     )  # fmt: skip
+    sub.add_argument(
+        "--fuse", action="store_true",
+        help="condense all parts into one core, without coupling; the step follows --tolerance",
+    )  # fmt: skip
+    sub.add_argument(
+        "--record", action="append", default=[], metavar="OUTPUTS",
+        help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
+    )  # fmt: skip
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument(
         "--verify", action="store_true", help="errors against a run with half the step"
@@ -131,6 +139,8 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
                 call_deadline=options.call_deadline,
                 reference=options.reference,
                 verify=options.verify,
+                fuse=options.fuse,
+                record=options.record,
                 progress=bar.show,
                 recorded=_Report(output, bar).write,
                 output=output,

@@ -25,6 +25,26 @@ class StepStatistics(NamedTuple):
     longest: float
 
 
+class CoreStatistics(NamedTuple):
+    """Steps of a system whose parts are fused into one core.
+
+    Attributes:
+        degree: of the polynomials of the laws.
+        step: longest base step [s].
+        steps: that were taken, of all lengths.
+        halvings: of steps in which a law bends, or was not solved.
+        evaluations: of all laws at all nodes of a step.
+        bends: located places where a law bends, such as the end of contact.
+    """
+
+    degree: int
+    step: float
+    steps: int
+    halvings: int
+    evaluations: int
+    bends: int
+
+
 @dataclass(frozen=True)
 class Recording:
     """What a run left behind.
@@ -47,6 +67,7 @@ class Recording:
         slow: bodies that step once in several macro steps, and in how many.
         others: recorded outputs of other types than real, (n,) of their own types by name.
         other_units: units of these, "" if not declared.
+        core: of a fused run, its steps.
     """
 
     time: np.ndarray
@@ -66,3 +87,4 @@ class Recording:
     slow: Mapping[str, int] = field(default_factory=dict)
     others: Mapping[str, np.ndarray] = field(default_factory=dict)
     other_units: Mapping[str, str] = field(default_factory=dict)
+    core: CoreStatistics | None = None

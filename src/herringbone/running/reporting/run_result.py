@@ -31,7 +31,7 @@ _FEWEST = 2
 def make_result(
     system: System,
     scene: Scene,
-    algorithm: Algorithm,
+    algorithm: Algorithm | str,
     fmu: str,
     recording: Recording,
     notes: Sequence[str],
@@ -62,7 +62,8 @@ def make_result(
         micro_steps={
             part: parameters[name]
             for part in known.parts
-            if (name := known.column(part, Quantity.MICRO_STEP)) in parameters
+            if recording.core is None
+            and (name := known.column(part, Quantity.MICRO_STEP)) in parameters
         },
         algorithm=str(algorithm),
         fmu=fmu,
@@ -74,6 +75,7 @@ def make_result(
         steps=recording.steps and recording.steps._asdict(),
         energy=recording.energy,
         slow=recording.slow,
+        core=recording.core and recording.core._asdict(),
         parameters=parameters,
         resources=_resources(system),
         anatomy=known,
@@ -84,7 +86,12 @@ def make_result(
 
 
 def start_of(
-    system: System, scene: Scene, algorithm: Algorithm, fmu: str, grid: Grid, notes: Sequence[str]
+    system: System,
+    scene: Scene,
+    algorithm: Algorithm | str,
+    fmu: str,
+    grid: Grid,
+    notes: Sequence[str],
 ) -> Result:
     """All that is known of a result before there are rows: what is left of a run that is killed."""
     outcome = Outcome(OutcomeKind.INTERRUPTED, 0.0)

@@ -93,8 +93,26 @@ def _energy(found: EnergyReport) -> str:
     return f"{found.verdict.value}{when}{bond}{share}"
 
 
+def _core(info: RunInfo) -> Iterator[str]:
+    """How the core of a fused run was marched."""
+    core = info.core or {}
+    yield _line("Algorithm", f"{info.algorithm}: all parts in one core, degree {core['degree']}")
+    step = f"{_time(core['step'])}, record {_time(info.record_step)}"
+    yield _line("Steps", f"at most {step}; {core['steps']} steps, {core['halvings']} halvings")
+    yield _line("", f"{core['bends']} located bends of laws, {core['evaluations']} evaluations")
+
+
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
+    if info.core:
+        yield from _core(info)
+        if reached > 0.0:
+            yield _line(
+                "Cost",
+                f"{_time(info.wall_s)} wall time for {_time(reached)} simulated, "
+                f"real-time factor {info.wall_s / reached:.3g}",
+            )
+        return
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
     yield _line("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
     yield _line("Steps", f"communication {_steps(info)}, record {_time(info.record_step)}")
