@@ -1,6 +1,5 @@
 """A whole system as one native FMU."""
 
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -9,6 +8,7 @@ from herringbone.analysis.hosted.boundary import is_gearbox
 from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.composite import make_composite
 from herringbone.core import ParameterError
+from herringbone.core.files import write_whole
 from herringbone.core.hosting import Wanted
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
@@ -78,5 +78,5 @@ def export_fmu(
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):
-        shutil.copyfile(built, file)
+        write_whole(file, built.read_bytes())
     return file
