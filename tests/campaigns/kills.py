@@ -14,68 +14,16 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 
-from support.reel import python_reel, reels
-from support.strangers import write_system
-
 import herringbone as hb
+from campaigns.kill_cases import ALL, Case, all_cases
 from herringbone.core import HerringboneError
 from herringbone.core.paths import CACHE_VARIABLE, cache_root
 
 LONGEST = 1200.0
 _LEAVE = 60.0
 """Seconds in which cells of a killed master end."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A command that is killed.
-
-    Attributes:
-        words: of the command, without its output.
-        output: name of the file or folder that it writes.
-        cold: folders of the cache that are missing at the start.
-        grows: the cache is kept from kill to kill, until the command ends before it is killed.
-    """
-
-    words: tuple[str, ...]
-    output: str = "out"
-    cold: tuple[str, ...] = ()
-    grows: bool = False
-
-    @property
-    def runs(self) -> bool:
-        """True if there are rows, and `--resume`."""
-        return self.words[0] == "run"
-
-
-ALL = ("*",)
-NATIVE = ("native-fmus", "native-libraries", "native-objects", "built-fmus", "fmus")
-
-
-def all_cases(folder: Path) -> dict[str, Case]:
-    """All cases by name; systems are written to a folder."""
-    together, plain = reels(folder), reels(folder, "plain", saves=False)
-    alone = write_system(folder, "alone", [], {"left": python_reel(folder)})
-    late = ("--set=left.holds=9000", "--set=right.holds=1e9", "--step=1e-4", "--t-end=1")
-    return {
-        "own": Case(("run", "gearbox", "--fmu=native", "--t-end=0.05")),
-        "own_python": Case(("run", "gearbox", "--fmu=python", "--t-end=0.05")),
-        "strangers": Case(("run", str(together), *late)),
-        "strangers_without_states": Case(("run", str(plain), *late)),
-        "strangers_in_process": Case(("run", str(together), *late, "--in-process")),
-        "hidden_state": Case(
-            ("run", str(alone), "--step=1e-4", "--record-step=1e-4", "--t-end=5", "--in-process",
-             "--set=left.holds=45000")
-        ),
-        "build": Case(("build", "--native", "drive_motor", "shaft_coupling"), "fmus", NATIVE),
-        "build_python": Case(("build", "drive_motor", "load_motor"), "fmus", ("fmus",)),
-        "export": Case(("export", "test_rig"), "rig.ssp"),
-        "export_fmu": Case(("export", "gearbox", "--as-fmu"), "gearbox.fmu", NATIVE, grows=True),
-        "first_compile": Case(("run", "test_rig", "--t-end=0.001"), cold=ALL, grows=True),
-    }  # fmt: skip
 
 
 class Field:
@@ -241,11 +189,6 @@ def main(count: int, seed: int, names: list[str]) -> int:
             sys.stdout.write(f"{name:26} {count:4d} {time.monotonic() - started:7.1f} s {said}\n")
             sys.stdout.flush()
     return bad
-
-
-def chance_of(seed: int, name: str) -> random.Random:
-    """Random numbers of a case."""
-    return random.Random(f"{seed} {name}")
 
 
 if __name__ == "__main__":
