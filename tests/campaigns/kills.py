@@ -181,9 +181,8 @@ def main(count: int, seed: int, names: list[str]) -> int:
         for name in names or cases:
             started = time.monotonic()
             try:
-                said = str(
-                    dict(try_case(cases[name], count, chance_of(seed, name), Path(scratch, name)))
-                )
+                chance = random.Random(f"{seed} {name}")
+                said = str(dict(try_case(cases[name], count, chance, Path(scratch, name))))
             except AssertionError as error:
                 said, bad = f"WRONG: {error}", bad + 1
             sys.stdout.write(f"{name:26} {count:4d} {time.monotonic() - started:7.1f} s {said}\n")
