@@ -67,6 +67,18 @@ def test_damaged_byte_code_is_made_anew(cache):
         assert code.read_bytes() == whole
 
 
+def test_generated_modules_of_a_moved_cache_lie_where_it_is(cache, monkeypatch):
+    """Else nothing compiles: their machine code is known by the file that they lie in."""
+    source = "def answer():\n    return 43\n"
+    name = load_generated("test", source).__name__
+    moved = cache.rename(cache.with_name("moved"))
+    monkeypatch.setenv(CACHE_VARIABLE, str(moved))
+    del sys.modules[name]
+    found = load_generated("test", source).answer
+    assert found() == 43
+    assert found.__code__.co_filename == str(moved / "generated" / f"{name}.py")
+
+
 @posix
 def test_a_new_cache_is_of_its_user_alone(cache):
     assert cache_folder("x").is_dir()

@@ -1,9 +1,62 @@
-"""Questions about files whose names come from people and files."""
+"""Files whose names come from people and files: questions about them, and writing them whole."""
 
 import contextlib
 import os
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import IO
+
+PART = ".part"
+"""Ends the name of a file that is not written to its end."""
+
+
+@contextlib.contextmanager
+def replacing(file: Path, *, text: bool = True) -> Iterator[IO]:
+    """A file to be written in the place of another one, which it takes in the end, whole.
+
+    What is no file, such as a pipe, is written as it is.
+
+    Args:
+        file: to be written.
+        text: UTF-8, lines as they are; else bytes.
+
+    Raises:
+        OSError: it cannot be written; what was there stays.
+    """
+    mode = "w" if text else "wb"
+    plain = {"encoding": "utf-8", "newline": ""} if text else {}
+    if file.exists() and not file.is_file():
+        with file.open(mode, **plain) as stream:  # type: ignore[call-overload]
+            yield stream
+        return
+    target = Path(os.path.realpath(file))
+    descriptor, name = tempfile.mkstemp(PART, f".{target.name}.", target.parent)
+    part = Path(name)
+    try:
+        with os.fdopen(descriptor, mode, **plain) as stream:  # type: ignore[call-overload]
+            yield stream
+            stream.flush()
+            os.fsync(stream.fileno())
+        part.chmod(0o666 & ~_umask())
+        part.replace(target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        raise
+
+
+def write_whole(file: Path, content: str | bytes) -> None:
+    """Write a file so that it is there whole, or as it was before; raises OSError."""
+    with replacing(file, text=isinstance(content, str)) as stream:
+        stream.write(content)
+
+
+def _umask() -> int:
+    """What a new file's permissions leave out."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
 
 
 def is_file(path: Path) -> bool:

@@ -35,7 +35,9 @@ def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | Cel
     file = Path(file)
     model = read_fmu(file)
     if own or not _needs_cell(name, file):
-        return new_part(name, file, model=model)
+        part = new_part(name, file, model=model)
+        part.own = own or is_built(file)
+        return part
     folder = extract_fmu(file)
     try:
         cell = cell_for(name, file, model, folder)

@@ -43,9 +43,14 @@ class FmuPart(ABC):
         model: its model description, if it has been read.
         folder: where it is extracted already, and stays; None: to a folder of its own.
 
+    Attributes:
+        own: this installation built the FMU, so that its state is known to be whole.
+
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
+
+    own = False
 
     @keeping_modes
     def __init__(

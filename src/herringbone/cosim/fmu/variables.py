@@ -70,6 +70,8 @@ def _element_names(variable: ModelVariable) -> list[str]:
         raise FmuError(
             f"array '{name}' has {size} elements; {_MOST_ELEMENTS} are possible at the most"
         )
+    if not size:  # other sizes may be anything
+        return []
     return [element_name(name, place) for place in product(*(range(1, n + 1) for n in shape))]
 
 

@@ -61,11 +61,16 @@ class RunRows:
         return tuple(own_unit(v) for v in self.recorded)
 
     def are_sudden(self, done: int) -> bool:
-        """True if the last of the rows has not grown: what comes next was no coupling's doing."""
-        first = self.record.first
-        rows = np.abs(self.record.values[: self.record.complete(done) - first])
-        sizes = [*(self.stream.sizes if self.stream else ()), *enumerate(rows, first)]
-        return is_sudden([(k, size) for k, size in sizes if np.isfinite(size).all()])
+        """True if the last of the rows has not grown: what comes next was no coupling's doing.
+
+        Raises HerringboneError if rows cannot be kept or read.
+        """
+        stream = self.stream
+        if stream is None or self._keeps_all:
+            rows = self.record.values[: self.record.complete(done)]
+            return is_sudden(lambda: [rows])
+        stream.flush(done)  # all rows of the run, those before it was resumed too
+        return is_sudden(lambda: (values for _, values in stream.sink.read()))
 
     def flush_in_time(self, done: int) -> None:
         """Let complete rows go, now and then; raises HerringboneError."""

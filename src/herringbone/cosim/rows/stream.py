@@ -50,7 +50,6 @@ class Stream:
     Attributes:
         rows: of the run that were handed on.
         last: time of the last one [s].
-        sizes: number of the last row, and largest magnitudes, of rows that were handed on at once.
     """
 
     def __init__(
@@ -63,7 +62,6 @@ class Stream:
     ) -> None:
         self._to, self._record, self._others, self._recorded = streaming, record, others, recorded
         self.rows, self.last, self._flushed = 0, 0.0, time.perf_counter()
-        self.sizes: list[tuple[int, np.ndarray]] = []
         types = {name: kind.name for name, kind in others.types.items()}
         units = tuple(own_unit(v) for v in recorded)
         columns = TableColumns(tuple(names), units, types, others.units)
@@ -90,7 +88,6 @@ class Stream:
         first, last = self.rows - record.first, complete - record.first
         if last > first:
             times = record.times(done)[:last]
-            self.sizes.append((complete - 1, np.abs(record.values[first:last]).max(axis=0)))
             rows = slice(first + -self.rows % self._to.every, last, self._to.every)
             others = self._others.between(self.rows, complete)[rows.start - first :: rows.step]
             if times[rows].size:

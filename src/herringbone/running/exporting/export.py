@@ -1,12 +1,12 @@
 """FMUs and systems as files for other masters."""
 
 import logging
-import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from herringbone.core import ParameterError, ResourceError
+from herringbone.core.places.files import write_whole
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.system import System
@@ -73,10 +73,10 @@ def build_fmus(
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [
-            Path(shutil.copyfile(file, folder / fmu_file_name(name, fmi)))
-            for name, file in built.items()
-        ]
+        copies = {name: folder / fmu_file_name(name, fmi) for name in built}
+        for name, file in built.items():
+            write_whole(copies[name], file.read_bytes())
+        return list(copies.values())
     except OSError as error:
         raise ResourceError(
             f"cannot write to {folder}: {error.strerror}; choose another folder"

@@ -1,6 +1,5 @@
 """A whole system as one native FMU."""
 
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -10,6 +9,7 @@ from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.composite import make_composite
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Wanted
+from herringbone.core.places.files import write_whole
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.running.exporting.export import ready, written
@@ -78,5 +78,5 @@ def export_fmu(
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):
-        shutil.copyfile(built, file)
+        write_whole(file, built.read_bytes())
     return file
