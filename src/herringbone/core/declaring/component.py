@@ -72,6 +72,8 @@ class Component:
             a kernel, or `unchanged`.
         guess: puts the states where steady rotation is searched from, when the inputs are set:
             inside the limits of a controller, where the equations are not flat.
+        motion: kernel (b) that writes the outputs that states alone decide, as `out` does; None:
+            `out` does it.
         breakpoints: times [s] at which the right-hand side is not smooth.
         indicators: kernel (b, t, z) that writes the event indicators of model exchange: the
             right-hand side is not smooth where one of them changes its sign.
@@ -101,6 +103,7 @@ class Component:
     verify: Callable[[np.ndarray, Mapping[str, Path]], None] = _no_resources
     start: Callable[[np.ndarray], None] = unchanged
     guess: Callable[[np.ndarray], None] = unchanged
+    motion: Callable[[np.ndarray], None] | None = None
     breakpoints: Callable[[np.ndarray], tuple[float, ...]] = _no_breakpoints
     indicators: Callable[[np.ndarray, float, np.ndarray], None] | None = None
     indicator_count: int = 0

@@ -5,8 +5,13 @@ formula of order 3 costs nothing: with the stages k1 ... k4 and k5 = f(x(t + h))
 (1/6, 1/3, 1/3, 1/15, 1/10) fulfil its conditions (E. Hairer, S. P. Norsett, G. Wanner, Solving
 Ordinary Differential Equations I, 1993, section II.4); the estimate is h (k4 - k5) / 10.
 
-The estimate of a state counts by its usual size, or by its value if that is larger; of an angle
-that grows by its usual size alone, and of a state vector by its largest element.
+The estimate of a state counts by the largest one of its kind, those of the same unit and usual
+size, or by that size if it is larger: a velocity that passes zero needs no better. An angle that
+grows counts by its usual size alone, and a state vector by its largest element.
+
+No inner step is longer than the longest one that the caller keeps in the block: beyond the
+stability limit, 2.8 over the largest eigenvalue (Hairer and Wanner, Solving Ordinary Differential
+Equations II, 1996, section IV.2), an error is seen only when it has grown.
 """
 
 import math
@@ -15,6 +20,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
+from herringbone.core.declaring.variable import Variable
 from herringbone.kernels.compiling.jit import inner, kernel
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
@@ -33,7 +39,7 @@ _FLOOR = 1e-12
 
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
-    return 5 * state_count + (STRIDE + 1) * input_count
+    return 7 * state_count + (STRIDE + 1) * input_count
 
 
 @kernel
@@ -54,8 +60,13 @@ def factor(error: float) -> float:
     return max(_LESS, min(_MORE, _SAFETY / math.sqrt(math.sqrt(error))))
 
 
+def _kind(v: Variable) -> tuple[str, float, bool]:
+    """What the error of a state is measured by; the last one: by its usual size alone."""
+    return v.unit, v.nominal, v.steady == "rotating"
+
+
 def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
-    rhs: Rhs, out: Out, declaration: Declaration, next_step: str
+    rhs: Rhs, out: Out, declaration: Declaration, next_step: str, longest_step: str
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
 
@@ -63,6 +74,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         rhs, out: kernels.
         declaration: of the component.
         next_step: name of the local that keeps the length of the next inner step [s].
+        longest_step: name of the local that no inner step is longer than [s].
 
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
@@ -71,15 +83,17 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     """
     n, visible = declaration.state_count, len(declaration.states)
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
-    following = declaration.index[next_step]
-    sizes = tuple(v.nominal for v in declaration.states)
+    following, longest = declaration.indices(next_step, longest_step)
+    kinds = list(dict.fromkeys(_kind(v) for v in declaration.states))
+    kind_of = tuple(kinds.index(_kind(v)) for v in declaration.states)
+    sizes, kind_count = tuple(size for _, size, _ in kinds), len(kinds)
     grows = tuple(float(v.steady != "rotating") for v in declaration.states)
     ends, at_vector = [], visible
     for vector in declaration.vectors:
         at_vector += vector.capacity
         ends.append(at_vector)
     vectors = tuple(ends)
-    x0, slope, first, last, at = n, 2 * n, 3 * n, 4 * n, 5 * n
+    x0, slope, first, last, size_of, error_of_kind, at = (k * n for k in range(1, 8))
 
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
 
@@ -87,9 +101,14 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     def error_of(b: np.ndarray, w: np.ndarray, hs: float) -> float:
         """Error of the step, by the sizes of the states."""
         worst = 0.0
+        for kind in range(kind_count):
+            w[size_of + kind], w[error_of_kind + kind] = sizes[kind], 0.0
         for i in range(visible):
-            size = max(sizes[i], grows[i] * abs(b[i]))
-            worst = worse(worst, abs(w[last + i] - w[i]) / size)
+            of = kind_of[i]
+            w[size_of + of] = max(w[size_of + of], grows[i] * abs(b[i]))
+            w[error_of_kind + of] = worse(w[error_of_kind + of], abs(w[last + i] - w[i]))
+        for kind in range(kind_count):
+            worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
         begin = visible
         for v in range(len(vectors)):
             size, error = _FLOOR, 0.0
@@ -145,7 +164,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                 for i in range(n):
                     w[first + i] = w[i]
                 if count > 1.0 or ahead > b[following]:
-                    b[following] = min(ahead, LARGEST)
+                    b[following] = min(ahead, b[longest])
             else:
                 for i in range(n):
                     b[i] = w[x0 + i]
