@@ -45,9 +45,9 @@ from herringbone.core import (
     output,
     parameter,
 )
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import modal
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG
 

@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.adaptive import worse
-from herringbone.kernels.jit import inner
+from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.steppers import Rhs
+from herringbone.kernels.stepping.adaptive import worse
 
 _PART = 1e-3
 """Displacement of a state over its usual size."""

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from herringbone.kernels.complex_solve import complex_solve
-from herringbone.kernels.jit import kernel
-from herringbone.kernels.newton import NOT_FOUND, SETTLED
-from herringbone.kernels.periodic_motion import periodic_motion, periodic_scratch
+from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.periodic.complex_solve import complex_solve
+from herringbone.kernels.periodic.motion import periodic_motion, periodic_scratch
+from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED
 
 OMEGA, ZETA, FORCE = 1000.0, 0.05, 4.0
 STATES = 4

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.spectral_radius import radius_scratch, spectral_radius
 
 SLOW, FAST, ZETA = 10.0, 3000.0, 0.02

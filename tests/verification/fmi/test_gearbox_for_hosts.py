@@ -16,10 +16,10 @@ from fmpy.validation import validate_fmu
 from support.fmi2_host import Fmi2Host
 
 from herringbone.core import ParameterError
-from herringbone.core.hosting import Given, Wanted
+from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
-from herringbone.running.system_fmu import export_fmu
+from herringbone.running.exporting.system_fmu import export_fmu
 
 RATIO, SPEED = 3.0, 1000.0 * math.pi / 30.0
 """Teeth 81/27; 1000 r/min in rad/s."""

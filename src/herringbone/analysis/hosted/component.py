@@ -42,15 +42,15 @@ from herringbone.core import (
     parameter,
 )
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.hosting import Given, Wanted
-from herringbone.core.roles import Quantity
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.hosting import Given, Wanted
+from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
-from herringbone.kernels.adaptive import LONGEST_STEP, adaptive_stepper
-from herringbone.kernels.jit import inner
-from herringbone.kernels.newton import newton_scratch
-from herringbone.kernels.periodic_motion import periodic_scratch
+from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.periodic.motion import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
+from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper
+from herringbone.kernels.stepping.newton import newton_scratch
 
 _TOLERANCE = 1e-3
 EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)

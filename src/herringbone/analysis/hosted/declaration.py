@@ -12,11 +12,11 @@ from herringbone.analysis.twin.composite_parts import (
     vectors_of,
 )
 from herringbone.core import Declaration, Instance, Variable, local, output, parameter, state
-from herringbone.core.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.hosting import Given
-from herringbone.core.roles import Port, PortKind, Quantity
-from herringbone.core.variable import NODES, Causality, Variability
-from herringbone.kernels.adaptive import FIRST, LARGEST, adaptive_work
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.hosting import Given
+from herringbone.core.declaring.roles import Port, PortKind, Quantity
+from herringbone.core.declaring.variable import NODES, Causality, Variability
+from herringbone.kernels.stepping.adaptive import FIRST, LARGEST, adaptive_work
 
 AS_SET, EQUILIBRIUM, PERIODIC = range(3)
 """Start modes."""

@@ -21,9 +21,9 @@ from herringbone.analysis.hosted.source import FlangePlaces, StartPlaces
 from herringbone.analysis.twin.composite_parts import Parts, full_name
 from herringbone.analysis.twin.composite_source import BlockMap
 from herringbone.core import Declaration, Variable
-from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.roles import GEARS, Quantity
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.roles import GEARS, Quantity
+from herringbone.core.declaring.variable import Causality
 
 _SIZES = {"m": 1e-6, "rad": 1e-3, "kg^1/2.m": 1e-6}
 """Usual sizes of elastic coordinates."""

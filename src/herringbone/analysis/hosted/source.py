@@ -12,7 +12,7 @@ the start speed, and is accelerated by what is left over of the torques. The ang
 searched with the teeth in contact on the drive flank, then on the coast flank.
 
 **Periodic start.** From there the motion is searched that repeats itself every mesh period, while
-the whole turns evenly; see `kernels.periodic_motion`.
+the whole turns evenly; see `kernels.periodic.motion`.
 """
 
 import math
@@ -104,9 +104,9 @@ class StartPlaces:
 
 _KERNELS = """
 
-from herringbone.kernels.adaptive import LARGEST
-from herringbone.kernels.newton import NOT_FOUND, SETTLED, newton_solver
-from herringbone.kernels.periodic_motion import periodic_motion
+from herringbone.kernels.periodic.motion import periodic_motion
+from herringbone.kernels.stepping.adaptive import LARGEST
+from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED, newton_solver
 from herringbone.kernels.spectral_radius import spectral_radius
 
 UNKNOWNS = {unknowns!r}
