@@ -17,7 +17,7 @@ from herringbone.analysis.hosted.declaration import (
     own_states,
     rotation,
 )
-from herringbone.analysis.hosted.source import FlangePlaces, StartPlaces
+from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
 from herringbone.analysis.twin.composite_parts import Parts, full_name
 from herringbone.analysis.twin.composite_source import BlockMap
 from herringbone.core import Declaration, Variable
