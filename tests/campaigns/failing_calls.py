@@ -24,8 +24,8 @@ from support.c_fmu import compiler
 import herringbone as hb
 from herringbone import plotting
 from herringbone.commands.main import main
-from herringbone.cosim import stream
 from herringbone.cosim.checkpoint import checkpoints
+from herringbone.cosim.rows import stream
 
 HERE = Path(__file__).resolve().parent
 KINDS = {

@@ -19,7 +19,7 @@ from pathlib import Path
 import herringbone as hb
 from campaigns.kill_cases import ALL, Case, all_cases
 from herringbone.core import HerringboneError
-from herringbone.core.paths import CACHE_VARIABLE, cache_root
+from herringbone.core.places.paths import CACHE_VARIABLE, cache_root
 
 LONGEST = 1200.0
 _LEAVE = 60.0

@@ -19,8 +19,8 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
 from herringbone.core import Outcome, OutcomeKind, ParameterError
-from herringbone.core.files import is_folder
-from herringbone.running.progress import Bar
+from herringbone.core.places.files import is_folder
+from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
@@ -60,6 +60,14 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--no-probe", action="store_true",
         help="take foreign FMUs by what they declare, without trial steps on further instances",
     )  # fmt: skip
+    sub.add_argument(
+        "--fuse", action="store_true",
+        help="condense all parts into one core, without coupling; the step follows --tolerance",
+    )  # fmt: skip
+    sub.add_argument(
+        "--record", action="append", default=[], metavar="OUTPUTS",
+        help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
+    )  # fmt: skip
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument(
         "--verify", action="store_true", help="errors against a run with half the step"
@@ -84,7 +92,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.running.summary import summary_text  # noqa: PLC0415
+    from herringbone.running.reporting.summary import summary_text  # noqa: PLC0415
 
     if options.resume is None and options.system is None:
         raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")
@@ -131,6 +139,8 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
             call_deadline=options.call_deadline,
             reference=options.reference,
             verify=options.verify,
+            fuse=options.fuse,
+            record=options.record,
             progress=bar.show,
             recorded=_Report(output, bar).write,
             output=output,

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from herringbone.commands.output import check_writable, show
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.files import write_whole
-from herringbone.core.paths import systems_folder
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
+from herringbone.core.places.files import write_whole
+from herringbone.core.places.paths import systems_folder
 
 
 class Template(NamedTuple):

@@ -10,7 +10,7 @@ import pytest
 from herringbone.core import ResourceError
 from herringbone.core.caching.files import is_stored, keep, kept, store, stored_files, write_file
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.paths import CACHE_VARIABLE, cache_folder
+from herringbone.core.places.paths import CACHE_VARIABLE, cache_folder
 
 posix = pytest.mark.skipif(os.name == "nt", reason="owners and modes of POSIX")
 ROOT = hasattr(os, "getuid") and os.getuid() == 0

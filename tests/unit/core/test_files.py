@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from herringbone.core.files import replacing, write_whole
+from herringbone.core.places.files import replacing, write_whole
 
 OLD, NEW = "old\n" * 1000, "new, and longer\n" * 100000
 
@@ -33,7 +33,7 @@ def test_posix(tmp_path):
     """A killed process; a link, which stays one; permissions as of any new file; a pipe."""
     write_whole(tmp_path / "x", OLD)
     kill = (
-        "import os; from pathlib import Path; from herringbone.core.files import replacing\n"
+        "import os; from pathlib import Path; from herringbone.core.places.files import replacing\n"
         f"with replacing(Path({str(tmp_path / 'x')!r})) as stream:\n"
         "    stream.write('new' * 100000); os.kill(os.getpid(), 9)\n"
     )

@@ -21,14 +21,14 @@ from support.parts import (
 )
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.declaring.table import KeptRows
 from herringbone.core.part import closing_all
-from herringbone.core.table import KeptRows
 from herringbone.cosim import run
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.divergence import is_sudden
 from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.system import System
 
 PROBLEM = TwoMass(zeta=0.05)

@@ -131,7 +131,7 @@ def test_killed_while_the_report_is_written(tmp_path, monkeypatch):
         raise Killed
 
     with monkeypatch.context() as patched:
-        patched.setattr("herringbone.running.report.write_csv", die)
+        patched.setattr("herringbone.running.reporting.report.write_csv", die)
         with pytest.raises(Killed):
             main([*RIG, "-o", str(folder)])
     assert hb.load(folder).outcome.completed

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import OutcomeKind
-from herringbone.core.files import replacing
+from herringbone.core.places.files import replacing
 
 _TOLERANCE = re.compile(r"(tolerance=)[^,]+")
 MARKS = {">": "no larger step was tried", "!": "the next larger one failed"}

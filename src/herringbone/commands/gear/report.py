@@ -6,7 +6,7 @@ from pathlib import Path
 from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.core import HerringboneError
-from herringbone.core.files import write_whole
+from herringbone.core.places.files import write_whole
 from herringbone.gears.files.read_job import read_job
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob

@@ -12,7 +12,7 @@ from types import CodeType, ModuleType
 
 from herringbone.core.caching.files import read_stored, store, write_file
 from herringbone.core.caching.keys import digest_of
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 
 _PYTHON = f"{sys.implementation.cache_tag}-{importlib.util.MAGIC_NUMBER.hex()}"
 _LOG = logging.getLogger("herringbone")

@@ -9,8 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from herringbone.core.errors import HerringboneError, ResourceError, reason
-from herringbone.core.files import is_file, is_folder
 from herringbone.core.names import shown
+from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.reading.texts import DAMAGE, MEBIBYTE
 
 _MOST_ENTRIES: Final = 65_535

@@ -8,7 +8,7 @@ from typing import TypeVar
 from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
-from herringbone.core.temporary import remove_temporary_folder
+from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.cell.housing import applied as applied_in_cell
 from herringbone.cosim.cell.housing import cell_for, give_back
 from herringbone.cosim.cell.part import CellPart

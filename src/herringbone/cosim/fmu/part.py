@@ -13,7 +13,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
-from herringbone.core.temporary import remove_temporary_folder
+from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.log import FmuLog

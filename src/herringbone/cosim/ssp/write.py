@@ -20,8 +20,8 @@ from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from herringbone.core import StructureError
-from herringbone.core.files import replacing
 from herringbone.core.part import Part
+from herringbone.core.places.files import replacing
 from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import STRUCTURE_FILE
 from herringbone.cosim.ssp.osp_structure import OSP_FILE, osp_structure

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import HerringboneError, ResourceError
-from herringbone.core.files import write_whole
+from herringbone.core.places.files import write_whole
 from herringbone.core.reading.numbers import number
 from herringbone.core.reading.texts import lines_of, read_text
 from herringbone.gears.accuracy.deviations import ToothDeviations

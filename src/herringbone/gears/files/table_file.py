@@ -4,8 +4,8 @@ import math
 from pathlib import Path
 
 from herringbone.core import HerringboneError
-from herringbone.core.files import write_whole
-from herringbone.core.roles import SIDES
+from herringbone.core.declaring.roles import SIDES
+from herringbone.core.places.files import write_whole
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 

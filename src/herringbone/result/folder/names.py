@@ -3,7 +3,7 @@
 from enum import StrEnum
 from pathlib import Path
 
-from herringbone.core.files import PART
+from herringbone.core.places.files import PART
 
 FORMAT = 1
 """Version of the folder's format; readers take this one and older ones."""

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from herringbone.core import HerringboneError, files
+from herringbone.core import HerringboneError
+from herringbone.core.places import files
 
 _ROOM = frozenset({"No space left on device", "Disk quota exceeded", "File too large"})
 

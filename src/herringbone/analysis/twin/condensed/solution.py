@@ -1,12 +1,15 @@
 """One solution of a condensed system, piece by piece between breakpoints."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from herringbone.analysis.twin.condensed.march import (
     DONE,
+    KEPT,
     NOT_CONVERGED,
+    RUNG,
+    RUNG_WANTED,
     begin,
     call_sources,
     march,
@@ -16,29 +19,51 @@ from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
     coefficients,
-    make_rungs,
+    empty_rungs,
+    make_rung,
     powers,
     twice,
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
-from herringbone.kernels.condensed.collocation import Nodes
+from herringbone.kernels.condensed.collocation import Nodes, make_room
 
 HALVINGS = 7
 """Rungs below the base step."""
+CLOSE = 1e-8
+"""Residual of the laws' values, over their size, whose correction solves a step.
+
+Every correction makes it a thousand times smaller, or more, wherever no law bends."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
+
+
+class CoreStopped(HerringboneError):
+    """The laws have no solution in the shortest step, or a state is not finite.
+
+    Attributes:
+        time: at which it stops [s].
+    """
+
+    def __init__(self, message: str, time: float) -> None:
+        super().__init__(message)
+        self.time = time
 
 
 class Solution:
     """A march from the start values on.
 
+    Args:
+        system: to be solved.
+        degree: of the polynomials, see `rungs.LOBATTO`.
+        close: see CLOSE.
+
     Attributes:
         state: where it stands.
     """
 
-    def __init__(self, system: Condensed, degree: int) -> None:
-        self._system, self._degree = system, degree
+    def __init__(self, system: Condensed, degree: int, close: float = CLOSE) -> None:
+        self._system, self.degree = system, degree
         self._modes = modes = system.modes
         self._calls = calls = system.calls()
         self._table = system.table(calls)
@@ -48,23 +73,38 @@ class Solution:
             np.zeros((degree, calls.tangent[-1])),
             np.ones((degree + 1, calls.indicator[-1])),
         )
+        self._corrections = make_room(len(system.stiff), degree)
         nodes = np.array(LOBATTO[degree])
         offset = float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1]))
-        self._fixed = Fixed(
-            modes.of_angles, modes.of_angles @ modes.angles, _ahead(degree), nodes, offset
-        )
+        turned = np.tile(modes.of_angles @ modes.angles, degree)
+        self._fixed = Fixed(turned, _ahead(degree), nodes, offset, close)
+        start = modes.start
         self.state = State(
-            np.ascontiguousarray(modes.start.real),
-            np.ascontiguousarray(modes.start.imag),
-            np.zeros_like(modes.angles),
+            np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)]),
             np.zeros(system.equations.channels * (degree + 1)),
-            np.array([0, 0, 0, -1]),
-            np.zeros(3, dtype=np.int64),
+            np.array([0, 0, 0, -1, 0]),
+            np.zeros(4, dtype=np.int64),
         )
         self._rungs: dict[float, Rungs] = {}
 
-    def piece(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Iterator[np.ndarray]:
-        """States (n, times) at the wanted times of a piece [s], some thousand at once.
+    def saved(self) -> dict[str, np.ndarray]:
+        """What is needed to go on with the same bits; copies."""
+        more = {"scale": self._table.scale, "indicators": self._nodes.e[0]}
+        return {name: a.copy() for name, a in {**self.state._asdict(), **more}.items()}
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """Go on from there."""
+        more = {"scale": self._table.scale, "indicators": self._nodes.e[0]}
+        for name, array in {**self.state._asdict(), **more}.items():
+            array[...] = saved[name]
+
+    def enter(self, t0: float) -> None:
+        """Begin a piece at a time [s]: what came before says nothing about the laws' inputs."""
+        self.state.place[:] = 0, 0, 0, -1, 0
+        self._begin(t0)
+
+    def piece(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Iterator[Samples]:
+        """The steps around the wanted times of a piece [s], some thousand at once.
 
         Args:
             t0, t1: its ends.
@@ -72,39 +112,52 @@ class Solution:
             wanted: times in it, ascending.
 
         Raises:
-            HerringboneError: the laws have no solution in the shortest step, or it diverges.
+            CoreStopped: the laws have no solution in the shortest step, or it diverges.
         """
-        if t1 <= t0:
-            yield self._modes.states(
-                *(
-                    np.tile(now, (wanted.size, 1))
-                    for now in (self.state.x, self.state.y, self.state.angle)
-                )
-            )
-            return
-        rungs = self._rungs_of(h)
-        self.state.place[:] = 0, 0, 0, -1
-        self._begin(t0)
+        self.enter(t0)
         for first in range(0, max(wanted.size, 1), _AT_ONCE):
             chunk = wanted[first : first + _AT_ONCE]
-            # With a time that never comes the march goes on to the end of the piece.
-            whole = chunk if first + _AT_ONCE < wanted.size else np.append(chunk, np.inf)
-            samples = self._room(whole)
-            status = march(
-                self._calls, self._fixed, rungs, self._table, self._nodes, self.state, samples,
-                t0, round((t1 - t0) / h),
-            )  # fmt: skip
+            whole = first + _AT_ONCE < wanted.size
+            yield self.part(t0, t1, h, chunk if whole else np.append(chunk, np.inf))
+
+    def part(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Samples:
+        """The steps around some wanted times of a piece that was entered, after the last ones.
+
+        A time that never comes, infinity, leads to the end of the piece; it is left out.
+
+        Raises:
+            CoreStopped: see `piece`.
+        """
+        samples, count = self._room(wanted), int(np.isfinite(wanted).sum())
+        self.state.place[KEPT] = 0
+        if t1 <= t0:
+            samples.held[:] = np.concatenate([self.state.q, self._ends])
+        else:
+            rungs = self._rungs_of(h)
+            status = RUNG_WANTED
+            while status == RUNG_WANTED:
+                self._make(rungs, int(self.state.place[RUNG]))
+                status = march(
+                    self._calls, self._fixed, rungs, self._table, self._nodes, self._corrections,
+                    self.state, samples, t0, round((t1 - t0) / h),
+                )  # fmt: skip
             if status != DONE:
                 self._fail(status, t0, rungs)
-            yield self._states(samples, chunk.size)
+        return Samples(*(array[:count] for array in samples))
 
     def _rungs_of(self, h: float) -> Rungs:
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            self._rungs[h] = make_rungs(
-                self._modes, lengths, self._degree, self._system.directions, self._system.stiff
+            tangents = len(self._system.directions)
+            self._rungs[h] = empty_rungs(
+                self._modes, lengths, self.degree, tangents, len(self._system.stiff)
             )
         return self._rungs[h]
+
+    def _make(self, rungs: Rungs, rung: int) -> None:
+        if not rungs.made[rung]:
+            system = self._system
+            make_rung(rungs, rung, self._modes, self.degree, system.directions, system.stiff)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""
@@ -113,53 +166,62 @@ class Solution:
         channels = np.zeros(self._system.equations.channels)
         channels[calls.value[-1] : -1] = calls.blocks[calls.signal]
         channels[-1] = 1.0
-        z = (modes.arguments @ (state.x + 1j * state.y)).real
+        m = modes.rates.size
+        z = (modes.arguments @ (state.q[:m] + 1j * state.q[m : 2 * m])).real
         self._nodes.z[0] = (
-            z + self._fixed.offset + modes.of_angles @ state.angle + modes.of_channels @ channels
+            z + modes.of_angles @ (modes.angles + state.q[2 * m :]) + modes.of_channels @ channels
         )
-        begin(calls, self._table, self._nodes, state.u)
+        begin(calls, self._table, self._nodes, t, state.u)
+
+    @property
+    def _ends(self) -> np.ndarray:
+        """Inputs of a step that stays where the last one ended."""
+        ends = self.state.u.reshape(-1, self.degree + 1)[:, -1]
+        return np.repeat(ends, self.degree + 1)
 
     def _room(self, times: np.ndarray) -> Samples:
-        state, n = self.state, times.size
-        return Samples(
-            times,
-            np.zeros((n, state.x.size)),
-            np.zeros((n, state.x.size)),
-            np.zeros((n, state.angle.size)),
-            np.zeros((n, state.u.size)),
-            np.zeros(n),
-            np.ones(n),
-        )
+        n, size = times.size, self.state.q.size + self.state.u.size
+        return Samples(times, np.zeros((n, size)), np.zeros(n), np.ones(n))
 
-    def _states(self, samples: Samples, count: int) -> np.ndarray:
-        """States (n, count) at the first times of the samples."""
-        x, y, angle = samples.x[:count], samples.y[:count], samples.angle[:count]
-        inside = np.flatnonzero(samples.since[:count] > _GRID * samples.length[:count])
+    def states(self, samples: Samples) -> np.ndarray:
+        """States (n, times) at the times of samples."""
+        return self._modes.states(self.coordinates(samples))
+
+    def coordinates(self, samples: Samples) -> np.ndarray:
+        """What `State.q` is at the times of samples, (times, 2 modes + rotations)."""
+        q = samples.held[:, : self.state.q.size].copy()
+        inside = np.flatnonzero(samples.since > _GRID * samples.length)
         if inside.size:
-            later = self._later(samples, inside)
-            x[inside], y[inside], angle[inside] = later[0].T.real, later[0].T.imag, later[1].T
-        return self._modes.states(x, y, angle)
+            m = self._modes.rates.size
+            later, q[inside, 2 * m :] = self._later(samples, inside)
+            q[inside, :m], q[inside, m : 2 * m] = later.real, later.imag
+        return q
 
     def _later(self, samples: Samples, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and angles (..., times) at times inside of steps."""
-        modes, degree = self._modes, self._degree
-        q = (samples.x[rows] + 1j * samples.y[rows]).T
+        """Coordinates and angles (times, ...) at times inside of steps."""
+        modes, degree = self._modes, self.degree
+        m, size = modes.rates.size, self.state.q.size
+        held = samples.held[rows]
+        q = (held[:, :m] + 1j * held[:, m : 2 * m]).T
         t, length = samples.since[rows], samples.length[rows]
-        nodes = samples.u[rows].reshape(rows.size, -1, degree + 1)
+        nodes = held[:, size:].reshape(rows.size, -1, degree + 1)
         driven = np.einsum("jn,tkn->jkt", coefficients(degree), nodes)
         of_powers = modes.inputs @ driven  # powers, modes, times
         of_powers *= ((t / length) ** np.arange(degree + 1)[:, None])[:, None]
         once = powers(modes.rates[:, None], t[None, :], degree + 1)
         growth = once[0] * q + (twice(once, t) * of_powers).sum(axis=0)
-        angle = samples.angle[rows].T + (modes.turns @ growth).real
-        return np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0), angle
+        angle = held[:, 2 * m : size] + (modes.turns @ growth).real.T
+        now = np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0)
+        return now.T, angle
 
     def _fail(self, status: int, t0: float, rungs: Rungs) -> None:
         count, inside = self.state.place[:2]
         t = t0 + count * rungs.lengths[0] + inside * rungs.lengths[-1]
         why = "the laws have no solution" if status == NOT_CONVERGED else "a state is not finite"
-        raise HerringboneError(
-            f"the condensed twin stops at {t:g} s, in a step of {rungs.lengths[-1]:g} s: {why}"
+        raise CoreStopped(
+            f"the condensed core of {self._system.twin.system.name} stops at {t:g} s, in a step of "
+            f"{rungs.lengths[-1]:g} s: {why}",
+            float(t),
         )
 
 

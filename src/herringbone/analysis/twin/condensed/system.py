@@ -66,6 +66,10 @@ class Condensed:
             blocks,
             integers(law_address(instance.component.name) for instance, _ in parts),
             integers(first[p] for p in self.equations.laws),
+            integers(
+                -1 if laws.clock is None else first[p] + laws.clock
+                for p, (_, laws) in zip(self.equations.laws, parts, strict=True)
+            ),
             offsets(len(laws.arguments) for _, laws in parts),
             offsets(len(laws.values) for _, laws in parts),
             offsets(len(laws.stiff) for _, laws in parts),
@@ -84,8 +88,12 @@ class Condensed:
         for first, (instance, laws) in zip(calls.value, self._parts(), strict=False):
             value += [int(first) + v for v in laws.stiff]
             mean += laws.mean(instance.block).tolist()
+        rows, arguments = np.nonzero(self.modes.tangent)
+        first = np.searchsorted(rows, np.arange(len(self.modes.tangent) + 1))
         return Table(
-            self.modes.tangent,
+            first.astype(np.int64),
+            arguments.astype(np.int64),
+            self.modes.tangent[rows, arguments],
             np.array(value, dtype=np.int64),
             np.array(mean, dtype=float),
             unknown,
