@@ -19,8 +19,8 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
-from herringbone.core.files import is_folder
-from herringbone.running.progress import Bar
+from herringbone.core.places.files import is_folder
+from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.running.summary import summary_text  # noqa: PLC0415
+    from herringbone.running.reporting.summary import summary_text  # noqa: PLC0415
 
     if options.resume is None and options.system is None:
         raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")

@@ -13,11 +13,12 @@ from scipy.interpolate import CubicSpline
 
 from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.facts import Facts
+from herringbone.core.declaring.roles import Role
 from herringbone.core.energy_report import Diagnosis, EnergyReport
-from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any, shown
-from herringbone.core.part_path import PartPath, endings
-from herringbone.core.roles import Role
+from herringbone.core.places.files import replacing
+from herringbone.core.places.part_path import PartPath, endings
 from herringbone.result.budget import BudgetRow
 from herringbone.result.tables import pieces_of, write_csv, write_parquet
 from herringbone.result.verification import Verification
@@ -208,7 +209,7 @@ class Result(Facts):
             file: to be written.
             units: begin with a line `# units: ...`.
         """
-        with Path(file).open("w", encoding="utf-8", newline="") as stream:
+        with replacing(Path(file)) as stream:
             told = self.units if units else None
             write_csv(stream, list(self.data.columns), pieces_of(self.data), told)
 

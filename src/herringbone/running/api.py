@@ -10,7 +10,7 @@ from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm, with_tolerance
 from herringbone.cosim.cell.policy import housing_of_strangers
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -29,8 +29,8 @@ from herringbone.running.fused import (
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.progress import Progress
-from herringbone.running.run_result import compared
+from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import compared
 from herringbone.running.steps.step_search import searched, searched_tolerance
 from herringbone.running.steps.verification import (
     can_be_verified,

@@ -14,20 +14,25 @@ from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
 from herringbone.core import Outcome, OutcomeKind, ParameterError, StructureError
 from herringbone.core.activity import activity
-from herringbone.core.files import same_folder
+from herringbone.core.declaring.table import KeptRows, TableColumns
 from herringbone.core.names import matches_any
-from herringbone.core.table import KeptRows, TableColumns
+from herringbone.core.places.files import same_folder
 from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.record import Grid, UniformRecord
-from herringbone.cosim.recording import CoreStatistics, Recording
+from herringbone.cosim.rows.record import Grid, UniformRecord
+from herringbone.cosim.rows.recording import CoreStatistics, Recording
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
-from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.output.run_output import RunOutput
-from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import judged, make_result, start_of, with_coupling_row
+from herringbone.running.reporting.progress import Progress, told
+from herringbone.running.reporting.run_result import (
+    judged,
+    make_result,
+    start_of,
+    with_coupling_row,
+)
 from herringbone.scenes import Scene
 
 TOLERANCE = 1e-3

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 
 RUN = """
 import sys

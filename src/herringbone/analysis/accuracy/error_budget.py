@@ -29,7 +29,7 @@ from herringbone.analysis.stability.recommendation import (
     separation_floor,
 )
 from herringbone.components.resources.stiffness_table import read_uncertainty
-from herringbone.core.roles import SIDES, Quantity, Role
+from herringbone.core.declaring.roles import SIDES, Quantity, Role
 from herringbone.cosim.algorithms import parse_algorithm
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import TIME, Result

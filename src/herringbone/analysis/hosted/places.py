@@ -4,6 +4,7 @@ from herringbone.analysis.hosted.boundary import Boundary, HostFlange
 from herringbone.analysis.hosted.declaration import (
     FLANK,
     INITIAL_SPEED,
+    INNER_STEP,
     START_MODE,
     STEP_START,
     STEPPING,
@@ -17,12 +18,14 @@ from herringbone.analysis.hosted.source import FlangePlaces, StartPlaces
 from herringbone.analysis.twin.composite_parts import Parts, full_name
 from herringbone.analysis.twin.composite_source import BlockMap
 from herringbone.core import Declaration, Variable
-from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.roles import Quantity
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.roles import Quantity
+from herringbone.core.declaring.variable import Causality
 
 _SIZES = {"m": 1e-6, "rad": 1e-3, "kg^1/2.m": 1e-6}
 """Usual sizes of elastic coordinates."""
+_HIDDEN = 1e-6
+"""Usual size of elements of vectors, in their units."""
 
 
 def elastic_states(boundary: Boundary, parts: Parts) -> list[tuple[int, int, str] | None]:
@@ -142,10 +145,12 @@ class Places:
             unknowns=(*(own + x for x, _, _ in elastic), *offsets),
             sizes=(*(_SIZES[unit] for _, _, unit in elastic), *(_SIZES["rad"] for _ in offsets)),
             rows=tuple(own + rate for _, rate, _ in elastic),
+            state_sizes=(*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states),
             speed=index[self.boundary.name(f"der({turning})")],
             initial_speed=index.get(INITIAL_SPEED, -1),
             start_mode=index[START_MODE],
             flank=index[FLANK],
+            inner_step=index[INNER_STEP],
             step_start=index[STEP_START],
             stepping=index[STEPPING],
             degree=index[INTERFACE_DEGREE],

@@ -52,9 +52,10 @@ class StartPlaces:
         first, own, states: start of the parts' blocks, number of own states and of all.
         unknowns, sizes: elastic coordinates, and their usual sizes.
         rows: states whose derivatives are to vanish.
+        state_sizes: usual sizes of all states.
         speed: state of the pinion's speed.
         initial_speed: parameter; -1: the first shaft gives it.
-        start_mode, flank, step_start, stepping, degree: as in the declaration.
+        start_mode, flank, inner_step, step_start, stepping, degree: as in the declaration.
         guesses: by coordinate: where the search begins on the drive and on the coast flank.
         forces: mesh forces in the blocks of the parts.
         locals: pairs: local, and its place in the blocks of the parts.
@@ -69,10 +70,12 @@ class StartPlaces:
     unknowns: tuple[int, ...]
     sizes: tuple[float, ...]
     rows: tuple[int, ...]
+    state_sizes: tuple[float, ...]
     speed: int
     initial_speed: int
     start_mode: int
     flank: int
+    inner_step: int
     step_start: int
     stepping: int
     degree: int
@@ -86,13 +89,17 @@ class StartPlaces:
 
 _KERNELS = """
 
-from herringbone.kernels.newton import NOT_FOUND, SETTLED, newton_solver
+from herringbone.kernels.stepping.adaptive import LARGEST
+from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED, newton_solver
+from herringbone.kernels.spectral_radius import spectral_radius
 
 UNKNOWNS = {unknowns!r}
 SIZES = {sizes!r}
+STATE_SIZES = {state_sizes!r}
 ROWS = {rows!r}
 DERIVATIVES = {derivatives}
 TRIALS = (0.0, 3.0, 15.0)
+PART = 2.0
 
 
 @kernel
@@ -106,6 +113,7 @@ def residual(b: np.ndarray, t: float, r: np.ndarray) -> None:
 
 
 search = newton_solver(residual, UNKNOWNS, SIZES, {scratch}, "{owner}")
+radius = spectral_radius(system_rhs, STATE_SIZES, {scratch}, "{owner}")
 
 
 @kernel
@@ -164,6 +172,10 @@ def settle(b: np.ndarray, t: float) -> int:
             b[{flank}] = 1.0
             undeformed(b, t)
             twisted(b, t)
+    fastest = radius(b, t)
+    b[{inner_step}] = LARGEST
+    if fastest > 0.0:
+        b[{inner_step}] = min(LARGEST, PART / fastest)
     refresh(b)
     scatter(blocks, b[{own}:{states}])
 {starts}{keep}    return status
@@ -241,6 +253,8 @@ def _start(flanges: list[FlangePlaces], s: StartPlaces, starts: str) -> str:
         speeds=speeds,
         offsets=offsets,
         flank=s.flank,
+        inner_step=s.inner_step,
+        state_sizes=s.state_sizes,
         guess_count=len(s.guesses),
         forces="".join(f"            force += blocks[{i}]\n" for i in s.forces),
         step_start=s.step_start,

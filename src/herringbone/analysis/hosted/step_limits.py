@@ -14,7 +14,7 @@ from herringbone.analysis.hosted.boundary import HostFlange
 from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.twin.composite import Composite
 from herringbone.core import ParameterError
-from herringbone.core.hosting import Given
+from herringbone.core.declaring.hosting import Given
 from herringbone.cosim.signature.rotation import Given as Rule
 
 INERTIAS = (0.02, 0.1, 1.0)

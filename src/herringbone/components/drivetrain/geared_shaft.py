@@ -26,9 +26,9 @@ import numpy as np
 
 from herringbone.components.ports import MOTION, coupled_flanges, flange
 from herringbone.core import Component, Declaration, Kernels, Laws, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _d = Declaration(
     "geared_shaft",

@@ -27,10 +27,10 @@ import numpy as np
 
 from herringbone.components.ports import flange
 from herringbone.core import Component, Declaration, Kernels, Laws, input_, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine
-from herringbone.kernels.jit import kernel
 
 ORDERS = 6
 """Room for orders."""

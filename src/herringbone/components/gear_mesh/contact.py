@@ -8,8 +8,8 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.excitation import error, impact, turn_errors, wheel
 from herringbone.components.gear_mesh.toothed_mesh import OPEN, deviating
 from herringbone.kernels import force_law
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
-from herringbone.kernels.jit import kernel
 
 
 @kernel

@@ -13,9 +13,9 @@ from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.contact import derive, meshes
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Laws
-from herringbone.core.roles import GEARS
+from herringbone.core.declaring.roles import GEARS
 from herringbone.kernels import force_law
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _RELATIVE = 4  # differences of y and z of both sides; then angle, twists and approach
 _POSITIONS = 8

@@ -12,7 +12,7 @@ from herringbone.components.resources import (
     transmission_error,
 )
 from herringbone.core import Declaration, Text
-from herringbone.core.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.kernels import force_law, steppers, tooth_pair_law
 
 

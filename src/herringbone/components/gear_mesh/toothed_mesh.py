@@ -10,7 +10,7 @@ from herringbone.components.gear_mesh.ramp import ramp, turn_ramp
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.components.resources import tooth_deviations
 from herringbone.kernels import force_law
-from herringbone.kernels.jit import rare
+from herringbone.kernels.compiling.jit import rare
 
 OPEN = 1e-12
 """Depth [m] at which flanks that are open have their tangent stiffness."""

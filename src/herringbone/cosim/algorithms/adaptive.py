@@ -36,8 +36,8 @@ from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.ladder import FIRST, RUNGS, TICKS
 from herringbone.cosim.loops.nodes import REFRESH
 from herringbone.cosim.loops.step_error import update_scale
-from herringbone.cosim.record import Grid, GrowingRecord
-from herringbone.cosim.recording import StepStatistics
+from herringbone.cosim.rows.record import Grid, GrowingRecord
+from herringbone.cosim.rows.recording import StepStatistics
 from herringbone.cosim.structure.network import Network
 
 RESIDUAL_SHARE = 0.1

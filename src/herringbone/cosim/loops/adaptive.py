@@ -38,7 +38,7 @@ from herringbone.cosim.loops.ladder import fitting_rung
 from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
 from herringbone.cosim.loops.step_error import ORDER, step_error, update_scale
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
 """Status: the smallest step still errs too much."""

@@ -23,7 +23,7 @@ import numpy as np
 
 from herringbone.cosim.layouts.layout import HISTORY
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 
 ORDER = np.array([0, 2, 4, 4, 6])
 """Order q by degree p."""

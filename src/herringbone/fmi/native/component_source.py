@@ -7,9 +7,9 @@ from collections.abc import Container, Iterable
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.component import unbounded, unchanged
-from herringbone.core.declaration import node_name
-from herringbone.core.variable import NODES, Causality, Variability
+from herringbone.core.declaring.component import unbounded, unchanged
+from herringbone.core.declaring.declaration import node_name
+from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
 from herringbone.fmi.used_states import UsedStates

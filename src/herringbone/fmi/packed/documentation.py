@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from importlib.metadata import distribution
 
 from herringbone.core import Component, Variable
-from herringbone.core.units import quantity
-from herringbone.core.variable import Variability
+from herringbone.core.declaring.units import quantity
+from herringbone.core.declaring.variable import Variability
 from herringbone.fmi import interface
 from herringbone.fmi.native.platforms import Platform
 

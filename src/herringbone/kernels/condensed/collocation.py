@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.kernels.compiling.jit import inlined
 from herringbone.kernels.condensed.modal import solve
-from herringbone.kernels.jit import inlined
 
 
 class Table(NamedTuple):

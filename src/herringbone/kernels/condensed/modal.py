@@ -6,7 +6,7 @@ by side over rows, several columns at once, and no sum changes its order.
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.errors import reason
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import SUMMARY, State
 from herringbone.result.folder.run_file import read_run_file
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
-from herringbone.cosim.stream import Streaming
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.folder.checked_store import ReplayError
 from herringbone.result.folder.names import State, remove_results
@@ -17,7 +17,7 @@ from herringbone.result.result import Result
 from herringbone.running.output.claim import Claim, FolderLock, claimed
 from herringbone.running.output.resumed import Resumed
 from herringbone.running.output.settings import key_of, settings_of
-from herringbone.running.report import finish_report, store_result, write_summary
+from herringbone.running.reporting.report import finish_report, store_result, write_summary
 from herringbone.scenes import Scene
 
 

@@ -20,7 +20,7 @@ from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.progress import Progress
+from herringbone.running.reporting.progress import Progress
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
 

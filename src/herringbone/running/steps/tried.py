@@ -8,7 +8,7 @@ from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.accuracy.step_power import left_of, step_power
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.running.coupled import Coupled
-from herringbone.running.run_result import with_coupling_row
+from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.running.steps.verification import scaled
 
 _RUNS, _FAILURES = 20, 2

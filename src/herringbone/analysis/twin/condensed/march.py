@@ -5,6 +5,7 @@ import numpy as np
 from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
+from herringbone.kernels.compiling.jit import allocating, inlined, kernel
 from herringbone.kernels.condensed.collocation import (
     Nodes,
     Room,
@@ -16,7 +17,6 @@ from herringbone.kernels.condensed.collocation import (
     turned,
 )
 from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
-from herringbone.kernels.jit import allocating, inlined, kernel
 
 DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
 """Status of a march."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.cosim.loops.calls import c_call
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _REAL = 8
 _call_outputs = c_call("address", "real")
