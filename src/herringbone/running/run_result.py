@@ -72,6 +72,7 @@ def make_result(
         wall_s=recording.wall_seconds,
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
+        estimate=recording.estimate and recording.estimate._asdict(),
         energy=recording.energy,
         slow=recording.slow,
         parameters=parameters,
