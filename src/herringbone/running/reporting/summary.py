@@ -285,6 +285,11 @@ def _signals(result: Result) -> Iterator[str]:
 
 
 def _errors(result: Result) -> Iterator[str]:
+    if (estimate := result.info.estimate) is not None:
+        asked, coupling, inner = (100.0 * estimate[k] for k in ("asked", "coupling", "inner_steps"))
+        both = math.hypot(coupling, inner)
+        yield _line("Tolerance", f"asked {asked:.3g} %, estimated {both:.2g} %: coupling "
+                    f"{coupling:.2g} %, inner steps {inner:.2g} %")  # fmt: skip
     if result.error:
         errors = ", ".join(
             f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in result.error.items()
