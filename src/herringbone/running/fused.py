@@ -158,7 +158,8 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     tolerance = asked.tolerance or TOLERANCE
     if asked.step is None:
         return suited(core, tolerance, t_end)
-    return measured(core, Steps(asked.step, asked.degree, closeness(tolerance)), t_end)
+    steps = Steps(asked.step, asked.degree, closeness(tolerance))
+    return measured(core, steps, t_end)
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:

@@ -18,7 +18,7 @@ from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
 """The largest residual whose correction solves a step: one evaluation of the laws for most."""
-_OF_TOLERANCE = 100.0
+_OF_TOLERANCE = 50.0
 """Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
 
 
@@ -29,11 +29,13 @@ class Steps(NamedTuple):
         length: longest base step [s].
         degree: of the polynomials.
         close: see `solution.CLOSE`.
+        lean: see `march_arrays.Fixed`.
     """
 
     length: float
     degree: int
     close: float = CLOSE
+    lean: bool = True
 
 
 def closeness(tolerance: float) -> float:
@@ -115,7 +117,7 @@ class Core:
 
     def solution(self, steps: Steps) -> Solution:
         """A march from the start values on."""
-        return Solution(self._system, steps.degree, steps.close)
+        return Solution(self._system, steps.degree, steps.close, lean=steps.lean)
 
     def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
         """Values of some outputs; see `Outputs`."""
