@@ -18,7 +18,7 @@ from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
 """The largest residual whose correction solves a step: one evaluation of the laws for most."""
-_OF_TOLERANCE = 50.0
+_OF_TOLERANCE = 100.0
 """Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
 
 
