@@ -17,8 +17,8 @@ from herringbone.commands.options import (
     replacements,
     start_values,
 )
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
+from herringbone.commands.output import check_writable, limits_told, say, show
+from herringbone.core import Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
 from herringbone.running.reporting.progress import Bar
 
@@ -123,31 +123,28 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         system=Path(options.system).stem,
         resumed=resumed,
     )
-    with closing(Bar(always=False)) as bar, closing(output):
-        try:
-            result = api.run(
-                options.system,
-                **optional,
-                fmu=options.fmu,
-                replace_parts=replacements(options),
-                values=start_values(options.set),
-                gear=files.gear,
-                housing=files.housing,
-                slow=_multiples(options.slow),
-                probe=not options.no_probe,
-                in_process=options.in_process,
-                call_deadline=options.call_deadline,
-                reference=options.reference,
-                verify=options.verify,
-                fuse=options.fuse,
-                record=options.record,
-                progress=bar.show,
-                recorded=_Report(output, bar).write,
-                output=output,
-            )
-        except HerringboneError as error:
-            output.explain(error)
-            raise
+    bar = Bar(always=False)
+    with closing(bar), closing(output), output.explaining(), limits_told():
+        result = api.run(
+            options.system,
+            **optional,
+            fmu=options.fmu,
+            replace_parts=replacements(options),
+            values=start_values(options.set),
+            gear=files.gear,
+            housing=files.housing,
+            slow=_multiples(options.slow),
+            probe=not options.no_probe,
+            in_process=options.in_process,
+            call_deadline=options.call_deadline,
+            reference=options.reference,
+            verify=options.verify,
+            fuse=options.fuse,
+            record=options.record,
+            progress=bar.show,
+            recorded=_Report(output, bar).write,
+            output=output,
+        )
         result = output.complete(result)
     for note in output.notes:
         say(f"herringbone: {note}")

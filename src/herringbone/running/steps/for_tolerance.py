@@ -1,0 +1,62 @@
+"""What a run does for a tolerance: algorithm, degree, macro step, and the parts' inner steps.
+
+    asked         the relative error that the user states
+    algorithm     `li` with a macro step that follows the tolerance, where all parts can repeat a
+                  step and are of this project; of degree 3, or 4 where little error is left; with
+                  foreign parts a fixed step, found by runs (see `step_search`)
+    inner steps   of own parts, see `inner_steps`; of foreign FMUs a share of the tolerance is told
+                  in FMI's setup call
+    estimate      of both errors while the run goes on (`loops.step_error`), and by other runs
+
+What is given by name wins: an algorithm, a step (the largest one then), an inner step.
+"""
+
+from dataclasses import replace
+
+from herringbone.cosim.algorithms import LI, with_tolerance
+from herringbone.cosim.structure.system import System
+from herringbone.running.coupled import Asked
+from herringbone.running.steps.inner_steps import with_inner_steps
+
+SHARE = 0.1
+"""Of the tolerance, for the inner errors of foreign FMUs."""
+_SEARCHED = 0.25
+"""Of the tolerance, for own inner steps where runs tell the error of the coupling alone."""
+_FINE = 3e-5
+"""Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
+teeth are in contact and where they separate."""
+
+
+def for_tolerance(system: System, asked: Asked, searched: bool) -> tuple[System, Asked]:
+    """A system and what is asked of its coupling, made to suit the tolerance.
+
+    Args:
+        system: with all values.
+        asked: of the coupling.
+        searched: the step is found by runs.
+
+    Raises:
+        ParameterError: the algorithm keeps its step, and none is searched.
+    """
+    given = asked.algorithm
+    tolerance = asked.tolerance
+    if given is not None and tolerance is None:
+        tolerance = given.tolerance if isinstance(given, LI) and given.adaptive else None
+    if tolerance is None:
+        return system, asked
+    if searched:
+        found = with_inner_steps(system, _SEARCHED * tolerance)
+        notes = (*asked.notes, *found.lines)
+        return found.system, replace(asked, part_tolerance=SHARE * tolerance, notes=notes)
+    algorithm = given or LI(degree=4 if tolerance < _FINE else LI().degree)
+    algorithm = with_tolerance(algorithm, tolerance)
+    degree = algorithm.degree if isinstance(algorithm, LI) else LI().degree
+    found = with_inner_steps(system, tolerance, degree)
+    why = "" if given else f"tolerance = {tolerance:g}: {algorithm}, the cheapest for it"
+    return found.system, replace(
+        asked,
+        algorithm=algorithm,
+        inner_step=found.longest,
+        part_tolerance=SHARE * tolerance,
+        notes=(*asked.notes, *filter(None, (why,)), *found.lines),
+    )
