@@ -11,7 +11,7 @@ from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError, StructureError
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.fused import refuse_strangers
+from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.reporting.summary import summary_text
 
 
