@@ -7,6 +7,7 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.twin.fused import measured
+from herringbone.commands import chart
 from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError, StructureError
 from herringbone.cosim.interrupt import InterruptFlag
@@ -101,3 +102,14 @@ def test_half_the_step_over_the_whole_run():
     assert "whole run" in found.verification.how
     assert 1e-5 < found.verification.error < 1e-3
     assert np.isclose(found.verification.step, 5e-5)
+
+
+def test_curves_of_the_chart():
+    found = chart.measure(
+        "gearbox", algorithms=["li:degree=3"], steps=[5e-5, 1e-4], t_end=5e-3, fmu="in-process",
+        fuse=True,
+    )  # fmt: skip
+    assert found.algorithms == ("li:degree=3,iterations=1", "fused:degree=4", "fused:degree=5")
+    fine, coarse = found.of("fused:degree=4")
+    assert fine.worst < 0.2 * coarse.worst < 1e-3
+    assert coarse.passes_per_ms < fine.passes_per_ms < 40.0
