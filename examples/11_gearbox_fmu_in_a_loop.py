@@ -6,7 +6,7 @@ from pathlib import Path
 from fmpy import extract, instantiate_fmu, read_model_description
 from fmpy.model_description import ModelDescription
 
-from herringbone.running.system_fmu import export_fmu
+from herringbone.running.exporting.system_fmu import export_fmu
 
 STEP = 2e-5
 INERTIA, STIFFNESS, DAMPING = (0.1, 2.0), (6e4, 3e5), (5.0, 50.0)  # at pinion and wheel

@@ -7,7 +7,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.policy import housing_of_strangers
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform

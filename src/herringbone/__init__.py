@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from herringbone.analysis.figures.radiated_power import radiated_power
     from herringbone.core import HerringboneError, OutcomeKind
-    from herringbone.core.roles import Role
+    from herringbone.core.declaring.roles import Role
     from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
     from herringbone.cosim.structure.system import System
     from herringbone.result.folder.load import load
     from herringbone.result.result import Result
     from herringbone.running.api import run
-    from herringbone.running.export import build_fmus
+    from herringbone.running.exporting.export import build_fmus
     from herringbone.running.own_master import connections, start_values
     from herringbone.scenes import Scene
 
@@ -50,7 +50,7 @@ __all__ = [
 _WHERE = {
     "run": "herringbone.running.api",
     "load": "herringbone.result.folder.load",
-    "build_fmus": "herringbone.running.export",
+    "build_fmus": "herringbone.running.exporting.export",
     "connections": "herringbone.running.own_master",
     "start_values": "herringbone.running.own_master",
     "Predict": "herringbone.cosim.algorithms",
@@ -61,7 +61,7 @@ _WHERE = {
     "HerringboneError": "herringbone.core",
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result.result",
-    "Role": "herringbone.core.roles",
+    "Role": "herringbone.core.declaring.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "radiated_power": "herringbone.analysis.figures.radiated_power",

@@ -5,7 +5,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.units import base_exponents
+from herringbone.core.declaring.units import base_exponents
 
 NAMES = list(COMPONENTS)
 BODIES = {

@@ -13,7 +13,7 @@ from support.exchange import ExchangeHost
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.modal_data import read_mode_table
 from herringbone.core import HerringboneError, Instance
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.fmi.host import open_host
 from herringbone.fmi.native import build_native_fmus
 

@@ -12,7 +12,7 @@ from support.fmus import NAMES, H, outputs
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
-from herringbone.core.variable import NODES
+from herringbone.core.declaring.variable import NODES
 from herringbone.fmi import golden
 
 WITH_INPUTS = [name for name in NAMES if COMPONENTS[name].declaration.inputs]

@@ -12,7 +12,7 @@ import pytest
 from support.fmus import NAMES
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.component import unbounded
+from herringbone.core.declaring.component import unbounded
 
 STEPS = ("0.0", "1e-310", "1e-16", "1e3", "1e307", "inf", "nan", "-1.0")
 _FMU = """

@@ -7,7 +7,7 @@ from support.fmus import H, outputs
 
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.core import Instance
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from herringbone.gears.stiffness.slices import SliceMesh
 
 STEPS = 100

@@ -24,7 +24,8 @@ enum { OK = 0, ERROR = 3 };
 enum Place { STEP = 1, LATE_STEP, TERMINATE, FREE, INSTANTIATE, INITIALISE, SET, GET };
 enum Deed {
     EXIT = 1, ABORT, MOVE, CRASH, SAY, OVERFLOW, LOOP, LEAVE, KILL, DIVIDE, TRAP, BUS, TWICE, STOP,
-    SLEEP, TERM, DEADLOCK, FLOOD, UMASK, LOCALE, CLOSE, THREAD, ROUND, FLUSH, HANDLER, MASK
+    SLEEP, TERM, DEADLOCK, FLOOD, UMASK, LOCALE, CLOSE, THREAD, ROUND, FLUSH, HANDLER, MASK,
+    PRECISION
 };
 
 typedef struct {
@@ -91,6 +92,7 @@ static void upset(enum Deed deed) {
     case ROUND: fesetround(FE_UPWARD); break;
 #if defined(__x86_64__)
     case FLUSH: _mm_setcsr(_mm_getcsr() | 0x8040); break;
+    case PRECISION: __asm__ volatile("fldcw %0" : : "m"((unsigned short){0x007f})); break;
 #endif
     case HANDLER: for (int k = 1; k < 16; ++k) signal(k, nothing); break;
     case MASK: sigfillset(&all); sigprocmask(SIG_BLOCK, &all, NULL); break;

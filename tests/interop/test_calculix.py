@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from support.finite_elements import require_gmsh
 
 import herringbone as hb
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import write_housing
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.importers import import_housing

@@ -20,10 +20,10 @@ from fmpy.ssp.simulation import simulate_ssp
 import herringbone as hb
 from herringbone.benchmarks.other_masters import environment
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.part_path import flat_name
+from herringbone.core.places.part_path import flat_name
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.structure.system import System
-from herringbone.running.export import export_ssp
+from herringbone.running.exporting.export import export_ssp
 from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.own_master import connections
 from herringbone.running.prepared import Wishes, prepared

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from support.hostile import Deed, Place, hostile_fmu
 
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 
 cells = pytest.mark.skipif(sys.platform != "linux", reason="cells need Linux")
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="written for POSIX")

@@ -20,13 +20,13 @@ from fmpy.ssp.ssd import read_ssd
 
 from herringbone.benchmarks.other_masters import environment
 from herringbone.core import ParameterError
-from herringbone.core.part_path import flat_name
-from herringbone.core.paths import component_folder
+from herringbone.core.places.part_path import flat_name
+from herringbone.core.places.paths import component_folder
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.ssp.write import PARAMETER_SET
 from herringbone.running.api import run
-from herringbone.running.export import export_ssp
+from herringbone.running.exporting.export import export_ssp
 from herringbone.running.loading import load_scene, load_system
 
 STEP, COUNT, EVERY = 1e-6, 400, 50

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.finite_elements import require_gmsh
 
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import default_housing
 
 require_gmsh()

@@ -9,7 +9,7 @@ import pytest
 from compile_c import COMPILER, HERE, VALGRIND, compile_c, execute
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 
 pytestmark = pytest.mark.skipif(not COMPILER, reason="no C compiler")
 

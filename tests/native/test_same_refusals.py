@@ -10,7 +10,7 @@ import pytest
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import HerringboneError, Instance, ResourceError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.fmi.host import Host
 
 FILES = [(c.name, t.name, t.start) for c in COMPONENTS.values() for t in c.declaration.texts]

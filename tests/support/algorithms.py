@@ -20,11 +20,11 @@ from herringbone.analysis.stability.atlas import simulated_limit, two_rotors
 from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.growth import Growth
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.core import ParameterError
 from herringbone.core.energy_report import EnergyReport, Verdict
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, adapts
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 from support.parts import (

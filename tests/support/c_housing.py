@@ -3,7 +3,7 @@
 from itertools import product
 from pathlib import Path
 
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from support.c_fmu import compiled_fmu
 
 SOURCE = Path(__file__).parents[1] / "fmus" / "c_housing.c"

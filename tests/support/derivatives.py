@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from support.parts import DISCARD, OK, Mass
 
 _ORDERS = ctypes.POINTER(ctypes.c_int32)

@@ -9,7 +9,7 @@ from herringbone.components.gear_mesh import GEAR_MESH, layout
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Instance
-from herringbone.core.roles import GEARS, HALVES
+from herringbone.core.declaring.roles import GEARS, HALVES
 from herringbone.kernels import force_law
 from support.gear_mesh import STATES
 

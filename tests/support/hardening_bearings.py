@@ -18,10 +18,10 @@ import numpy as np
 
 from herringbone.components.ports import HALVES, journals, seats
 from herringbone.core import Component, Declaration, Kernels, Variable, input_, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine, sine
-from herringbone.kernels.jit import kernel
 
 _STIFFNESS, _THRUST_STIFFNESS = 6.34e8, 2.03e8
 _DAMPING = tuple(0.04 * math.sqrt(_STIFFNESS * mass) for mass in (6.5, 47.739))

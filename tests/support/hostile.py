@@ -78,6 +78,7 @@ class Deed(IntEnum):
     FLUSH = 24
     HANDLER = 25
     MASK = 26
+    PRECISION = 27
 
 
 ENDS = {
@@ -104,6 +105,7 @@ SEEN = {
     Deed.THREAD: "the number of threads",
     Deed.ROUND: "the floating-point environment",
     Deed.FLUSH: "the floating-point environment",
+    Deed.PRECISION: "the floating-point environment",
     Deed.HANDLER: "",
     Deed.MASK: "",
 }

@@ -20,8 +20,8 @@ from herringbone.core import Instance, ParameterError
 from herringbone.core.part import Addresses, PartVariable, closing_all
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.fmu.opening import open_fmu
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 

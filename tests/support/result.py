@@ -10,8 +10,8 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.ports import HALVES
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Outcome, OutcomeKind
-from herringbone.core.part_path import PartPath
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.variable import Causality
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.result.result import Result, RunInfo
 

@@ -7,7 +7,7 @@ import numpy as np
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import RIGID
 from herringbone.analysis.stability.linear_parts import linear_network, real_parts
-from herringbone.analysis.stability.step_limits import step_limits
+from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
 from herringbone.core.part import closing_all

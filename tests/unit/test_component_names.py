@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.paths import PACKAGE
+from herringbone.core.places.paths import PACKAGE
 
 NAME = re.compile(rf"(?<![A-Za-z_])({'|'.join(COMPONENTS)})(?![a-z_])")
 MODULES = {

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.anatomy import Anatomy, Joint, PartInfo, part_info
-from herringbone.core.roles import Port, PortKind, Role
+from herringbone.core.declaring.roles import Port, PortKind, Role
 from herringbone.cosim.structure.system import PartSpec, System
 
 _ROLE_OF_PORTS = {

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.roles import GEARS, HALVES, SIDES, PortKind, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, HALVES, SIDES, PortKind, Quantity, Role
 from herringbone.result.result import Result
 
 

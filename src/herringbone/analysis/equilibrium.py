@@ -15,7 +15,7 @@ from threadpoolctl import ThreadpoolController
 from herringbone.analysis.rigid_rotation import steady_rows, turning
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.structure.system import System
 
 _BLAS = ThreadpoolController()

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from herringbone.analysis.asked import group
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.result.result import Result
 
 _INSIDE = Role.GEAR_PAIR, Role.BEARING, Role.HOUSING

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from herringbone.analysis.asked import by_half, shaft_side
 from herringbone.analysis.figures.radiated_power import power_inputs
 from herringbone.core import ParameterError
-from herringbone.core.roles import GEARS, SIDES, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, SIDES, Quantity, Role
 from herringbone.result.result import Result
 
 _QUESTIONS: tuple[tuple[str, Role, Quantity, str | None], ...] = (

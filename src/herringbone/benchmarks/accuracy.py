@@ -19,15 +19,15 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError
 from herringbone.core.anatomy import Anatomy
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.result.result import TIME, Result
 from herringbone.running.api import run
+from herringbone.running.exporting.system_fmu import export_fmu
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
-from herringbone.running.system_fmu import export_fmu
 from herringbone.scenes import Scene, Start
 
 TOLERANCE = 1e-3

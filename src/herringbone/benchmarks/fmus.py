@@ -9,7 +9,7 @@ from pathlib import Path
 
 from herringbone.fmi.host import Host
 from herringbone.fmi.native import PLATFORMS, build_native_fmus, find_compiler
-from herringbone.running.system_fmu import export_fmu
+from herringbone.running.exporting.system_fmu import export_fmu
 
 SYSTEMS = ("gearbox", "test_rig")
 _DATA = "resources/", "documentation/", "extra/"

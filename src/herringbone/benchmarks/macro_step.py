@@ -16,7 +16,7 @@ from pathlib import Path
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.benchmarks.other_masters import PACKAGES, macro_step
 from herringbone.core.part import Part
-from herringbone.core.part_path import flat_name
+from herringbone.core.places.part_path import flat_name
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 from herringbone.cosim.layouts.layout import connected_outputs, record_names

@@ -16,7 +16,7 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.asked import group
 from herringbone.analysis.figures.operating_point import steady_part
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.shipped_table import GEAR_FILE
 from herringbone.gears.files.table_file import write_table

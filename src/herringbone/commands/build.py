@@ -66,7 +66,7 @@ def build(options: argparse.Namespace) -> Iterator[str]:
         HerringboneError: something about the options is wrong, or the build fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.running.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
+    from herringbone.running.exporting.export import build_fmus  # noqa: PLC0415 (numba: only when something is built)
 
     if not options.native and (options.platforms or options.fmi != 2):
         raise ParameterError(

@@ -20,10 +20,11 @@ from herringbone.analysis.accuracy.step_ladder import (
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.part import Part
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.places.files import write_whole
 from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
-from herringbone.cosim.record import Grid
+from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
@@ -184,7 +185,7 @@ def _write(found: WorkPrecision, folder: Path) -> list[str]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         found.to_csv(files[0])
-        files[1].write_text(json.dumps(found.summary(), indent=1) + "\n", encoding="utf-8")
+        write_whole(files[1], json.dumps(found.summary(), indent=1) + "\n")
         write_chart(found, files[2])
     except OSError as error:
         raise HerringboneError(

@@ -13,7 +13,7 @@ from herringbone.analysis.flange.contract import check_flanges
 from herringbone.analysis.housing.contract import STEP, check_housing
 from herringbone.commands.options import assignments
 from herringbone.commands.output import show
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.housing import read_housing
 from herringbone.running.foreign.started import own_step, started

@@ -7,8 +7,8 @@ from pathlib import Path
 from herringbone.commands.build import add_platform_options, chosen_platforms, untested
 from herringbone.commands.options import add_scene, files_of_parts
 from herringbone.commands.output import check_writable
-from herringbone.core.hosting import Given, Wanted
-from herringbone.core.roles import GEARS
+from herringbone.core.declaring.hosting import Given, Wanted
+from herringbone.core.declaring.roles import GEARS
 
 _SHOWN = {
     "internals": "all variables of its parts, as locals",
@@ -69,8 +69,8 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         HerringboneError: something about the options is wrong, or the export fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.running.export import PARALLEL_STEP, export_ssp, fmu_file_name  # noqa: PLC0415
-    from herringbone.running.system_fmu import export_fmu  # noqa: PLC0415
+    from herringbone.running.exporting.export import PARALLEL_STEP, export_ssp, fmu_file_name  # noqa: PLC0415
+    from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
 
     name = Path(options.system).stem
     if options.output:

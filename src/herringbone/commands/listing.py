@@ -1,9 +1,9 @@
 """What `herringbone list` shows."""
 
 from herringbone.components.registry import COMPONENTS, component
-from herringbone.core.paths import systems_folder
+from herringbone.core.declaring.variable import Causality, Variable
+from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
-from herringbone.core.variable import Causality, Variable
 from herringbone.cosim.algorithms import ALGORITHMS
 from herringbone.cosim.structure.system_file import FILE_NAME
 from herringbone.scenes import read_scene

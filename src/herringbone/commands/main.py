@@ -30,14 +30,7 @@ from herringbone.commands.options import (
     replacements,
     start_values,
 )
-from herringbone.commands.output import (
-    check_writable,
-    logged,
-    say,
-    seldom_collected,
-    show,
-    terminable,
-)
+from herringbone.commands.output import as_command, check_writable, say, show
 from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
@@ -53,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     options = _parser().parse_args(arguments)
     try:
-        with terminable(), logged(), seldom_collected(), _housing(options) as housing:
+        with as_command(), _housing(options) as housing:
             code = options.command(options)
             for remark in housing.remarks:  # a run has told its own
                 say(f"note: {remark}")

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.core import HerringboneError
+from herringbone.core.errors import reason
 
 _SELDOM = 20_000, 10, 5
 """Thresholds of Python's three generations of objects."""
@@ -24,6 +25,31 @@ def say(text: str) -> None:
 def show(text: str) -> None:
     """What a command was asked for."""
     sys.stdout.write(text + "\n")
+
+
+@contextlib.contextmanager
+def limits_told() -> Iterator[None]:
+    """Context in which what the machine does not give is an error of ours; it raises these.
+
+    What concerns a file that was asked for is told better where it is read or written.
+    """
+    try:
+        yield
+    except (MemoryError, SystemError) as error:  # the second where a library forgets to say so
+        raise HerringboneError(
+            "there is no memory left; end other programs, or ask for less, such as a longer "
+            "--record-step"
+        ) from error
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        raise HerringboneError(f"{where}{reason(error)}") from error
+
+
+@contextlib.contextmanager
+def as_command() -> Iterator[None]:
+    """Context of a whole command: it can be ended, shows warnings, and tells what it lacks."""
+    with terminable(), logged(), seldom_collected(), limits_told():
+        yield
 
 
 class _Lines(logging.Handler):

@@ -17,10 +17,10 @@ from herringbone.commands.options import (
     replacements,
     start_values,
 )
-from herringbone.commands.output import check_writable, say, show
-from herringbone.core import HerringboneError, Outcome, OutcomeKind, ParameterError
-from herringbone.core.files import is_folder
-from herringbone.running.progress import Bar
+from herringbone.commands.output import check_writable, limits_told, say, show
+from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core.places.files import is_folder
+from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
@@ -60,6 +60,14 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--no-probe", action="store_true",
         help="take foreign FMUs by what they declare, without trial steps on further instances",
     )  # fmt: skip
+    sub.add_argument(
+        "--fuse", action="store_true",
+        help="condense all parts into one core, without coupling; the step follows --tolerance",
+    )  # fmt: skip
+    sub.add_argument(
+        "--record", action="append", default=[], metavar="OUTPUTS",
+        help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
+    )  # fmt: skip
     sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
     sub.add_argument(
         "--verify", action="store_true", help="errors against a run with half the step"
@@ -84,7 +92,7 @@ def run(options: argparse.Namespace) -> OutcomeKind:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.running.summary import summary_text  # noqa: PLC0415
+    from herringbone.running.reporting.summary import summary_text  # noqa: PLC0415
 
     if options.resume is None and options.system is None:
         raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")
@@ -115,29 +123,28 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         system=Path(options.system).stem,
         resumed=resumed,
     )
-    with closing(Bar(always=False)) as bar, closing(output):
-        try:
-            result = api.run(
-                options.system,
-                **optional,
-                fmu=options.fmu,
-                replace_parts=replacements(options),
-                values=start_values(options.set),
-                gear=files.gear,
-                housing=files.housing,
-                slow=_multiples(options.slow),
-                probe=not options.no_probe,
-                in_process=options.in_process,
-                call_deadline=options.call_deadline,
-                reference=options.reference,
-                verify=options.verify,
-                progress=bar.show,
-                recorded=_Report(output, bar).write,
-                output=output,
-            )
-        except HerringboneError as error:
-            output.explain(error)
-            raise
+    bar = Bar(always=False)
+    with closing(bar), closing(output), output.explaining(), limits_told():
+        result = api.run(
+            options.system,
+            **optional,
+            fmu=options.fmu,
+            replace_parts=replacements(options),
+            values=start_values(options.set),
+            gear=files.gear,
+            housing=files.housing,
+            slow=_multiples(options.slow),
+            probe=not options.no_probe,
+            in_process=options.in_process,
+            call_deadline=options.call_deadline,
+            reference=options.reference,
+            verify=options.verify,
+            fuse=options.fuse,
+            record=options.record,
+            progress=bar.show,
+            recorded=_Report(output, bar).write,
+            output=output,
+        )
         result = output.complete(result)
     for note in output.notes:
         say(f"herringbone: {note}")

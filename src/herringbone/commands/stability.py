@@ -39,7 +39,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability import limits as analysis  # noqa: PLC0415
     from herringbone.analysis.stability import report  # noqa: PLC0415
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
-    from herringbone.analysis.stability.step_verdict import step_verdicts  # noqa: PLC0415
+    from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.running.foreign.surrogates import opened_surrogates, under_load  # noqa: PLC0415
     from herringbone.running.known_limits import KnownLimits  # noqa: PLC0415

@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 from herringbone.commands.output import check_writable, show
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.paths import systems_folder
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
+from herringbone.core.places.files import write_whole
+from herringbone.core.places.paths import systems_folder
 
 
 class Template(NamedTuple):
@@ -89,7 +90,7 @@ def template(kind: str, output: Path | None) -> str:
     check_writable(output.parent, output)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8", newline="\n")
+        write_whole(output, text)
     except OSError as error:
         raise HerringboneError(f"cannot write {output}: {error.strerror}") from error
     return f"{output}: {found.use}"

@@ -41,11 +41,11 @@ from herringbone.core import (
     output,
     parameter,
 )
-from herringbone.core.pair_values import PairValues
-from herringbone.core.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.pair_values import PairValues
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.kernels import steppers
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine, sine
-from herringbone.kernels.jit import kernel
 
 _RADIAL_STIFFNESS = 6.34e8
 _AXIAL_STIFFNESS = {"pinion": 0.0, "wheel": 2.03e8}

@@ -19,10 +19,10 @@ import numpy as np
 from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
-from herringbone.core.pair_values import PairValues
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.pair_values import PairValues
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 ROWS = 256
 """Most rows of a cycle."""
@@ -146,5 +146,6 @@ BENCH_CONTROLLER = Component(
     __doc__,
     load=ResourceLoader(_d.texts, _load, _REFUSALS, scratch=1),
     breakpoints=_breakpoints,
+    curve=2,  # a linear cycle times a linear ramp
     of_pair=_of_pair,
 )

@@ -10,10 +10,10 @@ import numpy as np
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance, ParameterError
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.declaration import Declaration, node_name
+from herringbone.core.declaring.declaration import Declaration, node_name
+from herringbone.core.declaring.units import base_exponents
+from herringbone.core.declaring.variable import NODES, Causality
 from herringbone.core.part import Addresses, Given, PartVariable, Value
-from herringbone.core.units import base_exponents
-from herringbone.core.variable import NODES, Causality
 from herringbone.kernels import fmi_calls
 
 _DO_STEP = '''"""Address of a component's fmi2DoStep; generated, not to be edited."""
@@ -23,7 +23,7 @@ from numba import carray, types
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.kernels.fmi_calls import DISCARD, DO_STEP, OK
-from herringbone.kernels.jit import c_function
+from herringbone.kernels.compiling.jit import c_function
 
 step = COMPONENTS["{name}"].kernels.step
 

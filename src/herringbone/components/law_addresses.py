@@ -10,7 +10,7 @@ _LAW = '''"""Address of a component's laws; generated, not to be edited."""
 from numba import carray, types
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.kernels.jit import c_function
+from herringbone.kernels.compiling.jit import c_function
 
 evaluate = COMPONENTS["{name}"].laws.evaluate
 _REALS = types.CPointer(types.float64)
@@ -28,7 +28,7 @@ _SIGNALS = '''"""Address of a component's outputs; generated, not to be edited."
 from numba import carray, types
 
 from herringbone.components.registry import COMPONENTS
-from herringbone.kernels.jit import c_function
+from herringbone.kernels.compiling.jit import c_function
 
 out = COMPONENTS["{name}"].kernels.out
 

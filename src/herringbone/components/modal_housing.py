@@ -45,9 +45,9 @@ from herringbone.core import (
     output,
     parameter,
 )
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import modal
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.signals import STRIDE, all_finite, monomial, shift, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG
 
@@ -80,7 +80,7 @@ def _port(seat: str, axis: str) -> list[Variable]:
 
 # Tables: number of modes, angular frequency, damping ratio, shapes by dof, modal accelerations,
 # partial sums of a degree of freedom.
-_PARTIAL = 12
+_PARTIAL = 8
 _TABLE_SIZE = 1 + MODES * (2 + _N + 1) + _PARTIAL
 STEPS = 24
 """Steps whose propagators are kept, for masters that come back to a step."""
@@ -172,8 +172,8 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 
 
 @kernel
-def _seats(b: np.ndarray) -> None:
-    """Write the motion of the seats from that of the modes.
+def _motion(b: np.ndarray) -> None:
+    """Write position and velocity of the seats from those of the modes.
 
     Every fourth mode is summed apart, so that additions go side by side. The sums are then stored,
     which lets the compiler keep them together in the loop.
@@ -184,7 +184,6 @@ def _seats(b: np.ndarray) -> None:
         row = b[_SHAPES + k * MODES : _SHAPES + (k + 1) * MODES]
         s_0, s_1, s_2, s_3 = 0.0, 0.0, 0.0, 0.0
         v_0, v_1, v_2, v_3 = 0.0, 0.0, 0.0, 0.0
-        a_0, a_1, a_2, a_3 = 0.0, 0.0, 0.0, 0.0
         for four in range(fours):
             i = 4 * four
             s_0 += row[i] * b[i]
@@ -195,16 +194,29 @@ def _seats(b: np.ndarray) -> None:
             v_1 += row[i + 1] * b[MODES + i + 1]
             v_2 += row[i + 2] * b[MODES + i + 2]
             v_3 += row[i + 3] * b[MODES + i + 3]
+        sums[0], sums[1], sums[2], sums[3] = s_0, s_1, s_2, s_3
+        sums[4], sums[5], sums[6], sums[7] = v_0, v_1, v_2, v_3
+        b[_S + 2 * STRIDE * k] = (sums[0] + sums[2]) + (sums[1] + sums[3])
+        b[_V + 2 * STRIDE * k] = (sums[4] + sums[6]) + (sums[5] + sums[7])
+
+
+@kernel
+def _seats(b: np.ndarray) -> None:
+    """Write the motion of the seats and its accelerations from those of the modes."""
+    _motion(b)
+    sums = b[_SUMS : _SUMS + _PARTIAL]
+    fours = (_count(b) + 3) // 4
+    for k in range(_N):
+        row = b[_SHAPES + k * MODES : _SHAPES + (k + 1) * MODES]
+        a_0, a_1, a_2, a_3 = 0.0, 0.0, 0.0, 0.0
+        for four in range(fours):
+            i = 4 * four
             a_0 += row[i] * b[_ACCELERATIONS + i]
             a_1 += row[i + 1] * b[_ACCELERATIONS + i + 1]
             a_2 += row[i + 2] * b[_ACCELERATIONS + i + 2]
             a_3 += row[i + 3] * b[_ACCELERATIONS + i + 3]
-        sums[0], sums[1], sums[2], sums[3] = s_0, s_1, s_2, s_3
-        sums[4], sums[5], sums[6], sums[7] = v_0, v_1, v_2, v_3
-        sums[8], sums[9], sums[10], sums[11] = a_0, a_1, a_2, a_3
-        b[_S + 2 * STRIDE * k] = (sums[0] + sums[2]) + (sums[1] + sums[3])
-        b[_V + 2 * STRIDE * k] = (sums[4] + sums[6]) + (sums[5] + sums[7])
-        b[_A + k] = (sums[8] + sums[10]) + (sums[9] + sums[11])
+        sums[0], sums[1], sums[2], sums[3] = a_0, a_1, a_2, a_3
+        b[_A + k] = (sums[0] + sums[2]) + (sums[1] + sums[3])
 
 
 @kernel
@@ -337,6 +349,7 @@ MODAL_HOUSING = Component(
     __doc__,
     load=_LOADER,
     start=_start,
+    motion=_motion,
     nominals=_nominals,
     longest_step=_longest_step,
 )

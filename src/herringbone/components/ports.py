@@ -1,7 +1,7 @@
 """Ports that several components share."""
 
 from herringbone.core import Variable, input_, output
-from herringbone.core.roles import HALVES, Port, PortKind, Quantity
+from herringbone.core.declaring.roles import HALVES, Port, PortKind, Quantity
 
 __all__ = [
     "HALVES",

@@ -7,7 +7,7 @@ A new component is a module here and a line in this registry; what else belongs 
 from importlib import import_module
 
 from herringbone.core import Component, StructureError
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 
 _MODULES = (
     "gear_mesh",

@@ -19,9 +19,9 @@ import numpy as np
 
 from herringbone.components.ports import MOTION, coupled_flanges, flange
 from herringbone.core import Component, Declaration, Kernels, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _d = Declaration(
     "shaft_coupling",

@@ -3,7 +3,7 @@
 Made by `python -m herringbone.gears.files.shipped_pair`; edit the gear file instead.
 """
 
-from herringbone.core.pair_values import PairValues
+from herringbone.core.declaring.pair_values import PairValues
 
 SHIPPED_PAIR = PairValues(
     number_of_teeth=(27.0, 81.0),

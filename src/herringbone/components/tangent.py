@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core import Component
-from herringbone.kernels.forward_mode import differentiate
-from herringbone.kernels.jit import inner
+from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.derivatives.forward_mode import differentiate
 
 Tangent = Callable[[np.ndarray, float, np.ndarray, np.ndarray], None]
 

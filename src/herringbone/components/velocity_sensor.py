@@ -42,9 +42,9 @@ from herringbone.core import (
     output,
     parameter,
 )
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.sampling import (
     ANTI_ALIAS_CORNER,
     ANTI_ALIAS_ORDER,

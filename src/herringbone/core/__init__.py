@@ -1,22 +1,10 @@
 """Declarations that everything else is derived from: variables, blocks, units, errors, outcomes."""
 
-from herringbone.core.component import Component, Kernels
-from herringbone.core.declaration import Declaration
-from herringbone.core.errors import (
-    EquilibriumError,
-    FmuError,
-    HerringboneError,
-    ParameterError,
-    ResourceError,
-    StructureError,
-    one_line,
-    reason,
-)
-from herringbone.core.hosting import Experiment, Hosting, RunsOn
-from herringbone.core.instance import Instance
-from herringbone.core.laws import Laws
-from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
-from herringbone.core.variable import (
+from herringbone.core.declaring.component import Component, Kernels
+from herringbone.core.declaring.declaration import Declaration
+from herringbone.core.declaring.hosting import Experiment, Hosting, RunsOn
+from herringbone.core.declaring.laws import Laws
+from herringbone.core.declaring.variable import (
     Column,
     StateVector,
     Text,
@@ -27,6 +15,18 @@ from herringbone.core.variable import (
     parameter,
     state,
 )
+from herringbone.core.errors import (
+    EquilibriumError,
+    FmuError,
+    HerringboneError,
+    ParameterError,
+    ResourceError,
+    StructureError,
+    one_line,
+    reason,
+)
+from herringbone.core.instance import Instance
+from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 
 __all__ = [
     "EXIT_CODES",

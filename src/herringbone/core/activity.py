@@ -13,7 +13,7 @@ from pathlib import Path
 from time import monotonic
 
 from herringbone.core.caching.files import keep, kept
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 
 _PATIENCE = 2.0
 """Seconds for which nothing need be said."""

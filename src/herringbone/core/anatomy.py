@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from herringbone.core.declaration import Declaration
-from herringbone.core.roles import Port, PortKind, Quantity, Role
-from herringbone.core.variable import Text, Variable
+from herringbone.core.declaring.declaration import Declaration
+from herringbone.core.declaring.roles import Port, PortKind, Quantity, Role
+from herringbone.core.declaring.variable import Text, Variable
 
 
 class Answer(NamedTuple):

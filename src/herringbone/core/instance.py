@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.core.component import Component
+from herringbone.core.declaring.component import Component
+from herringbone.core.declaring.units import quantity
+from herringbone.core.declaring.variable import NODES, Causality, Variable
 from herringbone.core.errors import ParameterError, ResourceError
-from herringbone.core.files import is_file
-from herringbone.core.units import quantity
-from herringbone.core.variable import NODES, Causality, Variable
+from herringbone.core.places.files import is_file
 
 
 class Instance:

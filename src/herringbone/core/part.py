@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from herringbone.core.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 
 Value = float | str | bytes
 """Value of a variable of any FMI type; also an int or a bool."""

@@ -5,7 +5,7 @@ from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
-from herringbone.core.declaration import Declaration
+from herringbone.core.declaring.declaration import Declaration
 
 _CACHED = {name for name, v in vars(Declaration).items() if isinstance(v, cached_property)}
 

@@ -1,6 +1,6 @@
 """Values that are not finite, or beyond all bounds: where, and whether the coupling made them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
@@ -39,14 +39,31 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
     return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
 
-def is_sudden(sizes: Sequence[tuple[int, np.ndarray]]) -> bool:
+def is_sudden(read: Callable[[], Iterable[np.ndarray]]) -> bool:
     """True if records end without having grown: then a part, and not the coupling, ends them so.
 
     Args:
-        sizes: numbers of rows, ascending, and the magnitudes of all outputs in or up to these.
+        read: gives the records of all outputs, piece by piece (n, m), from the start each time.
+            Rows that are not finite do not count.
     """
-    if not sizes or sizes[-1][0] + 1 < _FEWEST:
+    number, last = -1, np.empty(0)
+    for first, rows in _numbered(read()):
+        finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
+        if finite.size:
+            number, last = first + int(finite[-1]), np.abs(rows[finite[-1]])
+    if number + 1 < _FEWEST:
         return False
-    number, last = sizes[-1]
-    before = [size for k, size in sizes if 2 * k <= number] or [sizes[0][1]]
-    return bool((last <= _AS_BEFORE * np.max(before, axis=0)).all())
+    before = np.zeros_like(last)
+    for first, rows in _numbered(read()):
+        half = rows[: max(number // 2 + 1 - first, 0)]
+        finite = half[np.isfinite(half).all(axis=1)]
+        before = np.maximum(before, np.abs(finite).max(axis=0, initial=0.0))
+    return bool((last <= _AS_BEFORE * before).all())
+
+
+def _numbered(pieces: Iterable[np.ndarray]) -> Iterator[tuple[int, np.ndarray]]:
+    """Pieces, each with the number of its first row."""
+    first = 0
+    for rows in pieces:
+        yield first, rows
+        first += len(rows)

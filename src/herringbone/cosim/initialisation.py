@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from herringbone.core.declaration import node_name
+from herringbone.core.declaring.declaration import node_name
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, measure_loop, solve_loop
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.other_signals import OtherSignals

@@ -24,10 +24,10 @@ from herringbone.cosim.loops.common import (
     get_all,
 )
 from herringbone.cosim.other_signals import OtherSignals
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
-from herringbone.cosim.run_rows import RunRows
-from herringbone.cosim.stream import Streaming
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
+from herringbone.cosim.rows.run_rows import RunRows
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.wrapped_angles import wrapped_angles
 
@@ -251,7 +251,7 @@ class Run:
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
             kept.others,
             self.others.units,
-            self.prepared.estimate,
+            estimate=self.prepared.estimate,
         )
 
     def _step(self, done: int) -> float:

@@ -4,18 +4,18 @@ import math
 from collections.abc import Mapping, Sequence
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
 from herringbone.cosim.other_signals import OtherSignals
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.run import Progress, Run
 from herringbone.cosim.start_values import start_offsets
-from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.transport import settle_derivatives

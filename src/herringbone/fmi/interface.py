@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from herringbone.core import Component, Declaration, Text, Variable, local
-from herringbone.core.declaration import node_name
-from herringbone.core.units import RATES
-from herringbone.core.variable import NODES, Causality, Variability
+from herringbone.core.declaring.declaration import node_name
+from herringbone.core.declaring.units import RATES
+from herringbone.core.declaring.variable import NODES, Causality, Variability
 
 
 def reals(declaration: Declaration) -> dict[int, Variable]:

@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Experiment, Text, Variable
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.units import base_exponents
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.units import base_exponents
+from herringbone.core.declaring.variable import Causality
 from herringbone.fmi import interface
 from herringbone.fmi.used_states import UsedStates
 

@@ -10,8 +10,8 @@ from typing import Any, Final
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Component, Declaration, Variable
-from herringbone.core.declaration import node_name
-from herringbone.core.variable import NODES, Causality
+from herringbone.core.declaring.declaration import node_name
+from herringbone.core.declaring.variable import NODES, Causality
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import (
     AUTHOR,

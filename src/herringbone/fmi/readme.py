@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 
 from herringbone.core import Component, Declaration, Variable
-from herringbone.core.variable import Variability
+from herringbone.core.declaring.variable import Variability
 
 Columns = Mapping[str, Callable[[Variable], str]]
 

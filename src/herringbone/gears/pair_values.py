@@ -3,7 +3,7 @@
 import math
 
 from herringbone.core import ParameterError
-from herringbone.core.pair_values import PairValues
+from herringbone.core.declaring.pair_values import PairValues
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.involute import involute
 from herringbone.gears.job import GearJob

@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.core.caching.files import read_stored, store
 from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 
 _LIBRARIES = ("numpy", "scipy", "scikit-fem")
 

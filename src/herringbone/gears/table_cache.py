@@ -4,7 +4,7 @@ from pathlib import Path
 
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import digest_of
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.pair_law_file import pair_law_text, tooth_deviations_text
 from herringbone.gears.files.table_file import table_text

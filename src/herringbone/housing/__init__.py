@@ -1,7 +1,7 @@
 """Housings, off line: modal models, their file format, how they are made, reduced and imported."""
 
 from herringbone.components.registry import component_for
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.housing.files.reader import read_housing
 from herringbone.housing.files.writer import write_housing
 from herringbone.housing.modal_model import SEAT_DOFS, Frame, ModalHousing, Point

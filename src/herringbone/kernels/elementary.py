@@ -9,7 +9,7 @@ Error at most 1 ulp for |x| <= 1e6 (sine, cosine) and -708 <= x <= 709 (exponent
 
 import math
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _TWO_OVER_PI = 6.36619772367581382433e-01
 # pi/2 in three parts of 33 bits and a remainder: n * part is exact for |n| < 2**20.

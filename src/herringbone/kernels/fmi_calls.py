@@ -7,7 +7,7 @@ number of values that a step may change, then these values; the part provides it
 
 from numba import carray, types
 
-from herringbone.kernels.jit import c_function, reals_at
+from herringbone.kernels.compiling.jit import c_function, reals_at
 
 OK, DISCARD = 0, 2
 _REALS = types.CPointer(types.float64)

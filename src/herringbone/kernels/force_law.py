@@ -35,7 +35,7 @@ import math
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.splines import hermite, monotone_slopes, periodic_slopes
 
 PHASES = 128

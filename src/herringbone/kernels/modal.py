@@ -12,7 +12,7 @@ integrators that makes (t/h)**j / j! (C. F. Van Loan, IEEE Trans. Autom. Control
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 DEGREES = 5
 PROPAGATOR = 4 + 2 * DEGREES

@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.core.declaration import Declaration
-from herringbone.kernels.jit import inner, kernel
+from herringbone.core.declaring.declaration import Declaration
+from herringbone.kernels.compiling.jit import inner, kernel
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
 from herringbone.kernels.steppers import MOST_MICRO_STEPS, TOO_LONG, body_work
 

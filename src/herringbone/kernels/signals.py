@@ -6,8 +6,8 @@ side (value, node 1 ... node d). Degree 0 holds the value.
 
 import numpy as np
 
-from herringbone.core.variable import NODES
-from herringbone.kernels.jit import kernel
+from herringbone.core.declaring.variable import NODES
+from herringbone.kernels.compiling.jit import kernel
 
 STRIDE = NODES + 1
 

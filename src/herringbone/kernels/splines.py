@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _ROOT = math.sqrt(3.0) - 2.0
 

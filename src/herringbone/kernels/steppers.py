@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.core.declaration import Declaration
-from herringbone.kernels.jit import inner
+from herringbone.core.declaring.declaration import Declaration
+from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.signals import STRIDE, all_finite, evaluate, monomial, store_node
 
 Rhs = Callable[[np.ndarray, float, np.ndarray], None]

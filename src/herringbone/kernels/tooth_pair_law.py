@@ -34,7 +34,7 @@ import math
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel, rare
+from herringbone.kernels.compiling.jit import kernel, rare
 
 POSITIONS = 192
 """Most nodes over q."""

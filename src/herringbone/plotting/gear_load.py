@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 
-from herringbone.core.roles import SIDES
+from herringbone.core.declaring.roles import SIDES
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.flank_load import axial_position
 from herringbone.plotting.style import HALF_STYLE, ShownFigure, legend, legend_beside, styled

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from herringbone.plotting.style import COLOURS, ShownFigure, styled
 
 _WIDTH, _HEIGHT = 12.0, 7.0

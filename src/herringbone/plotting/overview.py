@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from herringbone.analysis.asked import by_half, column_of, shaft_torques
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.plotting.columns import generic_overview
 from herringbone.plotting.panels import (
     close_up,

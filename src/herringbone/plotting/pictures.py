@@ -14,7 +14,7 @@ from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import (
     DECADES,

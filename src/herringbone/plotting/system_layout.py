@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from herringbone.core.part_path import PartPath
+from herringbone.core.places.part_path import PartPath
 from herringbone.plotting.style import COLOURS, DPI, MARKER_COLOUR, ShownFigure, styled
 
 _COLUMN, _ROW = 1.75, 0.85

@@ -13,11 +13,12 @@ from scipy.interpolate import CubicSpline
 
 from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
+from herringbone.core.declaring.facts import Facts
+from herringbone.core.declaring.roles import Role
 from herringbone.core.energy_report import Diagnosis, EnergyReport
-from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any, shown
-from herringbone.core.part_path import PartPath, endings
-from herringbone.core.roles import Role
+from herringbone.core.places.files import replacing
+from herringbone.core.places.part_path import PartPath, endings
 from herringbone.result.budget import BudgetRow
 from herringbone.result.tables import pieces_of, write_csv, write_parquet
 from herringbone.result.verification import Verification
@@ -49,6 +50,8 @@ class RunInfo:
         energy: what the coupling did to the energy; None where no element has dampers.
         why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
         slow: bodies that step once in several macro steps, and in how many.
+        core: of a fused run, the "degree" of its polynomials, the base "step" [s], and how many
+            "steps", "halvings", "evaluations" of the laws and "bends" of them there were.
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
         anatomy: what the parts are for, and what is joined to what; not in the summary.
@@ -73,6 +76,7 @@ class RunInfo:
     energy: EnergyReport | None = None
     why: Diagnosis | None = None
     slow: Mapping[str, int] = field(default_factory=dict)
+    core: Mapping[str, float] | None = None
     parameters: Mapping[str, float] = field(default_factory=dict, repr=False)
     resources: Mapping[str, str] = field(default_factory=dict, repr=False)
     anatomy: Anatomy = field(default_factory=Anatomy, repr=False)
@@ -208,7 +212,7 @@ class Result(Facts):
             file: to be written.
             units: begin with a line `# units: ...`.
         """
-        with Path(file).open("w", encoding="utf-8", newline="") as stream:
+        with replacing(Path(file)) as stream:
             told = self.units if units else None
             write_csv(stream, list(self.data.columns), pieces_of(self.data), told)
 
@@ -224,7 +228,7 @@ class Result(Facts):
         """The JSON summary of the run."""
         info = asdict(replace(self.info, anatomy=Anatomy()))
         del info["parameters"], info["resources"], info["anatomy"]
-        for name in ("steps", "slow"):
+        for name in ("steps", "slow", "core"):
             if not info[name]:
                 del info[name]
         found: dict[str, Any] = {

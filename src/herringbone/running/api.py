@@ -1,6 +1,6 @@
 """Running a system: from names and options to a result."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,19 +10,27 @@ from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import housing_of_strangers
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.coupled import Asked, coupled
+from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.fused import (
+    FusedAsked,
+    check_coupling,
+    check_record,
+    fused,
+    refuse_strangers,
+    verified_by_half,
+)
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.progress import Progress
-from herringbone.running.run_result import compared
+from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import compared
 from herringbone.running.steps.for_tolerance import for_tolerance
 from herringbone.running.steps.step_search import searched, searched_tolerance
 from herringbone.running.steps.verification import (
@@ -55,6 +63,8 @@ def run(
     call_deadline: float | None = None,
     reference: bool = False,
     verify: bool = False,
+    fuse: bool = False,
+    record: Sequence[str] = (),
     progress: bool | Progress = False,
     recorded: Callable[[Result], None] | None = None,
     output: RunOutput | None = None,
@@ -95,6 +105,11 @@ def run(
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
             apart both are, see `running.steps.verification`; for systems that have no twin.
+        fuse: condense all parts, which must be components of this package, into one core and march
+            that; `step` is its base step then, and `tolerance`, 1e-3 if neither is given, the error
+            for which it is chosen, see `docs/fused.md`.
+        record: of a fused run, groups of channels and patterns of outputs (`*`, `?`) to be
+            recorded; all if none is given.
         progress: True for a bar; or called with the simulated time reached and its end [s].
         recorded: called with the result as soon as the run has ended, before the parts are
             terminated and freed, which a part may not survive; errors against the twin, and
@@ -108,6 +123,9 @@ def run(
     Raises:
         HerringboneError: something about the input is wrong.
     """
+    check_record(record, fuse=fuse)
+    if fuse:
+        check_coupling(algorithm=algorithm, slow=slow, fmu=fmu != AUTO_FMU, probe=probe)
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
@@ -119,6 +137,9 @@ def run(
             wishes,
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
+        if fuse:
+            wanted = FusedAsked(step, tolerance, tuple(record), notes=notes)
+            return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
         adapts = tolerance is not None or (coupling is not None and coupling.adaptive)
         if verify and adapts and not structure.foreign_parts:
             reference, verify = True, False
@@ -154,10 +175,39 @@ def run(
             result = verified(result, structure, chosen, found, asked, progress)
         elif can_be_verified(structure, result, found, asked):
             result = verified_by_longer_steps(result, structure, chosen, found, asked)
-        if _unstable(found.recording):
-            with activity(f"looking for what grows in {structure.name}, and for remedies"):
-                why_unstable = diagnose(structure, found.algorithm, found.recording.step)
-            result = replace(result, info=replace(result.info, why=why_unstable))
+        return _explained(result, structure, found)
+
+
+def _explained(result: Result, system: System, found: Coupled) -> Result:
+    """The result with what grows in it and what helps, if it is unstable."""
+    if not _unstable(found.recording):
+        return result
+    with activity(f"looking for what grows in {system.name}, and for remedies"):
+        why_unstable = diagnose(system, found.algorithm, found.recording.step)
+    return replace(result, info=replace(result.info, why=why_unstable))
+
+
+def _fused(
+    system: System,
+    scene: Scene,
+    asked: FusedAsked,
+    progress: bool | Progress,
+    recorded: Callable[[Result], None] | None,
+    output: RunOutput | None,
+    reference: bool,
+    verify: bool,
+) -> Result:
+    """A fused run, and what is found out about it after that."""
+    refuse_strangers(system)
+    if output is not None:
+        output.claim(system, scene, replace(asked, notes=()))
+    result = fused(system, scene, asked, progress, recorded, output)
+    if result.outcome.unstable:
+        return result
+    if reference:
+        result = compared(result, result, system)
+    if verify and result.info.core:
+        result = verified_by_half(result, system, scene, asked, progress)
     return result
 
 

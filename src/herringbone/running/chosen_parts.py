@@ -2,8 +2,8 @@
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core import ParameterError
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system import System
 
 

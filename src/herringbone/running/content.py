@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.cosim.structure.system import PartSpec, System
 
 _BLOCK = 1 << 20

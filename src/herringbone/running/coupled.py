@@ -8,8 +8,8 @@ from typing import NamedTuple
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.core.activity import activity
-from herringbone.core.files import same_folder
 from herringbone.core.part import Part, closing_all
+from herringbone.core.places.files import same_folder
 from herringbone.cosim.algorithms import (
     LI,
     Algorithm,
@@ -19,10 +19,10 @@ from herringbone.cosim.algorithms import (
 )
 from herringbone.cosim.cell.policy import remarks_of_cells
 from herringbone.cosim.exit_guard import exit_guard
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
@@ -30,8 +30,8 @@ from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.output.run_output import RunOutput
-from herringbone.running.progress import Progress, told
-from herringbone.running.run_result import (
+from herringbone.running.reporting.progress import Progress, told
+from herringbone.running.reporting.run_result import (
     decimated,
     judged,
     make_result,

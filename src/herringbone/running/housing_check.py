@@ -7,7 +7,7 @@ from herringbone.analysis.housing.contract import check_housing
 from herringbone.core import HerringboneError
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.fmu.opening import open_fmu
 
 

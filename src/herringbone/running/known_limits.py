@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
-from herringbone.analysis.stability.step_limits import StepLimits
+from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key, versions_of
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system

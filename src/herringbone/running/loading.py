@@ -9,9 +9,9 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
-from herringbone.core.files import as_texts, beside, is_file, same_folder
+from herringbone.core.declaring.roles import Role
 from herringbone.core.part import STRUCTURE, Part
-from herringbone.core.roles import Role
+from herringbone.core.places.files import as_texts, beside, is_file, same_folder
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu
 from herringbone.cosim.ssp.format import is_ssp
@@ -21,8 +21,8 @@ from herringbone.cosim.units import in_si_units
 from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
+from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
 from herringbone.running.housing_check import replacement_notes
-from herringbone.running.ssp_import import load_ssp, ssp_scene
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from herringbone.analysis.anatomy import anatomy
 from herringbone.components.registry import component
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.roles import GEARS, PortKind, Role
+from herringbone.core.declaring.roles import GEARS, PortKind, Role
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_system, open_parts

@@ -5,7 +5,7 @@ from dataclasses import replace
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
-from herringbone.core.roles import Quantity
+from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.scenes import Scene, Start

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.facts import Facts
-from herringbone.core.files import beside, is_file
+from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import shown
+from herringbone.core.places.files import beside, is_file
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
 

@@ -12,12 +12,12 @@ from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import COMPONENTS, component_for, components_for
 from herringbone.core import Declaration, Instance, StructureError, output
 from herringbone.core.anatomy import PartInfo
-from herringbone.core.roles import HALVES, Port, PortKind, Quantity, Role
-from herringbone.core.units import RATES
+from herringbone.core.declaring.roles import HALVES, Port, PortKind, Quantity, Role
+from herringbone.core.declaring.units import RATES
 from herringbone.cosim.structure.rates import rate_of
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.summary import summary_text
+from herringbone.running.reporting.summary import summary_text
 
 RIG = read_system("test_rig")
 

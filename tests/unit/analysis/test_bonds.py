@@ -8,7 +8,7 @@ import pytest
 
 from herringbone.analysis.stability.bonds import bond_table, highest_frequency
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.running.start import started

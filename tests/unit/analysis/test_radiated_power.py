@@ -10,7 +10,7 @@ from support.result import make_result
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, radiated_power
 from herringbone.core import Outcome, OutcomeKind, ParameterError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import SEAT_DOFS, ModalHousing, Point, default_housing, write_housing
 
 STEP = 1e-5

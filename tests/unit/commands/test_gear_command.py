@@ -10,7 +10,7 @@ import pytest
 from herringbone.commands.gear.report import gear
 from herringbone.commands.main import main
 from herringbone.components.resources.stiffness_table import read_stiffness_table
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job_stiffness import stiffness_for

@@ -39,7 +39,7 @@ def test_texts_differ_by_any_character(tmp_path):
 
 def test_check_says_what_differs_and_writes_nothing(tmp_path, monkeypatch, capfd):
     """A generator that appends a line to a README, and writes a file."""
-    code = "from herringbone.core.paths import component_folder as f\n"
+    code = "from herringbone.core.places.paths import component_folder as f\n"
     script = tmp_path / "generator.py"
     monkeypatch.setitem(ITEMS, "made", Item("two files", "no time", (str(script),)))
     readme = clone() / "fmus" / "gear_mesh" / "README.md"

@@ -3,7 +3,7 @@
 import pytest
 
 from herringbone.commands.generate import system_pages
-from herringbone.core.paths import systems_folder
+from herringbone.core.places.paths import systems_folder
 from herringbone.running.loading import load_scene, load_system
 
 NAMES = sorted(file.parent.name for file in systems_folder().glob("*/system.toml"))

@@ -8,8 +8,8 @@ import herringbone as hb
 from herringbone.commands.main import main
 from herringbone.commands.template import TEMPLATES
 from herringbone.components.shipped_pair import SHIPPED_PAIR
-from herringbone.core.paths import component_folder
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
+from herringbone.core.places.paths import component_folder
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.gears.files.known_keys import SECTIONS, keys_of
 from herringbone.gears.files.read_job import read_mounted_job

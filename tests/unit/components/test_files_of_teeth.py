@@ -9,7 +9,7 @@ from support.gear_mesh import STATES, gear_pair, write_errors
 
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.core import ResourceError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.gears.stiffness.pair_law import pair_law
 from herringbone.gears.stiffness.slices import SliceMesh
 

@@ -10,7 +10,7 @@ import pytest
 from herringbone.core import ResourceError
 from herringbone.core.caching.files import is_stored, keep, kept, store, stored_files, write_file
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.paths import CACHE_VARIABLE, cache_folder
+from herringbone.core.places.paths import CACHE_VARIABLE, cache_folder
 
 posix = pytest.mark.skipif(os.name == "nt", reason="owners and modes of POSIX")
 ROOT = hasattr(os, "getuid") and os.getuid() == 0
@@ -65,6 +65,18 @@ def test_damaged_byte_code_is_made_anew(cache):
             del sys.modules[name]
         assert load_generated("test", source).answer() == 42
         assert code.read_bytes() == whole
+
+
+def test_generated_modules_of_a_moved_cache_lie_where_it_is(cache, monkeypatch):
+    """Else nothing compiles: their machine code is known by the file that they lie in."""
+    source = "def answer():\n    return 43\n"
+    name = load_generated("test", source).__name__
+    moved = cache.rename(cache.with_name("moved"))
+    monkeypatch.setenv(CACHE_VARIABLE, str(moved))
+    del sys.modules[name]
+    found = load_generated("test", source).answer
+    assert found() == 43
+    assert found.__code__.co_filename == str(moved / "generated" / f"{name}.py")
 
 
 @posix

@@ -14,8 +14,8 @@ from herringbone.core import (
     parameter,
     state,
 )
+from herringbone.core.declaring.variable import NODES
 from herringbone.core.errors import ParameterError
-from herringbone.core.variable import NODES
 from herringbone.kernels.signals import STRIDE
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from herringbone.core import StructureError
-from herringbone.core.declaration import Declaration
+from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.names import LONGEST, check_name, check_path, identifier_for, is_identifier
 from herringbone.cosim.structure.system import PartSpec, System
 

@@ -5,7 +5,13 @@ import re
 import pytest
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.part_path import PartPath, endings, find_part, flat_name, split_variable
+from herringbone.core.places.part_path import (
+    PartPath,
+    endings,
+    find_part,
+    flat_name,
+    split_variable,
+)
 
 PARTS = [PartPath(p) for p in ("motor", "first.gear", "second.gear", "second.housing", "a.b.gear")]
 

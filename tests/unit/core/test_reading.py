@@ -147,6 +147,7 @@ def link():
     ("entries", "said"),
     [
         ([("../x", b"")], "entry '../x' would be written outside its folder"),
+        ([("x", b""), (zipfile.ZipInfo(""), b"")], "an entry has no name"),
         ([("c:x", b"")], "would be written outside"),
         ([(link(), b"/etc/passwd")], "entry 'link' is a link"),
         ([("a/" * 300, b"")], "has a name of 600 characters"),

@@ -9,14 +9,14 @@ import time
 
 import pytest
 
-from herringbone.core import temporary
-from herringbone.core.temporary import make_temporary_folder, temporary_folder
+from herringbone.core.places import temporary
+from herringbone.core.places.temporary import make_temporary_folder, temporary_folder
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="folders are locked on POSIX only")
 
 OTHER = """
 import sys, time
-from herringbone.core.temporary import make_temporary_folder
+from herringbone.core.places.temporary import make_temporary_folder
 folder = make_temporary_folder()
 (folder / "file").touch()
 print(folder, flush=True)

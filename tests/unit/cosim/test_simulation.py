@@ -21,11 +21,13 @@ from support.parts import (
 )
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
+from herringbone.core.declaring.table import KeptRows
 from herringbone.core.part import closing_all
 from herringbone.cosim import run
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.divergence import is_sudden
 from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
 
@@ -166,9 +168,48 @@ def test_values_that_are_not_finite(algorithm, value):
 def test_values_that_are_not_finite_after_growth():
     """The coupling may be to blame: rows that grow tenfold from the first half on tell so."""
     growing = np.exp(np.linspace(0.0, 2.0 * np.log(10.1), 21))[:, None] * np.ones(3)
-    assert not is_sudden(list(enumerate(growing)))
-    assert is_sudden(list(enumerate(growing[:11])))
-    assert not is_sudden([(9, growing[9]), (20, growing[20])])
+    assert not is_sudden(lambda: [growing])
+    assert not is_sudden(lambda: [growing[:4], growing[4:18], growing[18:], growing[:1] * np.nan])
+    assert is_sudden(lambda: [growing[:11]])
+    assert is_sudden(lambda: [growing[:3], growing[3:11]])
+
+
+class Folder:
+    """Where rows go that a run was resumed with, and those that it adds."""
+
+    def __init__(self, there):
+        self.there = [there]
+
+    def begin(self, columns, rows):
+        pass
+
+    def append(self, times, values, others):
+        self.there.append(values)
+
+    def read(self):
+        return ((np.zeros(len(values)), values) for values in self.there)
+
+    def cut(self, rows):
+        pass
+
+    def kept(self):
+        values = np.vstack(self.there)
+        return KeptRows(np.arange(float(len(values))), values, {})
+
+
+@pytest.mark.parametrize(
+    ("size", "kind"), [(1.0, OutcomeKind.PART_FAILED), (1e-3, OutcomeKind.DIVERGED)]
+)
+def test_growth_before_a_run_was_resumed_counts(size, kind):
+    """The rows since then, a second of an oscillation, have not grown; all rows may have."""
+    whole = PROBLEM.run(Jacobi(order=2), 0.1, 2.0)
+    folder = Folder(size * np.abs(whole.values).max(axis=0) * np.ones((30, 1)))
+    parts = PROBLEM.parts(misbehave=spoil_at(1.0, math.nan))
+    recording = simulate(
+        TWO_MASS_SYSTEM, parts, Jacobi(order=2), make_grid(2.0, 0.1, 0.1),
+        streaming=Streaming(folder),
+    )  # fmt: skip
+    assert recording.outcome.kind is kind
 
 
 def test_failure_in_the_first_step_keeps_the_start():

@@ -100,7 +100,7 @@ def test_without_history_a_lower_derivative_stands_in():
 def test_what_is_left_of_the_correction_counts():
     nodes, buffers = found_force(lambda t: 0.0, 3)
     buffers.rest[:] = [[1.0], [2.0], [-3.0]]
-    assert step_error(nodes, buffers, ONE, 0 * ONE, np.zeros((2, 1)), 9, np.inf)[0] == 3.0
+    assert step_error(nodes, buffers, 0 * ONE, 0 * ONE, np.zeros((2, 1)), 9, np.inf)[0] == 3.0
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -119,7 +119,7 @@ def test_error_of_the_run_is_a_mean():
     nodes, buffers = found_force(lambda t: 0.0, 3, scale=10.0)
     errors = np.zeros((2, 1))
     errors[[COUPLING, INNER_STEPS], 0] = 2.0 * 0.3**2, 2.0 * 0.4**2
-    assert error_so_far(nodes, buffers, errors, 2.0) == pytest.approx(0.05, rel=1e-12)
+    assert error_so_far(nodes, buffers, ONE * 0, errors, 2.0) == pytest.approx(0.05, rel=1e-12)
 
 
 def test_size_of_the_forces_is_their_standard_deviation():

@@ -7,7 +7,7 @@ import pytest
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, StructureError
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.fmi import build_python_fmus, check_fmu, without_unit
 from herringbone.fmi.python import build
 from herringbone.fmi.python.state import FmuState, from_bytes, to_bytes

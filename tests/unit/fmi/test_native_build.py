@@ -14,7 +14,7 @@ from fmpy.validation import validate_fmu
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.fmi import kind
 from herringbone.fmi.native import (
     PLATFORMS,
@@ -25,7 +25,7 @@ from herringbone.fmi.native import (
     symbols,
 )
 from herringbone.fmi.native.model import registered_model
-from herringbone.running.export import build_fmus
+from herringbone.running.exporting.export import build_fmus
 
 OWN = own_platform()
 LARGEST = 300_000

@@ -9,7 +9,7 @@ import pytest
 from support.gears import HELICAL, SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
-from herringbone.core.paths import CACHE_VARIABLE
+from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.gears.finite_elements import (
     FiniteElementMesh,
     Resolution,

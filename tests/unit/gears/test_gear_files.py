@@ -9,7 +9,7 @@ import pytest
 from support.gears import THESIS, gear_pair
 
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.gears.accuracy.deviation_file import write_deviations
 from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.files.gear_file import read_gear_file

@@ -11,7 +11,7 @@ import pytest
 from support.gears import SPUR, THESIS, gear_pair
 
 from herringbone.core import ParameterError
-from herringbone.core.paths import CACHE_VARIABLE
+from herringbone.core.places.paths import CACHE_VARIABLE
 from herringbone.gears import GearJob, GearPair, Modification, job_stiffness, stiffness_for
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.stiffness import methods

@@ -3,7 +3,7 @@
 import pytest
 
 from herringbone.core import ParameterError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing.welded.design import read_design
 
 SHIPPED = component_folder("modal_housing") / "welded_housing.toml"

@@ -22,7 +22,7 @@ from support.fe_files import (
 
 from herringbone.components.ports import HALVES
 from herringbone.core import HerringboneError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing.files.writer import compliance_text
 from herringbone.housing.importers import import_housing
 from herringbone.housing.importers.dmig import read_dmig

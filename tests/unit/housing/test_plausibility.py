@@ -11,7 +11,7 @@ from support.fe_files import NODES, SEATS
 from support.housing import small_housing
 
 from herringbone.core import HerringboneError, ResourceError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import read_housing
 from herringbone.housing.files.plausibility import implausible
 from herringbone.housing.files.validation import housing_warnings

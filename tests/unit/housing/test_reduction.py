@@ -131,6 +131,9 @@ def test_refusals():
     assert "mass matrix has a negative diagonal" in refused(mass=-mass)
     assert "value that is not finite" in refused(mass=np.nan * mass)
     assert "empty column" in refused(seat_input=0.0 * seats)
+    vanishing = mass.tolil()
+    vanishing[5, 5] = 1e-320
+    assert "lie between 1e-320 and" in refused(mass=vanishing.tocsr())
     text = refused(band_hz=9000.0, most_modes=40)
     assert "28 modes, to 5655 Hz, do not certify 9000 Hz within 0.05" in text
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.kernels import force_law
 
 SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"

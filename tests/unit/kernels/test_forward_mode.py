@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from herringbone.kernels.dual_expressions import NotDifferentiableError
+from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.derivatives.dual_expressions import NotDifferentiableError
+from herringbone.kernels.derivatives.forward_mode import differentiate
 from herringbone.kernels.elementary import cosine, exponential, sine
-from herringbone.kernels.forward_mode import differentiate
-from herringbone.kernels.jit import kernel
 
 EPS = np.finfo(float).eps
 WEIGHTS = (2, 0, 1)

@@ -14,12 +14,12 @@ import pytest
 from herringbone.core.caching import keys as cache_keys
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.syntax import syntax_of
-from herringbone.kernels.cache import _CheckedData
-from herringbone.kernels.linking import Piece, Whole
+from herringbone.kernels.compiling.cache import _CheckedData
+from herringbone.kernels.compiling.linking import Piece, Whole
 
 SOURCE = """
 from herringbone.kernels.elementary import sine
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel
@@ -40,7 +40,7 @@ FACTORY = f"""
 import math
 
 import numpy as np
-from herringbone.kernels.jit import inner, kernel
+from herringbone.kernels.compiling.jit import inner, kernel
 
 
 def factory(factor: float):
@@ -53,7 +53,7 @@ def factory(factor: float):
 """
 CALLER = """
 from closures import factory
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 part = factory({factor})
 
@@ -64,7 +64,7 @@ def {name}(x: float) -> float:
 """
 CONSTANTS = """
 import numpy as np
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel
@@ -134,7 +134,7 @@ def test_syntax_leaves_out_comments_docstrings_and_layout():
 
 def test_closure_holds_what_is_imported_and_no_more():
     found = cache_keys._closure(["herringbone.components.gear_mesh"])
-    assert {"herringbone.kernels.jit", "herringbone.kernels.elementary"} <= found
+    assert {"herringbone.kernels.compiling.jit", "herringbone.kernels.elementary"} <= found
     assert "herringbone.components.drive_motor" not in found
     assert not any(name.startswith("herringbone.cosim") for name in found)
 

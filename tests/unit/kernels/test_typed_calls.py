@@ -8,8 +8,8 @@ from numba import float64, int64, types
 from numba.core.registry import cpu_target
 from numba.extending import overload
 
-from herringbone.kernels import typed_calls
-from herringbone.kernels.typed_calls import remembered_calls
+from herringbone.kernels.compiling import typed_calls
+from herringbone.kernels.compiling.typed_calls import remembered_calls
 
 CONTEXT = cpu_target.typing_context
 CALLS = [

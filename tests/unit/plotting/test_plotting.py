@@ -205,14 +205,16 @@ def test_drawing_leaves_no_state_and_needs_no_pyplot(rig):
     overview(rig)
     assert dict(mpl.rcParams) == before
     code = (
-        "import sys, herringbone.plotting, herringbone.running.report\n"
+        "import sys, herringbone.plotting, herringbone.running.reporting.report\n"
         "assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_report_does_not_import_matplotlib_before_it_draws():
-    code = "import sys, herringbone.running.report\nassert 'matplotlib' not in sys.modules"
+    code = (
+        "import sys, herringbone.running.reporting.report\nassert 'matplotlib' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

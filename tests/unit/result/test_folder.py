@@ -14,7 +14,7 @@ from support.result import make_foreign_result, make_result
 
 import herringbone as hb
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ResourceError
-from herringbone.core.table import TableColumns
+from herringbone.core.declaring.table import TableColumns
 from herringbone.result.folder.checked_store import CheckedStore, ReplayError
 from herringbone.result.folder.names import State
 from herringbone.result.folder.rows import RowFile, counted_rows
@@ -22,7 +22,7 @@ from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.store import Store
 from herringbone.result.folder.stored_table import StoredTable, stored_table
 from herringbone.running.output.claim import Claim, FolderLock, claimed
-from herringbone.running.report import store_result, write_report
+from herringbone.running.reporting.report import store_result, write_report
 
 RUN = RunFile(State.RUNNING, (), {})
 

@@ -3,7 +3,7 @@
 import pytest
 
 from herringbone.core import ParameterError, ResourceError, StructureError
-from herringbone.running.export import build_fmus, export_ssp
+from herringbone.running.exporting.export import build_fmus, export_ssp
 
 
 def test_fmus_are_built_and_copied(tmp_path):

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from herringbone.analysis.stability.step_limits import StepLimits
-from herringbone.core.paths import CACHE_VARIABLE, component_folder
+from herringbone.analysis.stability.steps.step_limits import StepLimits
+from herringbone.core.places.paths import CACHE_VARIABLE, component_folder
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.structure.system import PartSpec, System

@@ -11,15 +11,15 @@ import pytest
 
 import herringbone
 from herringbone.core import ParameterError
-from herringbone.core.files import as_texts
+from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system_file import find_system, read_system
 from herringbone.gears import GearPair
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.housing import default_housing
 from herringbone.plotting import PICTURES, bearing_forces, overview
 from herringbone.plotting.style import ShownFigure
-from herringbone.running.progress import told
-from herringbone.running.report import write_report
+from herringbone.running.reporting.progress import told
+from herringbone.running.reporting.report import write_report
 from herringbone.scenes import find_scene, read_scene
 from tests.support.result import make_result
 

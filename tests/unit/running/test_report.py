@@ -14,8 +14,8 @@ from support.result import make_foreign_result, make_result
 
 from herringbone.analysis.figures.radiated_power import radiated_power
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
-from herringbone.running.report import write_report
-from herringbone.running.summary import summary_text
+from herringbone.running.reporting.report import write_report
+from herringbone.running.reporting.summary import summary_text
 
 STEADY = slice(2000, None)
 

@@ -116,8 +116,8 @@ def test_five_hours_later():
     values = []
     for own in (modes, later):
         run = Solution(Condensed(twin, equations, own), 3)
-        (states,) = run.piece(0.0, TIMES[-1], 10e-6, TIMES)
-        values.append(twin.observe(TIMES, states, BEARING + SEAT))
+        (samples,) = run.piece(0.0, TIMES[-1], 10e-6, TIMES)
+        values.append(twin.observe(TIMES, run.states(samples), BEARING + SEAT))
     n = len(BEARING)
     for columns in (slice(0, n), slice(n, None)):
         assert 0.0 < relative_error(values[1][:, columns], values[0][:, columns]) < 1e-6

@@ -9,7 +9,7 @@ from herringbone.analysis.finding import Verdict, judged
 from herringbone.analysis.flange import contract, work
 from herringbone.analysis.flange.contract import check_flanges
 from herringbone.commands import main as cli
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.fmu.opening import many_of
 
 STEP = 1e-4

@@ -20,15 +20,15 @@ from herringbone.analysis.stability.report import stability_text
 from herringbone.commands import chart as chart_command
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import Component
-from herringbone.core.paths import PACKAGE, systems_folder
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.places.paths import PACKAGE, systems_folder
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting import PICTURES, overview
 from herringbone.running.api import run
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.reporting.summary import summary_text
 from herringbone.running.start import started
-from herringbone.running.summary import summary_text
 
 RUN = {"algorithm": LI(degree=3), "step": 4e-5, "t_end": 0.02, "fmu": "in-process"}
 COST = re.compile(r"wall time|per macro step")

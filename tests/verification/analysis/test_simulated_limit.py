@@ -13,8 +13,8 @@ from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.perturbed_run import perturbation_growth
-from herringbone.analysis.stability.simulated_limit import (
+from herringbone.analysis.stability.steps.perturbed_run import perturbation_growth
+from herringbone.analysis.stability.steps.simulated_limit import (
     first_unstable,
     nonlinear_limit,
     run_steps,

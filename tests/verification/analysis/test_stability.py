@@ -11,9 +11,9 @@ from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
-from herringbone.analysis.stability.step_limits import step_limits
-from herringbone.analysis.stability.step_map import MappedPart, linear_part
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.step_limits import step_limits
+from herringbone.analysis.stability.steps.step_map import MappedPart, linear_part
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.loops.calls import do_step
 from herringbone.cosim.structure.system import PartSpec, System

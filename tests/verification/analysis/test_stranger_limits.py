@@ -15,8 +15,8 @@ import herringbone as hb
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.simulated_limit import nonlinear_limit
-from herringbone.analysis.stability.step_limits import step_limits
+from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.commands import main as cli
 from herringbone.cosim.algorithms import Jacobi, parse_algorithm
 from herringbone.cosim.structure.system_file import read_system

@@ -14,14 +14,14 @@ from herringbone.analysis.twin.monolithic import Twin
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.plotting import PICTURES
 from herringbone.running.loading import load_system
-from herringbone.running.report import write_report
+from herringbone.running.reporting.report import write_report
 from herringbone.running.start import started
 from herringbone.scenes import Scene, Start
 

@@ -14,7 +14,7 @@ import pytest
 from support.gear_mesh import write_table
 
 from herringbone.commands.main import main
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 
 KINDS = ("native", "python", "in-process")
 STRANGER = Path(__file__).parents[2] / "fmus" / "strange_housing.py"

@@ -15,7 +15,7 @@ import pytest
 
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.variable import Causality
 from herringbone.cosim.structure.system_file import read_system
 
 KEYS = {

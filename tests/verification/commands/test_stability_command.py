@@ -13,8 +13,8 @@ from herringbone.analysis.stability.limits import Stability, default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.report import stability_summary, stability_text
-from herringbone.analysis.stability.simulated_limit import nonlinear_limit
-from herringbone.analysis.stability.step_limits import StepLimits
+from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import LI, Jacobi

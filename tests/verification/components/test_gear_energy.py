@@ -11,7 +11,7 @@ from support.gear_mesh import STATES, Seats, equilibrium, gear_pair, on_seats, w
 
 from herringbone.components.resources.stiffness_table import read_stiffness_table
 from herringbone.core import Instance
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.gears.stiffness.slices import SliceMesh
 
 SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"

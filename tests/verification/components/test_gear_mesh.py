@@ -30,7 +30,7 @@ from support.gear_mesh import (
 from herringbone.components.gear_mesh import GEAR_MESH
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 
 SHIPPED = component_folder("gear_mesh") / "resources" / "mesh_stiffness.csv"
 INDEX = GEAR_MESH.declaration.index

@@ -9,7 +9,7 @@ from support.housing import read_modes
 from herringbone.components.modal_housing import MODAL_HOUSING, MODES, STEPS
 from herringbone.components.ports import HALVES
 from herringbone.core import Instance
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 
 DOFS = tuple((half, axis) for half in HALVES for axis in "xyz")
 FORCES = [f"{half}.f_{axis}" for half, axis in DOFS]

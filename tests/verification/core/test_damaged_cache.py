@@ -1,7 +1,8 @@
 """Every file of a warm cache may be cut or empty: the next run gives the same bits.
 
-`python test_damaged_cache.py FOLDER 0 1` damages each file that a run opens in turn, which takes an
-hour; the tests damage all of them at once, but of the kernels a few.
+`python test_damaged_cache.py FOLDER` damages each file that a run opens: several at a time, of
+different folders, and in turn those that were then not made anew, so that they may not have been
+read. The tests damage all files at once, but of the kernels a few.
 """
 
 import os
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 
 RUN = """
 import sys
@@ -31,6 +32,8 @@ sys.exit(code)
 """
 KERNELS = 3
 """Damaged kernels of a test: compiling them takes seconds."""
+TOGETHER = 8
+"""Damaged files of a run of the sweep."""
 
 
 class Cache:
@@ -85,24 +88,54 @@ def test_a_damaged_cache_gives_the_same_bits(cache, share):
     assert cache.run()[0] == cache.bits
 
 
-def sweep(folder: Path, first: int, step: int) -> None:
-    """Damage each file in turn; lines on what is wrong, and how far it is, go to stdout."""
-    cache = Cache(folder)
-    _, files, _ = cache.run()
-    jobs = [(file, share) for file in files for share in (0.5, 0.0)]
-    random.Random(1).shuffle(jobs)
-    for n, (file, share) in enumerate(jobs[first::step], 1):
+def groups(files: list[Path], size: int) -> list[list[Path]]:
+    """Files at random, so many together that lie in different folders."""
+    found: list[list[Path]] = []
+    for file in random.Random(1).sample(files, len(files)):
+        place = (g for g in found if len(g) < size and file.parent not in {f.parent for f in g})
+        group = next(place, None)
+        if group is None:
+            found.append([file])
+        else:
+            group.append(file)
+    return found
+
+
+def try_damaged(cache: Cache, files: list[Path], share: float) -> tuple[bool, list[Path]]:
+    """True if a run with damaged files is as any other; the files that were not made anew."""
+    for file in files:
         cache.damage(file, share)
-        try:
-            bits, _, said = cache.run()
-            fine = bits == cache.bits and "Traceback" not in said
-        except AssertionError as error:
-            fine = False
-            sys.stdout.write(f"{error}\n")
-        line = f"{n} of {len(jobs)}: {file.relative_to(cache.root)}, {share}: "
-        sys.stdout.write(line + ("same bits\n" if fine else "WRONG\n"))
-        sys.stdout.flush()
+    damaged = [file.read_bytes() for file in files]
+    try:
+        bits, _, said = cache.run()
+    except AssertionError as error:
+        sys.stdout.write(f"{error}\n")
+        return False, files
+    left = [f for f, content in zip(files, damaged, strict=True) if f.read_bytes() == content]
+    return bits == cache.bits and "Traceback" not in said, left
+
+
+def sweep(folder: Path) -> int:
+    """Damage each file; lines on how far it is, and what is wrong. Number of wrong files."""
+    cache, wrong = Cache(folder), 0
+    files = cache.run()[1]
+    for share in (0.5, 0.0):
+        alone: list[list[Path]] = []
+        for n, group in enumerate(groups(files, TOGETHER), 1):
+            fine, left = try_damaged(cache, group, share)
+            alone += [[file] for file in (left if fine else group)]
+            sys.stdout.write(f"{share}: {n}, {len(group)} files, {'fine' if fine else 'WRONG'}\n")
+            sys.stdout.flush()
+        for (file,) in alone:
+            fine, left = try_damaged(cache, [file], share)
+            wrong += not fine
+            kept = ", stays as it is" if left else ""
+            name = file.relative_to(cache.root)
+            sys.stdout.write(f"{share}: {name}: {'same bits' if fine else 'WRONG'}{kept}\n")
+            sys.stdout.flush()
+    sys.stdout.write(f"{len(files)} files, cut and empty; {wrong} wrong\n")
+    return wrong
 
 
 if __name__ == "__main__":
-    sweep(Path(sys.argv[1]), *map(int, sys.argv[2:]))
+    sys.exit(sweep(Path(sys.argv[1])) > 0)

@@ -18,7 +18,7 @@ from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.growth import GROWTH
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.components.bearing_supports import BEARING_SUPPORTS
 from herringbone.components.in_process import InProcessPart
 from herringbone.core.energy_report import Verdict

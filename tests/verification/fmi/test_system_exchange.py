@@ -11,9 +11,9 @@ from support.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.fmi.native import find_compiler, own_platform
-from herringbone.running.system_fmu import export_fmu
+from herringbone.running.exporting.system_fmu import export_fmu
 
 MICRO_STEP, INTERVAL, DURATION = 1e-7, 1e-5, 5e-3
 MESH, SHIPPED_MODES = "gear_mesh", 60

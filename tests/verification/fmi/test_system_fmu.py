@@ -11,9 +11,9 @@ from herringbone.cosim.structure.system import PartSpec
 from herringbone.fmi.check import check_fmu, without_unit
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.api import run
+from herringbone.running.exporting.system_fmu import export_fmu
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.start import started
-from herringbone.running.system_fmu import export_fmu
 from herringbone.scenes import Scene, Start
 
 INSIDE = ("gearbox.gear_mesh", "gearbox.bearing_supports")

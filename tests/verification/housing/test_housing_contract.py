@@ -12,7 +12,7 @@ from herringbone.analysis.housing.contract import STEP, check_housing
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.modal_housing import MODAL_HOUSING
 from herringbone.core import Instance, ParameterError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.cosim.loops.drive import drive
 from herringbone.housing import default_housing, write_housing
 from herringbone.housing.reduction.reduced_housing import reduce_housing

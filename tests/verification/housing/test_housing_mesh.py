@@ -11,7 +11,7 @@ from support.finite_elements import require_gmsh
 
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.housing import read_housing
 from herringbone.housing.eigenmodes import Factorisation, eigenmodes
 from herringbone.housing.welded.design import read_design

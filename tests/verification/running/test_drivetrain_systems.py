@@ -9,9 +9,9 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.rigid_rotation import rigid_rotation
-from herringbone.analysis.stability.step_verdict import step_verdicts
+from herringbone.analysis.stability.steps.step_verdict import step_verdicts
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core.paths import systems_folder
+from herringbone.core.places.paths import systems_folder
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.running.prepared import Wishes, prepared

@@ -6,11 +6,11 @@ import zipfile
 import pytest
 
 import herringbone as hb
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.fmi.native import find_compiler, own_platform
-from herringbone.running.export import export_ssp
+from herringbone.running.exporting.export import export_ssp
 
 needs_compiler = pytest.mark.skipif(
     own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"

@@ -11,7 +11,7 @@ from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.running.export import export_ssp
+from herringbone.running.exporting.export import export_ssp
 from herringbone.running.loading import load_system
 from herringbone.running.prepared import Wishes, prepared
 

@@ -12,7 +12,7 @@ from support.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.core import HerringboneError
-from herringbone.core.paths import component_folder
+from herringbone.core.places.paths import component_folder
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.table_file import write_table
 from herringbone.gears.job_stiffness import stiffness_for

@@ -12,10 +12,10 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.core import HerringboneError
 from herringbone.core.names import matches_any
 from herringbone.core.part import Part, closing_all
-from herringbone.core.part_path import endings
+from herringbone.core.places.part_path import endings
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import simulate
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System

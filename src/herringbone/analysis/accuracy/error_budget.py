@@ -29,7 +29,7 @@ from herringbone.analysis.stability.recommendation import (
     separation_floor,
 )
 from herringbone.components.resources.stiffness_table import read_uncertainty
-from herringbone.core.roles import SIDES, Quantity, Role
+from herringbone.core.declaring.roles import SIDES, Quantity, Role
 from herringbone.cosim.algorithms import parse_algorithm
 from herringbone.result.budget import BudgetRow, Known
 from herringbone.result.result import TIME, Result
@@ -111,19 +111,22 @@ def _lines(result: Result, gear: str, count: int) -> np.ndarray | None:
 
 
 def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
-    """What the coupling errs; see `error_budget`."""
+    """What the coupling errs, of a fused run its steps; see `error_budget`."""
+    source = "coupling" if result.info.core is None else "steps of the core"
     if result.error:
         name, value = max(result.error.items(), key=lambda item: item[1])
         quantity = f"{name.replace('_', ' ')}, alternating part"
         how = "against the monolithic solution of the same equations"
-        return BudgetRow("coupling", quantity, value, Known.MEASURED, how)
+        return BudgetRow(source, quantity, value, Known.MEASURED, how)
     if result.verification is not None and result.verification.groups:
         name, value = max(result.verification.groups.items(), key=lambda item: item[1])
         quantity = f"{name.replace('_', ' ')}, alternating part"
-        return BudgetRow("coupling", quantity, value, Known.ESTIMATED, result.verification.how)
+        return BudgetRow(source, quantity, value, Known.ESTIMATED, result.verification.how)
+    if result.info.core is not None:
+        return BudgetRow(source, _FORCE, None, Known.UNKNOWN, "nothing varies")
     if (estimate := result.info.estimate) is not None:
         how = "by the differences of the forces in each step; --reference measures"
-        return BudgetRow("coupling", _FORCE, estimate["coupling"], Known.ESTIMATED, how)
+        return BudgetRow(source, _FORCE, estimate["coupling"], Known.ESTIMATED, how)
     algorithm = parse_algorithm(result.info.algorithm)
     rule = algorithm.accurate_step
     if rule is None or not bond_frequency or result.info.slow:

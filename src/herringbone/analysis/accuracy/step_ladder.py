@@ -16,11 +16,11 @@ from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
 from herringbone.core.names import matches_any
 from herringbone.core.part import Part, closing_all
-from herringbone.core.part_path import endings
+from herringbone.core.places.part_path import endings
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.layouts.layout import record_names
-from herringbone.cosim.record import Grid
-from herringbone.cosim.recording import Recording
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
 

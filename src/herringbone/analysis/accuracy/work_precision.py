@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import OutcomeKind
+from herringbone.core.places.files import replacing
 
 _TOLERANCE = re.compile(r"(tolerance=)[^,]+")
 MARKS = {">": "no larger step was tried", "!": "the next larger one failed"}
@@ -179,7 +180,7 @@ class WorkPrecision:
         rows = [_flat(row) for row in self.rows()]
         units = {"micro_step": "s", "step": "s", "passes_per_ms": "1/ms", "wall_s": "s"}
         units |= {"t_reached": "s"} | {name: "1" for name in rows[0] if name.startswith("error_")}
-        with Path(file).open("w", encoding="utf-8", newline="") as stream:
+        with replacing(Path(file)) as stream:
             stream.write("# units: " + ", ".join(f"{n} {u}" for n, u in units.items()) + "\n")
             writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
             writer.writeheader()

@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
-from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 from herringbone.result.result import Result

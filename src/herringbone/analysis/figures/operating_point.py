@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.analysis.asked import parameter, shaft_torques, signal
 from herringbone.analysis.figures.spectra import mesh_frequency
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
 
 SETTLING_SHARE = 0.2

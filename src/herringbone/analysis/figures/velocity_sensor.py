@@ -17,7 +17,7 @@ from scipy.signal import butter, sosfilt
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.kernels.sampling import ANTI_ALIAS_CORNER, ANTI_ALIAS_ORDER, converted
 from herringbone.result.result import TIME, Result
 

@@ -20,8 +20,8 @@ from herringbone.analysis.flange.rotation import rotation
 from herringbone.analysis.flange.variables import Flange, asked, find_flanges
 from herringbone.analysis.flange.work import passivity
 from herringbone.core import FmuError
+from herringbone.core.declaring.roles import Role
 from herringbone.core.part import Part
-from herringbone.core.roles import Role
 from herringbone.cosim.signature import Kind, Laboratory, Signature, find_signature
 from herringbone.cosim.signature.trial import Refused
 

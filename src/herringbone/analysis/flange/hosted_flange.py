@@ -23,7 +23,7 @@ from scipy.linalg import expm
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.growth import Growth, growth_of
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.analysis.stability.surrogates.identification import LinearModel
 
 _BLAS = ThreadpoolController()

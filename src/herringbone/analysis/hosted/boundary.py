@@ -7,9 +7,9 @@ from functools import cached_property
 from herringbone.analysis.anatomy import anatomy
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
-from herringbone.core.hosting import Given, Wanted
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.hosting import Given, Wanted
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system import PartSpec, System
 
 _INSIDE = {Role.GEAR_PAIR, Role.BEARING, Role.HOUSING}

@@ -7,6 +7,7 @@ import numpy as np
 
 from herringbone.analysis.hosted.boundary import Boundary, make_boundary
 from herringbone.analysis.hosted.declaration import (
+    INNER_STEP,
     NEXT_STEP,
     STEP_START,
     STEPPING,
@@ -16,7 +17,7 @@ from herringbone.analysis.hosted.declaration import (
     own_states,
     since,
 )
-from herringbone.analysis.hosted.places import Places, elastic_states
+from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice
 from herringbone.analysis.twin.composite import Composite
@@ -41,20 +42,25 @@ from herringbone.core import (
     parameter,
 )
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.hosting import Given, Wanted
-from herringbone.core.roles import Quantity
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.hosting import Given, Wanted
+from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
-from herringbone.kernels.adaptive import LONGEST_STEP, adaptive_stepper
-from herringbone.kernels.jit import inner
-from herringbone.kernels.newton import newton_scratch
+from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.periodic.motion import periodic_scratch
+from herringbone.kernels.spectral_radius import radius_scratch
+from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper
+from herringbone.kernels.stepping.newton import newton_scratch
 
 _TOLERANCE = 1e-3
 EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
 _NOT_SETTLED = (
     "no equilibrium of the elastic coordinates was found under these torques; they start "
-    "undeformed, and will vibrate: look at the torques, or set start_mode = 0"
+    "undeformed, and will vibrate: look at the torques, or set start_mode = 0",
+    "no vibration was found that repeats itself every mesh period at this speed and these torques; "
+    "the elastic coordinates start in equilibrium, and will settle: look for teeth that separate, "
+    "or set start_mode = 1",
 )
 
 
@@ -72,9 +78,11 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     parts = make_parts(boundary.system)
     guesses = _guesses(boundary, parts)
     count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
-    unknowns = sum(name is not None for name in elastic_states(boundary, parts))
-    unknowns += sum(bool(f.shaft) for f in boundary.flanges)
-    scratch = count + newton_scratch(unknowns)
+    found = coordinates(boundary, parts)
+    unknowns = sum(not c.turns for c in found) + sum(bool(f.shaft) for f in boundary.flanges)
+    scratch = count + max(
+        newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
+    )
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses)
     places = Places(boundary, parts, declaration)
     source = composite_source(
@@ -129,7 +137,9 @@ def _longest_step(declaration: Declaration) -> Callable[[np.ndarray], float]:
 
 
 def _step_kernel(boundary: Boundary, declaration: Declaration, module: ModuleType) -> Callable:
-    advance = adaptive_stepper(module.system_rhs, module.system_out, declaration, NEXT_STEP)
+    advance = adaptive_stepper(
+        module.system_rhs, module.system_out, declaration, NEXT_STEP, INNER_STEP
+    )
     refresh, index = module.refresh, declaration.index
     tolerance, start, degree = declaration.indices(TOLERANCE, STEP_START, INTERFACE_DEGREE)
     stepping = index[STEPPING]

@@ -12,15 +12,18 @@ from herringbone.analysis.twin.composite_parts import (
     vectors_of,
 )
 from herringbone.core import Declaration, Instance, Variable, local, output, parameter, state
-from herringbone.core.declaration import INTERFACE_DEGREE, node_name
-from herringbone.core.hosting import Given
-from herringbone.core.roles import Port, PortKind, Quantity
-from herringbone.core.variable import NODES, Causality, Variability
-from herringbone.kernels.adaptive import FIRST, adaptive_work
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.hosting import Given
+from herringbone.core.declaring.roles import Port, PortKind, Quantity
+from herringbone.core.declaring.variable import NODES, Causality, Variability
+from herringbone.kernels.stepping.adaptive import FIRST, LARGEST, adaptive_work
 
+AS_SET, EQUILIBRIUM, PERIODIC = range(3)
+"""Start modes."""
 START_MODE, INITIAL_SPEED = "start_mode", "initial_speed"
-TOLERANCE, NEXT_STEP, STEP_START, STEPPING, FLANK = (
-    "tolerance", "next_inner_step", "step_start", "stepping", "carrying_flank",
+TOLERANCE, NEXT_STEP, INNER_STEP, STEP_START, STEPPING, FLANK = (
+    "tolerance", "next_inner_step", "longest_inner_step", "step_start", "stepping",
+    "carrying_flank",
 )  # fmt: skip
 MICRO_STEP = "micro_step"
 _OWN = (MICRO_STEP, INTERFACE_DEGREE)
@@ -181,6 +184,7 @@ def _locals(boundary: Boundary, tolerance: float) -> Iterator[Variable]:
             yield local(lead(f), "s", "time from then to the start of the communication step")
     yield replace(local(TOLERANCE, "1", "of inner steps"), start=tolerance)
     yield replace(local(NEXT_STEP, "s", "length of the next inner step"), start=FIRST)
+    yield replace(local(INNER_STEP, "s", "no inner step is longer"), start=LARGEST)
     yield local(STEP_START, "s", "start of the last communication step")
     yield local(STEPPING, "1", "1 inside a communication step, where time counts from its start")
     yield replace(local(FLANK, "1", "flank that carries: 1 drive, -1 coast"), start=1.0)
@@ -190,11 +194,12 @@ def _parameters(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
     yield parameter(
         START_MODE,
         "1",
-        "start of the elastic coordinates; 1: equilibrium, they move as one with the gears; "
-        "0: as_set, undeformed or as the states were set",
-        1.0,
-        minimum=0,
-        maximum=1,
+        "start of the elastic coordinates; 2: periodic, they vibrate as they do when all has "
+        "settled; 1: equilibrium, they move as one with the gears; 0: as_set, undeformed or as "
+        "the states were set",
+        float(PERIODIC),
+        minimum=AS_SET,
+        maximum=PERIODIC,
         whole=True,
     )
     if all(f.given is Given.TORQUE for f in boundary.flanges):
@@ -239,7 +244,7 @@ def _shown(boundary: Boundary, parts: Parts, variables: list[Variable]) -> Itera
         for i in parts.instances
         for v in i.component.declaration.variables
     }
-    own = {TOLERANCE, NEXT_STEP, STEP_START, STEPPING, FLANK}
+    own = {TOLERANCE, NEXT_STEP, INNER_STEP, STEP_START, STEPPING, FLANK}
     own |= {name(f) for f in boundary.flanges for name in (offset, since, lead)}
     for v in variables:
         if v.causality in {Causality.INPUT, Causality.OUTPUT}:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.analysis.finding import Finding, judged, remark
+from herringbone.core.declaring.roles import HALVES
 from herringbone.core.part import Part
-from herringbone.core.roles import HALVES
 from herringbone.cosim.loops.drive import drive
 
 RECORDS = 20

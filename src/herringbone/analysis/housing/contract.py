@@ -22,8 +22,8 @@ from herringbone.analysis.housing.behaviour import (
     Behaviour,
 )
 from herringbone.core import ParameterError
+from herringbone.core.declaring.units import base_exponents
 from herringbone.core.part import Part
-from herringbone.core.units import base_exponents
 
 STEP = 2e-5
 """Communication step size [s] of the tests; two-way coupling wants no larger one."""

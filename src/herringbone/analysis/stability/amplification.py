@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
-from herringbone.analysis.stability.step_map import CHANGE, OTHER_CHANGE, linear_part
+from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, linear_part
 from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.cosim.algorithms import Algorithm

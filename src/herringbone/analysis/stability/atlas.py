@@ -18,12 +18,12 @@ from herringbone.analysis.equilibrium import equilibrium
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.bonds import highest_frequency
 from herringbone.analysis.stability.linear_parts import linear_instances, linear_network
-from herringbone.analysis.stability.perturbed_run import perturbation_growth
-from herringbone.analysis.stability.simulated_limit import Bands, first_unstable, run_steps
-from herringbone.analysis.stability.step_scan import unstable_bands
+from herringbone.analysis.stability.steps.perturbed_run import perturbation_growth
+from herringbone.analysis.stability.steps.simulated_limit import Bands, first_unstable, run_steps
+from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.components.registry import component, component_for
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.structure.system import PartSpec, System
 

@@ -19,10 +19,10 @@ from herringbone.analysis.stability.linear_parts import (
     Strangers,
     linear_network,
 )
-from herringbone.analysis.stability.step_scan import first_unstable
+from herringbone.analysis.stability.steps.step_scan import first_unstable
 from herringbone.core import HerringboneError, Instance
+from herringbone.core.declaring.roles import Quantity
 from herringbone.core.energy_report import Diagnosis
-from herringbone.core.roles import Quantity
 from herringbone.cosim.algorithms import LI, Algorithm
 from herringbone.cosim.layouts.layout import connected_outputs
 from herringbone.cosim.structure.network import Network

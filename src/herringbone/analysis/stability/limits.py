@@ -16,11 +16,11 @@ from herringbone.analysis.stability.recommendation import (
     Recommendation,
     rank,
 )
-from herringbone.analysis.stability.simulated_limit import nonlinear_limit
-from herringbone.analysis.stability.step_limits import Progress, StepLimits, step_limits
+from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
+from herringbone.analysis.stability.steps.step_limits import Progress, StepLimits, step_limits
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.activity import activity
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, Jacobi
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance

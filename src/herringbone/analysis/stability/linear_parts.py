@@ -18,7 +18,7 @@ from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance
 from herringbone.core.part import Part
-from herringbone.core.part_path import PartPath
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 

@@ -11,10 +11,11 @@ from herringbone.analysis.stability.bonds import Bond
 from herringbone.analysis.stability.limits import Stability
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
-from herringbone.analysis.stability.simulated_limit import HIGHEST, LOWEST
-from herringbone.analysis.stability.step_limits import StepLimits
-from herringbone.analysis.stability.step_scan import LARGEST_STEP
+from herringbone.analysis.stability.steps.simulated_limit import HIGHEST, LOWEST
+from herringbone.analysis.stability.steps.step_limits import StepLimits
+from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
 from herringbone.core import HerringboneError
+from herringbone.core.places.files import write_whole
 
 _MICRO = 1e6
 _WIDTH = 100
@@ -230,7 +231,7 @@ def write_stability(found: Stability, folder: str | Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file, content in contents.items():
-            file.write_text(content + "\n", encoding="utf-8")
+            write_whole(file, content + "\n")
     except OSError as error:
         raise HerringboneError(
             f"cannot write to {folder}: {error.strerror}; choose another folder with -o"

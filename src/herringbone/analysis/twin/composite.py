@@ -26,11 +26,11 @@ from herringbone.analysis.twin.composite_source import BlockMap, composite_sourc
 from herringbone.analysis.twin.source import twin_source
 from herringbone.core import Component, Declaration, Instance, Kernels, Variable, parameter
 from herringbone.core.caching.generated import load_generated
-from herringbone.core.declaration import INTERFACE_DEGREE
-from herringbone.core.variable import Causality
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.variable import Causality
 from herringbone.cosim.structure.system import System
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import inner
+from herringbone.kernels.compiling.jit import inner
 
 MICRO_STEP = "micro_step"
 _OWN = (MICRO_STEP, INTERFACE_DEGREE)

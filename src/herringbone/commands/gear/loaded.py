@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from herringbone.core.roles import SIDES
+from herringbone.core.declaring.roles import SIDES
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.load.deviating_teeth import DeviatingLoad
 from herringbone.gears.load.figures import Loaded

@@ -6,6 +6,7 @@ from pathlib import Path
 from herringbone.commands.gear.loaded import flank_text
 from herringbone.commands.gear.tables import gear_figures, gear_tables
 from herringbone.core import HerringboneError
+from herringbone.core.places.files import write_whole
 from herringbone.gears.files.read_job import read_job
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
@@ -77,7 +78,7 @@ def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) ->
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file_name, text in texts.items():
-            (folder / file_name).write_text(text, encoding="utf-8", newline="\n")
+            write_whole(folder / file_name, text)
         write_gear_pair_picture(stiffness, f"Gear pair {name}", folder / PICTURE)
         write_gear_load_picture(loaded, f"Gear pair {name}", folder / LOAD_PICTURE)
     except OSError as error:

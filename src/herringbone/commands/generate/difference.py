@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.commands.generate.items import PICTURES, generate
-from herringbone.core.paths import CACHE_VARIABLE
+from herringbone.core.places.paths import CACHE_VARIABLE
 
 _ROUNDING = 1e-6
 """Largest difference of numbers, over the largest one of their column: platforms round apart."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from herringbone.commands.output import say
 from herringbone.core import HerringboneError
-from herringbone.core.paths import systems_folder
+from herringbone.core.places.paths import systems_folder
 
 PICTURES = Path("examples", "pictures")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from herringbone.analysis.stability.limits import Stability, stability
 from herringbone.analysis.stability.recommendation import rank
-from herringbone.core.paths import systems_folder
+from herringbone.core.places.paths import systems_folder
 from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.placing import places
 from herringbone.cosim.structure.system import System

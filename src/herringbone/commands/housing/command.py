@@ -76,7 +76,7 @@ def _import(options: argparse.Namespace) -> int:
 
 def _build(options: argparse.Namespace) -> int:
     from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
-    from herringbone.core.roles import Role  # noqa: PLC0415
+    from herringbone.core.declaring.roles import Role  # noqa: PLC0415
     from herringbone.housing import write_housing  # noqa: PLC0415 (only when it is asked for)
     from herringbone.housing.welded.build import STAGES, build_housing  # noqa: PLC0415
     from herringbone.housing.welded.design import read_design  # noqa: PLC0415

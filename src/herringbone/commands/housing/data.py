@@ -10,7 +10,7 @@ from tqdm import tqdm
 from herringbone.commands.output import check_writable, say, show
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.housing import ModalHousing, read_housing, write_housing
 from herringbone.housing.importers import import_housing
 from herringbone.housing.reduction.error import drive_point_errors

@@ -19,10 +19,10 @@ engagement in place of its discrete one.
 import numpy as np
 
 from herringbone.components.ports import MOTION, coupled_flanges, flange
-from herringbone.core import Component, Declaration, Kernels, output, parameter, state
-from herringbone.core.roles import Quantity, Role
+from herringbone.core import Component, Declaration, Kernels, Laws, output, parameter, state
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _ENGAGED = 1e-3
 """A usual twist [rad], where the search for an equilibrium begins."""
@@ -64,22 +64,45 @@ _STIFFNESS, _DAMPING, _ENGAGEMENT, _RELEASE, _MICRO_STEP, _DEGREE = _d.indices(
 
 
 @kernel
+def _twist(b: np.ndarray) -> float:
+    return b[_PHI_A] - b[_PHI_B] - b[_FREE]
+
+
+@kernel
+def _overrun(b: np.ndarray, twist: float, speed: float) -> float:
+    """Rate of the free angle [rad/s] while it follows."""
+    return speed + twist / b[_RELEASE]
+
+
+@kernel
 def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
-    twist = b[_PHI_A] - b[_PHI_B] - b[_FREE]
-    dx[_FREE] = min(0.0, b[_W_A] - b[_W_B] + twist / b[_RELEASE])
+    dx[_FREE] = min(0.0, _overrun(b, _twist(b), b[_W_A] - b[_W_B]))
+
+
+@kernel
+def _damping(b: np.ndarray, twist: float) -> float:
+    v = min(1.0, twist / b[_ENGAGEMENT])
+    return b[_DAMPING] * v * v * (3.0 - 2.0 * v)
+
+
+@kernel
+def _torque(b: np.ndarray, twist: float, speed: float) -> float:
+    if twist <= 0.0:
+        return 0.0
+    return max(0.0, b[_STIFFNESS] * twist + _damping(b, twist) * speed)
+
+
+@kernel
+def _write(b: np.ndarray, twist: float, speed: float, torque: float) -> None:
+    b[_TWIST], b[_W_REL], b[_TORQUE] = twist, speed, torque
+    b[_TAU_A], b[_TAU_B] = -torque, torque
 
 
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
-    twist, speed = b[_PHI_A] - b[_PHI_B] - b[_FREE], b[_W_A] - b[_W_B]
-    torque = 0.0
-    if twist > 0.0:
-        v = min(1.0, twist / b[_ENGAGEMENT])
-        damping = b[_DAMPING] * v * v * (3.0 - 2.0 * v)
-        torque = max(0.0, b[_STIFFNESS] * twist + damping * speed)
-    b[_TWIST], b[_W_REL], b[_TORQUE] = twist, speed, torque
+    twist, speed = _twist(b), b[_W_A] - b[_W_B]
+    _write(b, twist, speed, _torque(b, twist, speed))
     b[_RATE] = max(speed, -twist / b[_RELEASE])
-    b[_TAU_A], b[_TAU_B] = -torque, torque
 
 
 _advance = steppers.body_stepper(_rhs, _out, _d)
@@ -95,10 +118,59 @@ def _guess(block: np.ndarray) -> None:
     block[_FREE] = block[_PHI_A] - block[_PHI_B] - _ENGAGED
 
 
+@kernel
+def _gather(b: np.ndarray, z: np.ndarray) -> None:
+    z[0], z[1] = _twist(b), b[_W_A] - b[_W_B]
+
+
+@kernel
+def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    twist, speed = z[0], z[1]
+    f[0] = _torque(b, twist, speed)
+    rate = _overrun(b, twist, speed)
+    f[1] = min(0.0, rate)
+    carries = f[0] > 0.0
+    k[0] = b[_STIFFNESS] if carries else 0.0
+    k[1] = _damping(b, twist) if carries else 0.0
+    k[2] = 1.0 if rate < 0.0 else 0.0
+    e[0] = 1.0 if carries else -1.0
+    e[1], e[2] = twist - b[_ENGAGEMENT], rate
+
+
+@kernel
+def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
+    twist, speed = _twist(b), b[_W_A] - b[_W_B]
+    _write(b, twist, speed, f[0])
+    dx[_FREE] = f[1]
+    b[_RATE] = speed - f[1]
+
+
+def _directions(block: np.ndarray) -> np.ndarray:
+    return np.array([[1.0, 0.0], [0.0, 1.0], [1.0 / block[_RELEASE], 1.0]])
+
+
+def _engaged(block: np.ndarray) -> np.ndarray:
+    """Tangents while a drives."""
+    return np.array([block[_STIFFNESS], block[_DAMPING], 0.0])
+
+
+_LAWS = Laws(
+    arguments=("twist of the sprags", "speed of a over b"),
+    values=("torque", "rate of the free angle"),
+    stiff=(0, 0, 1),
+    kinks=3,
+    gather=_gather,
+    evaluate=_evaluate,
+    apply=_apply,
+    directions=_directions,
+    mean=_engaged,
+)
+
 FREEWHEEL = Component(
     _d,
     Kernels(_step, _rhs, _out),
     __doc__,
     guess=_guess,
+    laws=_LAWS,
     longest_step=steppers.longest_step(_d, "micro_step"),
 )

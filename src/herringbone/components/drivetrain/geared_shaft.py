@@ -25,10 +25,10 @@ import math
 import numpy as np
 
 from herringbone.components.ports import MOTION, coupled_flanges, flange
-from herringbone.core import Component, Declaration, Kernels, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core import Component, Declaration, Kernels, Laws, output, parameter
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _d = Declaration(
     "geared_shaft",
@@ -83,17 +83,21 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 
 
 @kernel
+def _ideal(b: np.ndarray) -> float:
+    """Write the twist and its rate; the torque [N m] that flange a gives."""
+    b[_PHI_REL] = b[_PHI_A] - b[_RATIO] * b[_PHI_B]
+    b[_W_REL] = b[_W_A] - b[_RATIO] * b[_W_B]
+    return b[_STIFFNESS] * (b[_PHI_REL] - b[_PHI_REL0]) + b[_DAMPING] * b[_W_REL]
+
+
+@kernel
 def _out(b: np.ndarray, t: float) -> None:
-    ratio = b[_RATIO]
-    b[_PHI_REL] = b[_PHI_A] - ratio * b[_PHI_B]
-    b[_W_REL] = b[_W_A] - ratio * b[_W_B]
-    damped = b[_DAMPING] * b[_W_REL]
-    torque = b[_STIFFNESS] * (b[_PHI_REL] - b[_PHI_REL0]) + damped
+    ratio, torque = b[_RATIO], _ideal(b)
     factor = _factor(b, torque)
     b[_TORQUE] = torque
     b[_TAU_A] = -torque
     b[_TAU_B] = ratio * factor * torque
-    b[_LOSS] = damped * b[_W_REL] + torque * ratio * b[_W_B] * (1.0 - factor)
+    b[_LOSS] = b[_DAMPING] * b[_W_REL] * b[_W_REL] + torque * ratio * b[_W_B] * (1.0 - factor)
 
 
 _advance = steppers.element_stepper(_out, _d)
@@ -104,4 +108,50 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     return _advance(b, w, t, h, int(b[_DEGREE]))
 
 
-GEARED_SHAFT = Component(_d, Kernels(_step, _rhs, _out), __doc__)
+@kernel
+def _gather(b: np.ndarray, z: np.ndarray) -> None:
+    z[0], z[1] = _ideal(b), b[_W_B]
+
+
+@kernel
+def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    b[_W_B] = z[1]
+    k[0] = b[_RATIO] * (_factor(b, z[0]) - 1.0)
+    f[0], e[0] = k[0] * z[0], z[0]
+
+
+@kernel
+def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
+    torque = _ideal(b)
+    b[_TORQUE] = torque
+    b[_TAU_A], b[_TAU_B] = -torque, b[_RATIO] * torque + f[0]
+
+
+def _along_torque(block: np.ndarray) -> np.ndarray:
+    del block
+    return np.array([[1.0, 0.0]])
+
+
+def _mean(block: np.ndarray) -> np.ndarray:
+    """Power flows from a to b, beyond the smooth speed."""
+    return np.array([block[_RATIO] * (block[_EFFICIENCY] - 1.0)])
+
+
+def _loses(block: np.ndarray) -> bool:
+    return bool(block[_EFFICIENCY] != 1.0)
+
+
+_LAWS = Laws(
+    arguments=("torque that flange a gives", "angular velocity of flange b"),
+    values=("torque that is lost at flange b",),
+    stiff=(0,),
+    kinks=1,
+    gather=_gather,
+    evaluate=_evaluate,
+    apply=_apply,
+    directions=_along_torque,
+    mean=_mean,
+    needed=_loses,
+)
+
+GEARED_SHAFT = Component(_d, Kernels(_step, _rhs, _out), __doc__, laws=_LAWS)

@@ -12,9 +12,9 @@ import numpy as np
 
 from herringbone.components.ports import flange, flange_body
 from herringbone.core import Component, Declaration, Kernels, parameter, state
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 FLANGES = ("flange_a", "flange_b", "flange_c")
 _TORQUES = tuple(f"{port}.tau" for port in FLANGES)

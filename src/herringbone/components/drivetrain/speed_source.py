@@ -14,9 +14,9 @@ import numpy as np
 
 from herringbone.components.ports import flange
 from herringbone.core import Component, Declaration, Kernels, input_, output, parameter, state
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _d = Declaration(
     "speed_source",

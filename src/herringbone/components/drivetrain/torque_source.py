@@ -26,11 +26,11 @@ import math
 import numpy as np
 
 from herringbone.components.ports import flange
-from herringbone.core import Component, Declaration, Kernels, input_, output, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core import Component, Declaration, Kernels, Laws, input_, output, parameter
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine
-from herringbone.kernels.jit import kernel
 
 ORDERS = 6
 """Room for orders."""
@@ -73,6 +73,7 @@ _d = Declaration(
         parameter("ramp_time", "s", "time over which the orders come in", 0.02, minimum=0),
         *_orders(),
     ],
+    tables=1,
     work=steppers.element_work(len(_INPUTS)),
     roles=[Role.SOURCE],
     ports=[flange("flange")],
@@ -86,6 +87,8 @@ _NOMINAL, _NOMINAL_SPEED, _CONSTANT, _LINEAR, _QUADRATIC, _DRY, _SMOOTH, _RAMP, 
         "dry_share", "smooth_speed", "ramp_time", "interface_degree",
     )
 )  # fmt: skip
+_TIME = _d.first_table
+"""Where the time of the law stands [s]."""
 _FIRST, _ROW = _d.index["order_1.order"], 3
 _TWO_PI = 2.0 * math.pi
 
@@ -127,10 +130,14 @@ def _rhs(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 
 
 @kernel
-def _out(b: np.ndarray, t: float) -> None:
-    torque = b[_SETPOINT] + _by_speed(b) + _ramp(b, t) * _by_angle(b)
+def _write(b: np.ndarray, torque: float) -> None:
     b[_TAU] = b[_TORQUE] = torque
     b[_POWER] = torque * b[_W]
+
+
+@kernel
+def _out(b: np.ndarray, t: float) -> None:
+    _write(b, b[_SETPOINT] + _by_speed(b) + _ramp(b, t) * _by_angle(b))
 
 
 _advance = steppers.element_stepper(_out, _d)
@@ -146,4 +153,59 @@ def _breakpoints(block: np.ndarray) -> tuple[float, ...]:
     return (float(block[_RAMP]),)
 
 
-TORQUE_SOURCE = Component(_d, Kernels(_step, _rhs, _out), __doc__, breakpoints=_breakpoints)
+@kernel
+def _gather(b: np.ndarray, z: np.ndarray) -> None:
+    z[0], z[1] = b[_PHI], b[_W]
+
+
+@kernel
+def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
+    b[_PHI], b[_W] = z[0], z[1]
+    f[0] = _by_speed(b) + _ramp(b, b[_TIME]) * _by_angle(b)
+    w, smooth = b[_W], b[_SMOOTH]
+    slope = (b[_LINEAR] + 2.0 * b[_QUADRATIC] * abs(w) / b[_NOMINAL_SPEED]) / b[_NOMINAL_SPEED]
+    square = w * w + smooth * smooth
+    slope += b[_DRY] * smooth * smooth / (square * math.sqrt(square))
+    k[0] = b[_NOMINAL] * slope
+    e[0] = w if b[_QUADRATIC] != 0.0 else 1.0
+
+
+@kernel
+def _apply(b: np.ndarray, t: float, f: np.ndarray, dx: np.ndarray) -> None:
+    _write(b, b[_SETPOINT] + f[0])
+
+
+def _along_speed(block: np.ndarray) -> np.ndarray:
+    del block
+    return np.array([[0.0, 1.0]])
+
+
+def _mean(block: np.ndarray) -> np.ndarray:
+    """At the nominal speed, without the dry share."""
+    slope = (block[_LINEAR] + 2.0 * block[_QUADRATIC]) / block[_NOMINAL_SPEED]
+    return np.array([block[_NOMINAL] * slope])
+
+
+def _bends(block: np.ndarray) -> bool:
+    """True unless the torque is a straight line over speed."""
+    amplitudes = [block[_FIRST + _ROW * k + 1] for k in range(ORDERS)]
+    return bool(block[_QUADRATIC] != 0.0 or block[_DRY] != 0.0 or any(amplitudes))
+
+
+_LAWS = Laws(
+    arguments=("angle", "angular velocity"),
+    values=("torque by speed and angle",),
+    stiff=(0,),
+    kinks=1,
+    gather=_gather,
+    evaluate=_evaluate,
+    apply=_apply,
+    directions=_along_speed,
+    mean=_mean,
+    needed=_bends,
+    clock=_TIME,
+)
+
+TORQUE_SOURCE = Component(
+    _d, Kernels(_step, _rhs, _out), __doc__, breakpoints=_breakpoints, laws=_LAWS
+)

@@ -218,6 +218,7 @@ GEAR_MESH = Component(
     verify=LOADER.verify,
     start=start,
     guess=_guess,
+    motion=motion.motions,
     indicators=motion.indicators,
     indicator_count=4,
     longest_step=steppers.longest_step(at.DECLARATION, "micro_step"),

@@ -7,8 +7,8 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.components.resources import transmission_error
+from herringbone.kernels.compiling.jit import kernel, rare
 from herringbone.kernels.elementary import cosine
-from herringbone.kernels.jit import kernel, rare
 
 
 @kernel

@@ -21,7 +21,7 @@ from herringbone.components.gear_mesh.contact import meshes
 from herringbone.components.gear_mesh.ramp import ramp
 from herringbone.components.resources import tooth_deviations, transmission_error
 from herringbone.core import Instance, ParameterError
-from herringbone.core.roles import GEARS, SIDES
+from herringbone.core.declaring.roles import GEARS, SIDES
 from herringbone.kernels import force_law
 
 _LAST = force_law.DEFLECTIONS - 1

@@ -13,7 +13,7 @@ from herringbone.components.resources import (
 )
 from herringbone.components.resources.loader import NO_FILE, Refusal, ResourceLoader
 from herringbone.kernels import force_law, tooth_pair_law
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _SAME, _SAME_RATIO = 1e-4, 1e-3  # relative
 _NUMBERS = stiffness_table.PAIR[1]

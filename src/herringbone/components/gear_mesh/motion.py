@@ -9,8 +9,8 @@ from herringbone.components.gear_mesh.contact import derive, meshes
 from herringbone.components.gear_mesh.excitation import wheel
 from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.kernels import force_law, steppers
+from herringbone.kernels.compiling.jit import kernel, rare
 from herringbone.kernels.elementary import sine_and_cosine
-from herringbone.kernels.jit import kernel, rare
 
 
 @rare

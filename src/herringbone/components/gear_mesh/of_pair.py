@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from herringbone.core.pair_values import PairValues
-from herringbone.core.roles import GEARS
+from herringbone.core.declaring.pair_values import PairValues
+from herringbone.core.declaring.roles import GEARS
 
 
 def of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:

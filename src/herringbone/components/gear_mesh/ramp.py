@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel

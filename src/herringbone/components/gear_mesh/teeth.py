@@ -7,7 +7,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.resources import tooth_deviations
 from herringbone.kernels import tooth_pair_law
-from herringbone.kernels.jit import kernel, rare
+from herringbone.kernels.compiling.jit import kernel, rare
 
 
 @kernel

@@ -10,7 +10,7 @@ from herringbone.components.gear_mesh.ramp import ramp, turn_ramp
 from herringbone.components.gear_mesh.teeth import toothed
 from herringbone.components.resources import tooth_deviations
 from herringbone.kernels import force_law
-from herringbone.kernels.jit import rare
+from herringbone.kernels.compiling.jit import rare
 
 OPEN = 1e-12
 """Depth [m] at which flanks that are open have their tangent stiffness."""
@@ -89,6 +89,7 @@ def deviating(
             f, own, depth, rate = -1.0, b[at.COAST_PHASE] - phase, coast, coast_rate
         force, tangent, slope, x = _elastic(b, side, flank, own, depth)
         b[at.PRESSED + 2 * side + flank] = x if force > 0.0 else 0.0
+        b[at.TANGENT + 2 * side + flank] = tangent
         if force > 0.0 or (open_flanks and flank == 0):
             open_flanks = False
             pressure = _pressure(b, side, f, own, depth, rate, force, tangent, x)

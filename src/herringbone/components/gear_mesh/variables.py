@@ -6,8 +6,8 @@ from herringbone.components.gear_mesh.of_pair import of_pair
 from herringbone.components.ports import HALVES, flange_body
 from herringbone.components.shipped_pair import SHIPPED_PAIR
 from herringbone.core import Variable, input_, local, output, parameter, state
-from herringbone.core.roles import GEARS, SIDES, Quantity
-from herringbone.core.units import RATES
+from herringbone.core.declaring.roles import GEARS, SIDES, Quantity
+from herringbone.core.declaring.units import RATES
 
 _SHIPPED = of_pair(SHIPPED_PAIR, {})
 _DEFLECTION_SIZE, _SPEED_SIZE, _FREQUENCY_SIZE = 1e-6, 100.0, 1e3

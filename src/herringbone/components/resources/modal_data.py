@@ -10,7 +10,7 @@ from herringbone.components.resources.flat_csv import check_units, read_flat_csv
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column, ResourceError
 from herringbone.core.reading.texts import AnyPath
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 Dofs = tuple[tuple[str, str], ...]
 

@@ -25,8 +25,8 @@ import numpy as np
 from herringbone.components.resources.loader import Refusal
 from herringbone.core import Column
 from herringbone.kernels import force_law, tooth_pair_law
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.elementary import cosine, sine
-from herringbone.kernels.jit import kernel
 
 POSITIONS, TILTS = tooth_pair_law.POSITIONS, tooth_pair_law.TILTS
 DEPTHS = tooth_pair_law.DEPTHS

@@ -19,8 +19,8 @@ import numpy as np
 from herringbone.components.resources.flat_csv import read_header
 from herringbone.components.resources.loader import REPORT, Refusal, read_numbers
 from herringbone.core import Column
+from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.force_law import LOADS, PHASES
-from herringbone.kernels.jit import kernel
 
 SIDES = ("left", "right")
 STATED_HARMONICS = 4

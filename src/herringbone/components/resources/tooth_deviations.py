@@ -16,8 +16,8 @@ import numpy as np
 
 from herringbone.components.resources.loader import Refusal
 from herringbone.core import Column
-from herringbone.core.roles import GEARS, SIDES
-from herringbone.kernels.jit import kernel
+from herringbone.core.declaring.roles import GEARS, SIDES
+from herringbone.kernels.compiling.jit import kernel
 
 COLUMNS = (
     Column("side", words=SIDES),

@@ -5,7 +5,7 @@ import hashlib
 from pathlib import Path
 
 from herringbone.core.caching.files import write_file
-from herringbone.core.paths import cache_root, is_trusted
+from herringbone.core.places.paths import cache_root, is_trusted
 
 _FOLDER = "built-fmus"
 

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from herringbone.core.paths import is_trusted
+from herringbone.core.places.paths import is_trusted
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"

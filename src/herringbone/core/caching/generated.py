@@ -12,7 +12,7 @@ from types import CodeType, ModuleType
 
 from herringbone.core.caching.files import read_stored, store, write_file
 from herringbone.core.caching.keys import digest_of
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 
 _PYTHON = f"{sys.implementation.cache_tag}-{importlib.util.MAGIC_NUMBER.hex()}"
 _LOG = logging.getLogger("herringbone")
@@ -40,10 +40,15 @@ def load_generated(kind: str, source: str) -> ModuleType:
 
 
 def _code(file: Path, source: str) -> CodeType:
-    """Byte code of a module; Python itself would not check what it keeps."""
+    """Byte code of a module; Python itself would not check what it keeps.
+
+    It names its file: that of a cache folder that was moved or copied is compiled anew.
+    """
     kept = file.with_suffix(f".{_PYTHON}.code")
     if (found := read_stored(kept)) is not None:
-        return marshal.loads(found)
+        code: CodeType = marshal.loads(found)
+        if code.co_filename == str(file):
+            return code
     code = compile(source, file, "exec")
     store(kept, marshal.dumps(code))
     return code

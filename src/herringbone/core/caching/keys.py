@@ -24,7 +24,7 @@ from pathlib import Path
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.syntax import Syntax, syntax_of
-from herringbone.core.paths import PACKAGE, cache_root, components_folder
+from herringbone.core.places.paths import PACKAGE, cache_root, components_folder
 
 _NAME = PACKAGE.name
 _COMPUTING = ("core", "kernels", "components", "cosim", "fmi")

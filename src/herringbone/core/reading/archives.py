@@ -9,8 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from herringbone.core.errors import HerringboneError, ResourceError, reason
-from herringbone.core.files import is_file, is_folder
 from herringbone.core.names import shown
+from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.reading.texts import DAMAGE, MEBIBYTE
 
 _MOST_ENTRIES: Final = 65_535
@@ -89,6 +89,8 @@ def _problem(entries: list[zipfile.ZipInfo], packed: int) -> str | None:
     """What makes the entries dangerous, if anything."""
     if len(entries) > _MOST_ENTRIES:
         return f"{len(entries)} entries; at most {_MOST_ENTRIES} are read"
+    if not all(entry.filename for entry in entries):
+        return "an entry has no name"
     unpacked = sum(entry.file_size for entry in entries)
     if unpacked > min(_LARGEST, max(_ALWAYS, _RATIO * packed)):
         return f"its {packed} bytes would become {unpacked / MEBIBYTE:.0f} MiB"

@@ -42,8 +42,8 @@ from herringbone.cosim.loops.step_error import (
     ORDER,
     update_scale,
 )
-from herringbone.cosim.record import Grid, GrowingRecord
-from herringbone.cosim.recording import ErrorEstimate, StepStatistics
+from herringbone.cosim.rows.record import Grid, GrowingRecord
+from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
 
 RESIDUAL_SHARE = 1.0

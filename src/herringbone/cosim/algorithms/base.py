@@ -20,8 +20,8 @@ from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import NodeLayout
-from herringbone.cosim.record import Grid, Record, UniformRecord
-from herringbone.cosim.recording import ErrorEstimate, StepStatistics
+from herringbone.cosim.rows.record import Grid, Record, UniformRecord
+from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from herringbone.core.declaration import node_name
+from herringbone.core.declaring.declaration import node_name
 from herringbone.core.part import Part, has_nodes
 from herringbone.cosim.layouts.derivatives import Derivatives, lay_out_derivatives
 from herringbone.cosim.layouts.slow import slow_degrees

@@ -10,7 +10,7 @@ from numba.extending import intrinsic
 
 from herringbone.cosim.cell.system_calls import FUTEX, GETPPID
 from herringbone.cosim.loops.calls import c_call
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _INT32 = ir.IntType(32)
 _ALIGNED = 4

@@ -9,7 +9,7 @@ from fmpy.model_description import ModelDescription
 from herringbone.core import HerringboneError
 from herringbone.core.caching.built import content_of
 from herringbone.core.part import STRUCTURE
-from herringbone.core.temporary import temporary_folder
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.cosim.cell.block import room
 from herringbone.cosim.cell.policy import Remark, policy
 from herringbone.cosim.cell.process import Cell

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from herringbone.core import HerringboneError
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 
 LIMIT = 1 << 20
 """Bytes that are kept; what follows is counted only, so that no flood fills the disk."""

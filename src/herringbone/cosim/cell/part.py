@@ -10,7 +10,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
-from herringbone.core.temporary import remove_temporary_folder
+from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits
 from herringbone.cosim.cell.calls import derivatives, signals, states
 from herringbone.cosim.cell.housing import give_back

@@ -20,7 +20,7 @@ from herringbone.cosim.cell.atomics import (
 )
 from herringbone.cosim.cell.block import ALIVE, DIED, LATE, SPIN
 from herringbone.cosim.loops.calls import at_address, c_call
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 
 _MONOTONIC = 1
 _LOOKS = 50

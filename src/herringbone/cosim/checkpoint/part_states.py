@@ -11,11 +11,14 @@ from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 
 
 def can_serialise(part: Part) -> bool:
-    """True if a part gives its state as bytes, as far as it says.
+    """True if a part gives its whole state as bytes.
 
-    Adapters in front of parts have states of their own, and do not.
+    A foreign FMU may leave some of it out, which shows late, or never: it does not. Neither do
+    adapters in front of parts, which have states of their own.
     """
     if isinstance(part, Fmu2Part):
+        if not part.own:
+            return False
         abilities = part.model.coSimulation
         return bool(abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate)
     return hasattr(part, "state_bytes")

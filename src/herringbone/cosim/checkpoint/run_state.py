@@ -17,7 +17,7 @@ Arrays = dict[str, np.ndarray]
 
 
 def can_checkpoint(parts: tuple[Part, ...] | list[Part]) -> bool:
-    """True if all parts give their states as bytes, as far as they say."""
+    """True if all parts give their whole states as bytes."""
     return all(can_serialise(part) for part in parts)
 
 

@@ -57,7 +57,7 @@ from herringbone.cosim.energy.monitor import (
     UNSTABLE_AT,
     EnergyMonitor,
 )
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 UNSTABLE, EARLY, INACCURATE = 1.0, 2.0, 0.1
 """Energy added by the coupling, in units of what the dampers take; EARLY holds for UNSTABLE while

@@ -10,7 +10,7 @@ import numpy as np
 
 from herringbone.cosim.energy.loop import begin_step, end_step, finish_pair
 from herringbone.cosim.energy.monitor import COMMON, DRAG_AT_END, ELASTIC, EnergyMonitor
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 
 @inlined

@@ -5,7 +5,7 @@ import numpy as np
 from herringbone.cosim.energy.loop import book_step
 from herringbone.cosim.energy.monitor import EnergyMonitor
 from herringbone.cosim.loops.common import signal
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 
 @inlined

@@ -11,11 +11,11 @@ import fmpy
 from fmpy.model_description import ModelDescription, read_model_description
 
 from herringbone.core import FmuError
-from herringbone.core.files import is_file, is_folder
+from herringbone.core.places.files import is_file, is_folder
+from herringbone.core.places.temporary import make_temporary_folder, remove_temporary_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.numbers import number
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
-from herringbone.core.temporary import make_temporary_folder, remove_temporary_folder
 
 _DESCRIPTION = "modelDescription.xml"
 _USABLE = re.compile(r"2\.0|3\.0(\.\d+)?")

@@ -17,8 +17,8 @@ from herringbone.cosim.fmu.fmi3_memory import ELEMENT
 from herringbone.cosim.fmu.fmi3_steps import POINTER, any_discrete, enter_events, leave_events
 from herringbone.cosim.loops.calls import at_address, c_call, of_state
 from herringbone.cosim.loops.common import LAST_GOOD
+from herringbone.kernels.compiling.jit import allocating, c_function
 from herringbone.kernels.fmi_calls import OK
-from herringbone.kernels.jit import allocating, c_function
 
 _EXCHANGE = types.int32(
     POINTER, types.CPointer(types.uint32), types.size_t, types.CPointer(types.float64)

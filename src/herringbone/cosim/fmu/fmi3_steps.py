@@ -13,8 +13,8 @@ from numba.extending import intrinsic
 from herringbone.cosim.fmu.fmi3_memory import EARLY, ELEMENT, ENDED, MEMORY, RUNS, STUCK
 from herringbone.cosim.loops.calls import at_address, c_call
 from herringbone.cosim.loops.common import LAST_GOOD
+from herringbone.kernels.compiling.jit import allocating, c_function
 from herringbone.kernels.fmi_calls import DISCARD
-from herringbone.kernels.jit import allocating, c_function
 
 POINTER = types.CPointer(from_dtype(MEMORY))
 """Of the memory, in the functions' signatures."""

@@ -8,7 +8,7 @@ from typing import TypeVar
 from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
-from herringbone.core.temporary import remove_temporary_folder
+from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.cell.housing import applied as applied_in_cell
 from herringbone.cosim.cell.housing import cell_for, give_back
 from herringbone.cosim.cell.part import CellPart
@@ -35,7 +35,9 @@ def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | Cel
     file = Path(file)
     model = read_fmu(file)
     if own or not _needs_cell(name, file):
-        return new_part(name, file, model=model)
+        part = new_part(name, file, model=model)
+        part.own = own or is_built(file)
+        return part
     folder = extract_fmu(file)
     try:
         cell = cell_for(name, file, model, folder)

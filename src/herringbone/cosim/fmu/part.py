@@ -13,7 +13,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
-from herringbone.core.temporary import remove_temporary_folder
+from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.log import FmuLog
@@ -43,9 +43,14 @@ class FmuPart(ABC):
         model: its model description, if it has been read.
         folder: where it is extracted already, and stays; None: to a folder of its own.
 
+    Attributes:
+        own: this installation built the FMU, so that its state is known to be whole.
+
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
+
+    own = False
 
     @keeping_modes
     def __init__(

@@ -8,10 +8,10 @@ from typing import NamedTuple
 from fmpy.model_description import ModelDescription, ModelVariable
 
 from herringbone.core import FmuError
-from herringbone.core.declaration import node_name
+from herringbone.core.declaring.declaration import node_name
+from herringbone.core.declaring.variable import NODES
 from herringbone.core.names import shown
 from herringbone.core.part import PartVariable
-from herringbone.core.variable import NODES
 from herringbone.cosim.fmu.file import is_fmi3
 
 _NODES = ".node"
@@ -70,6 +70,8 @@ def _element_names(variable: ModelVariable) -> list[str]:
         raise FmuError(
             f"array '{name}' has {size} elements; {_MOST_ELEMENTS} are possible at the most"
         )
+    if not size:  # other sizes may be anything
+        return []
     return [element_name(name, place) for place in product(*(range(1, n + 1) for n in shape))]
 
 

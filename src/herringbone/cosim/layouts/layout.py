@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.core.declaration import node_name
+from herringbone.core.declaring.declaration import node_name
 from herringbone.core.part import Part
 from herringbone.cosim.energy.monitor import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.layouts.derivatives import Derivatives

@@ -39,7 +39,7 @@ from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
 from herringbone.cosim.loops.step_choice import TOO_MUCH, continued, next_rung, too_much
 from herringbone.cosim.loops.step_error import ORDER, error_so_far, step_error, update_scale
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
 """Status: the smallest step still errs too much."""
@@ -87,7 +87,9 @@ def _accept(
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, adaptive.covered[0])
+    adaptive.far[0] = error_so_far(
+        nodes, buffers, nodes.group, adaptive.errors, adaptive.covered[0]
+    )
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]

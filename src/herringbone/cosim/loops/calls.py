@@ -12,7 +12,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from herringbone.cosim.loops.float_modes import keep_modes
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 _INT32 = ir.IntType(32)
 _GIVEN = {

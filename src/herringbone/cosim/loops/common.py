@@ -18,7 +18,7 @@ from herringbone.cosim.loops.derivatives import (
     set_derivatives,
     write_input,
 )
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 DONE, PART_FAILED, NOT_FINITE, COUPLING_FAILED = 0, 1, 2, 4
 """Status of a chunk of macro steps."""

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.cosim.layouts.derivatives import Derivatives
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.loops.calls import exchange_derivatives
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 _REAL, _REFERENCE, _ORDER = 8, 4, 4
 

@@ -8,7 +8,7 @@ from herringbone.core import FmuError
 from herringbone.core.part import Part
 from herringbone.cosim.loops.calls import do_step, exchange_reals
 from herringbone.cosim.loops.common import LAST_GOOD
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel

@@ -3,14 +3,25 @@
 import platform
 import sys
 
-from llvmlite import ir
+from llvmlite import binding, ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 _ON_X86 = platform.machine() in {"x86_64", "AMD64"}
-_MODES, _DEFAULT, _TO_NEAREST = 0xFFC0, 0x1F80, 0
+_MODES, _DEFAULT = 0xFFC0, 0x1F80
 """Of the register MXCSR: rounding, masks of exceptions, denormal numbers; all but the flags."""
+_OLD_MODES, _OLD_DEFAULT = 0x0F3F, 0x037F
+"""Of the control word of the older unit, x87: rounding, precision, masks; as Linux begins."""
+
+if _ON_X86:
+    binding.initialize_native_asmparser()
+
+
+def _instruction(builder: ir.IRBuilder, text: str, place: ir.Value) -> None:
+    """An instruction that reads or writes what stands at an address."""
+    kind = ir.FunctionType(ir.VoidType(), [place.type])
+    builder.asm(kind, text, "r,~{memory},~{dirflag},~{fpsr},~{flags}", [place], side_effect=True)
 
 
 @intrinsic
@@ -33,10 +44,21 @@ def keep_modes(typing_context):  # noqa: ANN001, ANN201
         with builder.if_then(builder.icmp_unsigned("!=", modes, word(_DEFAULT)), likely=False):
             builder.store(word(_DEFAULT), place)
             builder.call(write, [at])
-            if sys.platform == "linux":  # the older unit of the processor rounds by itself
-                kind = ir.FunctionType(word, [word])
-                rounding = cgutils.get_or_insert_function(builder.module, kind, "fesetround")
-                builder.call(rounding, [word(_TO_NEAREST)])
+        if sys.platform == "linux":
+            _keep_old_modes(builder)
         return context.get_dummy_value()
 
     return types.void(), generate
+
+
+def _keep_old_modes(builder: ir.IRBuilder) -> None:
+    """The older unit rounds by itself: long doubles of C, and what C libraries make of them."""
+    word = ir.IntType(16)
+    place = cgutils.alloca_once(builder, word)
+    at = builder.bitcast(place, cgutils.voidptr_t)
+    _instruction(builder, "fnstcw ($0)", at)
+    modes = builder.and_(builder.load(place), word(_OLD_MODES))
+    default = word(_OLD_DEFAULT & _OLD_MODES)
+    with builder.if_then(builder.icmp_unsigned("!=", modes, default), likely=False):
+        builder.store(word(_OLD_DEFAULT), place)
+        _instruction(builder, "fldcw ($0)", at)

@@ -7,7 +7,7 @@ rungs lie a factor of 1.2 to 1.33 apart (1 ... 200 in the series 1, 1.25, 1.6, 2
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 RUNGS = (4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100, 125, 160, 200, 250, 320, 400, 500,
          640, 800)  # fmt: skip

@@ -5,7 +5,7 @@ import numpy as np
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
-from herringbone.kernels.jit import inlined, seldom
+from herringbone.kernels.compiling.jit import inlined, seldom
 
 
 @inlined

@@ -21,7 +21,7 @@ from herringbone.cosim.loops.derivatives import (
     write_input,
 )
 from herringbone.cosim.loops.slow import predict_slow_nodes
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 
 @inlined

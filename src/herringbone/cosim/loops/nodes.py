@@ -25,7 +25,7 @@ from herringbone.cosim.loops.common import (
 )
 from herringbone.cosim.loops.node_pass import begin, one_pass, restore
 from herringbone.cosim.loops.slow import finish_slow, trace_slow
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 REFRESH = 3
 """Status: the correction no longer contracts; a new Jacobian is wanted."""

@@ -28,7 +28,7 @@ from herringbone.cosim.loops.derivatives import (
     set_derivatives,
     write_input,
 )
-from herringbone.kernels.jit import inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 NODES = 3
 """Degree at which elements take motions and give forces."""

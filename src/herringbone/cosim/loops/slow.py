@@ -6,7 +6,7 @@ from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.slow import Slow
 from herringbone.cosim.loops.calls import do_step
 from herringbone.cosim.loops.common import LAST_GOOD, exchange, get_outputs, record_row
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 
 @inlined

@@ -15,7 +15,7 @@ from herringbone.cosim.loops.common import (
     step_stage,
 )
 from herringbone.cosim.loops.slow import finish_slow, predict_slow, trace_slow
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel

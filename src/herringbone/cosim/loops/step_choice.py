@@ -4,7 +4,7 @@ import numpy as np
 
 from herringbone.cosim.layouts.adaptive import Adaptive
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
 
 _MEMORY = 0.8
 """Share of the mean square of the error factor that is kept from step to step."""

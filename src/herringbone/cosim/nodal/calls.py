@@ -26,7 +26,7 @@ from herringbone.cosim.nodal.memory import MEMORY_POINTER
 from herringbone.cosim.nodal.once import answer
 from herringbone.cosim.nodal.steps import end, expand, read, settle, take
 from herringbone.cosim.nodal.watch import measure_if_suspected
-from herringbone.kernels.jit import c_function
+from herringbone.kernels.compiling.jit import c_function
 from herringbone.kernels.signals import STRIDE
 
 _EXCHANGE = types.int32(

@@ -19,7 +19,7 @@ from numba import carray
 
 from herringbone.cosim.loops.calls import at_address, exchange_reals
 from herringbone.cosim.signature.rotation import Given
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate
 
 _START, _END = int(Given.START), int(Given.END)

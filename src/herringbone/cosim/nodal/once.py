@@ -14,7 +14,7 @@ import numpy as np
 from numba import carray
 
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, monomial
 
 

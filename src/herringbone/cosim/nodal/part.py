@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.core.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.variable import NODES
 from herringbone.core.part import Addresses, Given, Part, PartVariable
-from herringbone.core.variable import NODES
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.nodal import calls
 from herringbone.cosim.nodal.memory import MEMORY

@@ -10,7 +10,7 @@ from herringbone.cosim.nodal.held import give, hold
 from herringbone.cosim.nodal.once import make_up, remember
 from herringbone.cosim.nodal.watch import compare
 from herringbone.cosim.signature.rotation import Given
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
 
 _START = int(Given.START)

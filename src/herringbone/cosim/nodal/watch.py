@@ -19,7 +19,7 @@ from numba import carray
 from herringbone.cosim.loops.calls import at_address, do_step, exchange_reals, state_call
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.cosim.nodal.held import give
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate
 
 OFF = 0.1

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import StructureError
-from herringbone.core.part_path import flat_name
+from herringbone.core.places.part_path import flat_name
 from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import CHANNELS_ANNOTATION, PARTS_ANNOTATION
 from herringbone.cosim.structure.system import System

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from herringbone.core.part import PartVariable
-from herringbone.core.part_path import PartPath, flat_name
+from herringbone.core.places.part_path import PartPath, flat_name
 from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.placing import places

@@ -10,7 +10,7 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core import ParameterError
 from herringbone.core.part import PartVariable
-from herringbone.core.part_path import PartPath, flat_name
+from herringbone.core.places.part_path import PartPath, flat_name
 from herringbone.cosim.fmu.file import is_fmi3, read_fmu
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.structure.system import Values

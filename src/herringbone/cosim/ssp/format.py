@@ -6,11 +6,11 @@ from typing import Final
 from xml.etree.ElementTree import Element
 
 from herringbone.core import StructureError
-from herringbone.core.files import is_file, is_folder
+from herringbone.core.places.files import is_file, is_folder
+from herringbone.core.places.temporary import make_temporary_folder, remove_temporary_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.texts import read_bytes
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml
-from herringbone.core.temporary import make_temporary_folder, remove_temporary_folder
 
 STRUCTURE_FILE: Final = "SystemStructure.ssd"
 VERSION: Final = "1.0"

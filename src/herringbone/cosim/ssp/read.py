@@ -12,10 +12,10 @@ from urllib.parse import unquote, urlparse
 from xml.etree.ElementTree import Element
 
 from herringbone.core import FmuError, StructureError
-from herringbone.core.files import is_file
 from herringbone.core.names import check_name, check_path, identifier_for, is_identifier, shown
 from herringbone.core.part import PartVariable
-from herringbone.core.part_path import PartPath
+from herringbone.core.places.files import is_file
+from herringbone.core.places.part_path import PartPath
 from herringbone.core.reading.numbers import number, whole
 from herringbone.core.reading.texts import read_bytes
 from herringbone.core.reading.xml import LARGEST_XML, parse_xml

@@ -21,6 +21,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from herringbone.core import StructureError
 from herringbone.core.part import Part
+from herringbone.core.places.files import replacing
 from herringbone.cosim.ssp.described import DescribedPart
 from herringbone.cosim.ssp.format import STRUCTURE_FILE
 from herringbone.cosim.ssp.osp_structure import OSP_FILE, osp_structure
@@ -108,7 +109,7 @@ def _text(root: Element) -> bytes:
 
 def _write_zip(entries: Mapping[str, bytes], file: Path) -> None:
     """Stored, not compressed: FMUs are compressed, and the bytes do not depend on a zlib."""
-    with zipfile.ZipFile(file, "w") as archive:
+    with replacing(file, text=False) as stream, zipfile.ZipFile(stream, "w") as archive:
         for name in sorted(entries):
             entry = zipfile.ZipInfo(name, _TIMESTAMP)
             entry.create_system = 3

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.names import shown
 from herringbone.core.part import Part
-from herringbone.core.part_path import PartPath, find_part
+from herringbone.core.places.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.roles import find_roles
 from herringbone.cosim.structure.system import System

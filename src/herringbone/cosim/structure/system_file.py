@@ -23,10 +23,10 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import StructureError
-from herringbone.core.files import beside, is_file
 from herringbone.core.names import check_name, identifier_for, shown
-from herringbone.core.part_path import PartPath
-from herringbone.core.paths import systems_folder
+from herringbone.core.places.files import beside, is_file
+from herringbone.core.places.part_path import PartPath
+from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system import PartSpec, System
 

@@ -16,7 +16,7 @@ from herringbone.cosim.loops.calls import (
 )
 from herringbone.cosim.loops.calls import do_step as step_part
 from herringbone.cosim.loops.common import LAST_GOOD
-from herringbone.kernels.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import allocating, c_function
 
 MEMORY = np.dtype(
     [

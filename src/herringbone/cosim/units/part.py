@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from herringbone.core import FmuError
+from herringbone.core.declaring.units import si_name
 from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
-from herringbone.core.units import si_name
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.units import calls
 

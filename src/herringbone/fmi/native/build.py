@@ -9,8 +9,8 @@ from herringbone.core.activity import activity
 from herringbone.core.caching.built import note_built
 from herringbone.core.caching.files import is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
-from herringbone.core.paths import cache_folder
-from herringbone.core.temporary import temporary_folder
+from herringbone.core.places.paths import cache_folder
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.fmi.archive import add_to_archive
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source

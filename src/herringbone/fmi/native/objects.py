@@ -17,10 +17,10 @@ from numba import carray, types
 from herringbone.components.resources.loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component
-from herringbone.core.component import unbounded, unchanged
+from herringbone.core.declaring.component import unbounded, unchanged
 from herringbone.fmi.native.platforms import Platform
-from herringbone.kernels.jit import c_code
-from herringbone.kernels.linking import CFunction
+from herringbone.kernels.compiling.jit import c_code
+from herringbone.kernels.compiling.linking import CFunction
 
 _OPTIMISATION = 3
 _PLAIN = 1

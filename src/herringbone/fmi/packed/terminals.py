@@ -3,7 +3,7 @@
 from xml.etree.ElementTree import Element, SubElement
 
 from herringbone.core import Declaration
-from herringbone.core.roles import Port
+from herringbone.core.declaring.roles import Port
 
 _FILE_VERSION = "3.0"
 """FMI 2.0.4 takes the file of FMI 3.0."""

@@ -13,7 +13,7 @@ from pythonfmu import FmuBuilder
 
 from herringbone.components.registry import component
 from herringbone.core.caching.keys import sources_key
-from herringbone.core.temporary import temporary_folder
+from herringbone.core.places.temporary import temporary_folder
 from herringbone.fmi.archive import write_archive
 
 

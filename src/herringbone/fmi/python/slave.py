@@ -14,9 +14,9 @@ from pythonfmu.enums import Fmi2Status
 from herringbone.components.registry import component
 from herringbone.core import FmuError, Instance
 from herringbone.core.caching.keys import sources_key
+from herringbone.core.declaring.units import quantity
+from herringbone.core.declaring.variable import Causality
 from herringbone.core.instance import check_value
-from herringbone.core.units import quantity
-from herringbone.core.variable import Causality
 from herringbone.fmi import interface, model_description
 from herringbone.fmi.python import state
 from herringbone.fmi.python.guarded_slave import GuardedSlave

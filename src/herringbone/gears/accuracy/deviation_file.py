@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.core import HerringboneError, ResourceError
+from herringbone.core.places.files import write_whole
 from herringbone.core.reading.numbers import number
 from herringbone.core.reading.texts import lines_of, read_text
 from herringbone.gears.accuracy.deviations import ToothDeviations
@@ -42,7 +43,7 @@ def write_deviations(deviations: Sequence[ToothDeviations], file: str | Path) ->
             f"{gear},{tooth},{','.join(map(repr, row))}" for tooth, row in enumerate(rows, start=1)
         ]
     try:
-        Path(file).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+        write_whole(Path(file), "\n".join(lines) + "\n")
     except OSError as error:
         raise HerringboneError(f"cannot write {file}: {error.strerror}") from error
 

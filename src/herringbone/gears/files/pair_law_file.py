@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from herringbone.components.resources.pair_law import DEPTHS, tilts
-from herringbone.core.roles import GEARS, SIDES
+from herringbone.core.declaring.roles import GEARS, SIDES
 from herringbone.gears.accuracy.deviations import ToothDeviations
 from herringbone.gears.files.table_file import fingerprint
 from herringbone.gears.geometry.gear_pair import GearPair

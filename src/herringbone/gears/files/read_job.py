@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from herringbone.core import ParameterError
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.rexs import STAGE_MARK, read_rexs
 from herringbone.gears.job import GearJob

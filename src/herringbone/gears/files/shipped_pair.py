@@ -5,8 +5,8 @@
 
 from dataclasses import fields
 
-from herringbone.core.pair_values import PairValues
-from herringbone.core.paths import PACKAGE, components_folder
+from herringbone.core.declaring.pair_values import PairValues
+from herringbone.core.places.paths import PACKAGE, components_folder
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.pair_values import pair_values
 
@@ -17,7 +17,7 @@ _HEAD = '''"""The shipped gear pair: what follows from its gear file, with all d
 Made by `python -m herringbone.gears.files.shipped_pair`; edit the gear file instead.
 """
 
-from herringbone.core.pair_values import PairValues
+from herringbone.core.declaring.pair_values import PairValues
 
 SHIPPED_PAIR = PairValues(
 '''

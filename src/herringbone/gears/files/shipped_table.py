@@ -5,7 +5,7 @@ first time, less than a minute on two idle cores.
 """
 
 from herringbone.components.registry import component_for
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.table_file import write_table
 from herringbone.gears.job_stiffness import stiffness_for

@@ -4,7 +4,8 @@ import math
 from pathlib import Path
 
 from herringbone.core import HerringboneError
-from herringbone.core.roles import SIDES
+from herringbone.core.declaring.roles import SIDES
+from herringbone.core.places.files import write_whole
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
@@ -73,6 +74,6 @@ def write_table(stiffness: MeshStiffness, file: str | Path) -> None:
         HerringboneError: the file cannot be written.
     """
     try:
-        Path(file).write_text(table_text(stiffness), encoding="utf-8", newline="\n")
+        write_whole(Path(file), table_text(stiffness))
     except OSError as error:
         raise HerringboneError(f"cannot write {file}: {error.strerror}") from error

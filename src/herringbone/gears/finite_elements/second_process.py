@@ -15,7 +15,7 @@ from threading import Thread
 
 from threadpoolctl import threadpool_limits
 
-from herringbone.core.paths import PACKAGE
+from herringbone.core.places.paths import PACKAGE
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import ToothCompliance, tooth_compliance
 from herringbone.gears.geometry.gear_pair import GearPair

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from herringbone.housing.modal_model import AXES, ModalHousing
 
 _STIFFNESS, _OFF = 1e9, 1e3

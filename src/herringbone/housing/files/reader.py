@@ -9,7 +9,7 @@ import numpy as np
 from herringbone.components.resources.flat_csv import read_flat_csv
 from herringbone.components.resources.modal_data import read_mode_table, read_shape_table
 from herringbone.core import ResourceError
-from herringbone.core.files import is_folder
+from herringbone.core.places.files import is_folder
 from herringbone.core.reading.archives import open_archive
 from herringbone.core.reading.structured import read_json
 from herringbone.core.reading.texts import AnyPath, read_bytes

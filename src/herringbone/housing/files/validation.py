@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.core import ResourceError
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from herringbone.housing.files.plausibility import implausible
 from herringbone.housing.modal_model import AXES, SEAT_DOFS, Frame, ModalHousing, Point
 

@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.core import ResourceError
+from herringbone.core.declaring.roles import HALVES
 from herringbone.core.reading.numbers import whole
 from herringbone.core.reading.texts import LARGEST_MODEL, read_text
-from herringbone.core.roles import HALVES
 from herringbone.housing.importers.mode_set import make_frame, make_point
 from herringbone.housing.importers.seat_file import SeatFile, Selection
 from herringbone.housing.modal_model import AXES, ModalHousing, Point

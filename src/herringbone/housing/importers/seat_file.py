@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import ResourceError
+from herringbone.core.declaring.roles import HALVES
 from herringbone.core.reading.structured import read_toml
-from herringbone.core.roles import HALVES
 from herringbone.housing.modal_model import AXES
 
 _UNITS: Mapping[str, Mapping[str, float]] = {

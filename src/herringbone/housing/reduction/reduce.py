@@ -200,6 +200,12 @@ def _modes(stiffness: Matrix, mass: Matrix, count: int, factorisation: Factorisa
         )
     except la.LinAlgError as error:
         raise HerringboneError("the mass matrix is not positive definite") from error
+    if squares.size < count or not np.isfinite(squares).all():
+        least, most = mass.diagonal().min(), mass.diagonal().max()
+        raise HerringboneError(
+            f"not all {count} modes are found: entries of the mass matrix lie between {least:.3g} "
+            f"and {most:.3g} kg; give every degree of freedom a mass, or condense it"
+        )
     return Modes(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi), shapes)
 
 

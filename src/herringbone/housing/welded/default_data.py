@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from herringbone.components.registry import component_for
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.housing import ModalHousing, write_housing
 from herringbone.housing.eigenmodes import eigenmodes
 from herringbone.housing.welded.build import BuiltHousing, build_housing

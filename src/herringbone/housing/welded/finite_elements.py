@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from herringbone.core import HerringboneError
-from herringbone.core.roles import HALVES
+from herringbone.core.declaring.roles import HALVES
 from herringbone.housing.modal_model import Point
 from herringbone.housing.welded.design import HousingDesign, Sensors
 from herringbone.housing.welded.dimensions import Dimensions

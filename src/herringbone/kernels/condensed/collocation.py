@@ -1,4 +1,4 @@
-"""Collocation of laws over one step: residuals at the nodes, and the matrix of their iteration.
+"""Collocation of laws over one step: residuals at the nodes, and their correction.
 
 Nodes are those of Lobatto, the start of the step included. Unknown are the values of the laws, less
 mean tangents times arguments, at all nodes but the first. Inputs of a step are the values of all
@@ -9,20 +9,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.jit import inlined
+from herringbone.kernels.compiling.jit import inlined
+from herringbone.kernels.condensed.modal import solve
 
 
 class Table(NamedTuple):
     """Where the laws' values and tangents lie, by value or tangent.
 
     Attributes:
-        tangent: (values, arguments), mean tangents.
+        first: (values + 1,) where the mean tangents of a value begin.
+        argument, tangent: which argument, and the mean tangent over it, of all that are not zero.
         value: (tangents,) whose tangent it is.
         mean: (tangents,).
         unknown: (values,) row of a stiff value among the unknowns, else -1.
         scale: (values,) largest size that each had, so far.
     """
 
+    first: np.ndarray
+    argument: np.ndarray
     tangent: np.ndarray
     value: np.ndarray
     mean: np.ndarray
@@ -38,12 +42,40 @@ class Nodes(NamedTuple):
         f: (nodes - 1, values).
         k: (nodes - 1, tangents).
         e: (nodes, indicators), the start included.
+        start: (arguments,) at the start.
     """
 
     z: np.ndarray
     f: np.ndarray
     k: np.ndarray
     e: np.ndarray
+    start: np.ndarray
+
+
+class Room(NamedTuple):
+    """Room for the correction of a step.
+
+    Attributes:
+        matrix: (unknowns x nodes, the same).
+        r: (unknowns x nodes,) residuals, then corrections.
+    """
+
+    matrix: np.ndarray
+    r: np.ndarray
+
+
+def make_room(unknowns: int, inner: int) -> Room:
+    """Room for so many unknowns at so many nodes."""
+    size = unknowns * inner
+    return Room(np.empty((size, size)), np.empty(size))
+
+
+@inlined
+def less_tangents(table: Table, value: int, force: float, z: np.ndarray) -> float:
+    """A value less its mean tangents times the arguments."""
+    for k in range(table.first[value], table.first[value + 1]):
+        force -= table.tangent[k] * z[table.argument[k]]
+    return force
 
 
 @inlined
@@ -55,44 +87,114 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
     inner = len(nodes.z)
     largest = 0.0
     for value in range(table.unknown.size):
-        row = table.unknown[value]
+        unknown = table.unknown[value]
+        own = u[value * (inner + 1) + 1 : (value + 1) * (inner + 1)]
+        if unknown < 0:
+            for i in range(inner):
+                own[i] = nodes.f[i, value]
+            continue
+        to = r[unknown * inner : (unknown + 1) * inner]
         for i in range(inner):
-            force = nodes.f[i, value]
-            table.scale[value] = max(table.scale[value], abs(force))
-            rest = force
-            if row >= 0:
-                for j in range(len(nodes.z[i])):
-                    rest -= table.tangent[value, j] * nodes.z[i, j]
-            place = value * (inner + 1) + i + 1
-            if row >= 0:
-                r[row * inner + i] = rest - u[place]
-                if not abs(r[row * inner + i]) <= largest * table.scale[value]:
-                    largest = abs(r[row * inner + i]) / table.scale[value]
-            else:
-                u[place] = rest
+            to[i] = nodes.f[i, value]
+        for k in range(table.first[value], table.first[value + 1]):
+            tangent, argument = table.tangent[k], table.argument[k]
+            for i in range(inner):
+                to[i] -= tangent * nodes.z[i, argument]
+        scale, off = table.scale[value], 0.0
+        for i in range(inner):
+            scale = max(scale, abs(nodes.f[i, value]))
+            to[i] -= own[i]  # last, so that a solution leaves nothing, not even rounding
+            if not abs(to[i]) <= off:
+                off = abs(to[i])
+        table.scale[value] = scale
+        if not off <= largest * scale:
+            largest = off / scale
     return largest
 
 
 @inlined
-def iteration_matrix(table: Table, nodes: Nodes, along: np.ndarray, a: np.ndarray) -> None:
-    """Derivative of inputs less values, over the stiff inputs at all nodes but the first.
+def spread(
+    nodes: Nodes, at: np.ndarray, sharp: np.ndarray, back: np.ndarray, rows: np.ndarray
+) -> None:
+    """Write arguments at all nodes from those at the end, and along sharp directions.
+
+    Args:
+        nodes: with arguments at the start; `z` is written.
+        at: (nodes,) places in a step.
+        sharp, back: see `Fixed` of the march.
+        rows: along the directions at all nodes but start and end, then arguments at the end.
+    """
+    count, arguments = sharp.shape
+    last = len(nodes.z) - 1
+    end, first = nodes.z[last], last * count
+    for a in range(arguments):
+        end[a] = rows[first + a]
+    for k in range(count):
+        before, after = 0.0, 0.0
+        for a in range(arguments):
+            if sharp[k, a] != 0.0:
+                before += sharp[k, a] * nodes.start[a]
+                after += sharp[k, a] * end[a]
+        for i in range(last):
+            rows[i * count + k] -= before + at[i + 1] * (after - before)
+    for i in range(last):
+        c, z = at[i + 1], nodes.z[i]
+        for a in range(arguments):
+            z[a] = nodes.start[a] + c * (end[a] - nodes.start[a])
+        for k in range(count):
+            miss = rows[i * count + k]
+            for a in range(arguments):
+                z[a] += back[k, a] * miss
+
+
+@inlined
+def _bent(table: Table, nodes: Nodes, r: np.ndarray) -> tuple[int, int]:
+    """First unknown, and the one after the last, that a correction is to be solved for.
+
+    All others have tangents that are their means, and no residual.
+    """
+    inner = len(nodes.z)
+    first, end = r.size // inner, 0
+    for t in range(table.value.size):
+        unknown = table.unknown[table.value[t]]
+        if first <= unknown < end:
+            continue
+        off = 0.0
+        for i in range(inner):
+            off += abs(nodes.k[i, t] - table.mean[t]) + abs(r[unknown * inner + i])
+        if off != 0.0:
+            first, end = min(first, unknown), max(end, unknown + 1)
+    return first, end
+
+
+@inlined
+def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
+    """Replace residuals by the corrections of the inputs, by one step of Newton.
 
     Args:
         table, nodes: with tangents.
         along: (nodes - 1, tangents, unknowns x nodes): directions of the tangents over the inputs.
-        a: receives the matrix.
+        room: with residuals.
     """
-    inner, size = len(nodes.z), len(a)
+    inner = len(nodes.z)
+    first, end = _bent(table, nodes, room.r)
+    begin, size = first * inner, (end - first) * inner
+    if size <= 0:
+        return
     for row in range(size):
+        matrix = room.matrix[row]
         for column in range(size):
-            a[row, column] = 1.0 if row == column else 0.0
+            matrix[column] = 0.0
+        matrix[row] = 1.0
     for t in range(table.value.size):
-        first = table.unknown[table.value[t]] * inner
-        for i in range(inner):
-            rest = nodes.k[i, t] - table.mean[t]
-            if rest != 0.0:
+        place = (table.unknown[table.value[t]] - first) * inner
+        if 0 <= place < size:
+            for i in range(inner):
+                rest = nodes.k[i, t] - table.mean[t]
+                matrix, own = room.matrix[place + i], along[i, t, begin : begin + size]
                 for column in range(size):
-                    a[first + i, column] -= rest * along[i, t, column]
+                    matrix[column] -= rest * own[column]
+    solve(room.matrix, room.r[begin : begin + size])
 
 
 @inlined

@@ -1,12 +1,12 @@
 """Modal coordinates over a step: rows of what is wanted, and the coordinates themselves.
 
-Matrices are stored with the modes (or the inputs) first, so that the innermost loops go side by
-side over rows or modes, and no sum changes its order.
+Matrices are stored with the coordinates (or the inputs) first, so that the innermost loops go side
+by side over rows, several columns at once, and no sum changes its order.
 """
 
 import numpy as np
 
-from herringbone.kernels.jit import kernel
+from herringbone.kernels.compiling.jit import kernel
 
 
 @kernel
@@ -17,39 +17,46 @@ def copy(values: np.ndarray, to: np.ndarray) -> None:
 
 
 @kernel
-def fill(to: np.ndarray, value: float) -> None:
-    """Write one value everywhere."""
-    for i in range(to.size):
-        to[i] = value
+def add_product(matrix: np.ndarray, values: np.ndarray, to: np.ndarray) -> None:
+    """Add matrix (values, rows) times the values to `to` (rows,)."""
+    n, rows = values.size, to.size
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a, b, c, d = values[i], values[i + 1], values[i + 2], values[i + 3]
+        of_a, of_b, of_c, of_d = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
+        for row in range(rows):
+            to[row] += of_a[row] * a + of_b[row] * b + (of_c[row] * c + of_d[row] * d)
+    for i in range(whole, n):
+        a, of_a = values[i], matrix[i]
+        for row in range(rows):
+            to[row] += of_a[row] * a
 
 
 @kernel
-def add_rows(
-    real: np.ndarray, imag: np.ndarray, x: np.ndarray, y: np.ndarray, to: np.ndarray
+def add_chosen(
+    matrix: np.ndarray, values: np.ndarray, chosen: np.ndarray, count: int, to: np.ndarray
 ) -> None:
-    """Add the real part of matrix times coordinates x + i y to `to`; matrix (modes, rows)."""
-    for mode in range(x.size):
-        a, b = x[mode], y[mode]
-        re, im = real[mode], imag[mode]
-        for row in range(to.size):
-            to[row] += re[row] * a - im[row] * b
+    """As `add_product`, of the first `count` chosen values; the others are zero."""
+    rows = to.size
+    whole = count - count % 4
+    for k in range(0, whole, 4):
+        i, j, m, n = chosen[k], chosen[k + 1], chosen[k + 2], chosen[k + 3]
+        a, b, c, d = values[i], values[j], values[m], values[n]
+        of_a, of_b, of_c, of_d = matrix[i], matrix[j], matrix[m], matrix[n]
+        for row in range(rows):
+            to[row] += of_a[row] * a + of_b[row] * b + (of_c[row] * c + of_d[row] * d)
+    for k in range(whole, count):
+        a, of_a = values[chosen[k]], matrix[chosen[k]]
+        for row in range(rows):
+            to[row] += of_a[row] * a
 
 
 @kernel
-def add_inputs(matrix: np.ndarray, values: np.ndarray, first: int, to: np.ndarray) -> None:
-    """Add matrix (inputs, rows), from input `first` on, times the values to `to`."""
-    for i in range(first, values.size):
-        value = values[i]
-        if value != 0.0:
-            column = matrix[i]
-            for row in range(to.size):
-                to[row] += column[row] * value
-
-
-@kernel
-def turn(real: np.ndarray, imag: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
-    """Multiply the coordinates x + i y by the factors of the modes."""
-    for mode in range(x.size):
+def turn(real: np.ndarray, imag: np.ndarray, q: np.ndarray) -> None:
+    """Multiply coordinates by the factors of the modes; q: all real parts, then the imaginary."""
+    modes = real.size
+    x, y = q[:modes], q[modes : 2 * modes]
+    for mode in range(modes):
         a, b = x[mode], y[mode]
         x[mode] = real[mode] * a - imag[mode] * b
         y[mode] = real[mode] * b + imag[mode] * a
@@ -57,19 +64,26 @@ def turn(real: np.ndarray, imag: np.ndarray, x: np.ndarray, y: np.ndarray) -> No
 
 @kernel
 def solve(a: np.ndarray, r: np.ndarray) -> None:
-    """Solve a x = r by elimination without pivots, for a matrix near the identity; x in `r`."""
+    """Solve a x = r by elimination without pivots, for a matrix near the identity; x in `r`.
+
+    Of `a` as many rows and columns are used as `r` has.
+    """
     n = r.size
     for k in range(n):
-        per = 1.0 / a[k, k]
+        pivot = a[k]
+        per = 1.0 / pivot[k]
+        right = r[k]
         for i in range(k + 1, n):
-            factor = a[i, k] * per
+            row = a[i]
+            factor = row[k] * per
             if factor != 0.0:
                 for j in range(k + 1, n):
-                    a[i, j] -= factor * a[k, j]
-                r[i] -= factor * r[k]
+                    row[j] -= factor * pivot[j]
+                r[i] -= factor * right
     for back in range(n):
         k = n - 1 - back
+        row = a[k]
         total = r[k]
         for j in range(k + 1, n):
-            total -= a[k, j] * r[j]
-        r[k] = total / a[k, k]
+            total -= row[j] * r[j]
+        r[k] = total / row[k]

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from herringbone.core import Outcome, OutcomeKind, ResourceError
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.core.reading.structured import read_json
 from herringbone.result.folder.names import SUMMARY, TABLE, State
 from herringbone.result.folder.result_file import result_of

@@ -3,6 +3,8 @@
 from enum import StrEnum
 from pathlib import Path
 
+from herringbone.core.places.files import PART
+
 FORMAT = 1
 """Version of the folder's format; readers take this one and older ones."""
 RUN, ROWS, OTHERS, CHECKPOINT = "run.json", "results.npy", "others.jsonl", "checkpoint"
@@ -10,8 +12,6 @@ TABLE, UNITS, PARQUET = "results.csv", "units.csv", "results.parquet"
 SUMMARY, TEXT = "summary.json", "summary.txt"
 OLD = ".before"
 """Ends the name of the last checkpoint but one."""
-PART = ".part"
-"""Ends the name of a file that is not written to its end."""
 _REPORT = (TABLE, UNITS, PARQUET, SUMMARY, TEXT)
 _PICTURES = (
     "overview", "bearing_forces", "seat_velocities", "spectra", "torques", "radiated_power",

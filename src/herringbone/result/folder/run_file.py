@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ResourceError
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.core.reading.structured import read_json
 from herringbone.result.folder.names import FORMAT, RUN, State
 from herringbone.result.folder.typed import as_json, from_json

@@ -2,13 +2,12 @@
 
 import contextlib
 import os
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
 from herringbone.core import HerringboneError
-from herringbone.result.folder.names import PART
+from herringbone.core.places import files
 
 _ROOM = frozenset({"No space left on device", "Disk quota exceeded", "File too large"})
 
@@ -38,34 +37,14 @@ def replacing(file: Path, *, text: bool = True) -> Iterator[IO]:
     Raises:
         HerringboneError: it cannot be written; what was there stays.
     """
-    part = None
     try:
-        descriptor, name = tempfile.mkstemp(PART, f".{file.name}.", file.parent)
-        part = Path(name)
-        plain = {"encoding": "utf-8", "newline": ""} if text else {}
-        with os.fdopen(descriptor, "w" if text else "wb", **plain) as stream:  # type: ignore[call-overload]
+        with files.replacing(file, text=text) as stream:
             yield stream
-            stream.flush()
-            os.fsync(stream.fileno())
-        part.chmod(0o666 & ~_umask())
-        part.replace(file)
-        part = None
     except OSError as error:
         raise refused(error, file) from error
-    finally:
-        if part is not None:
-            with contextlib.suppress(OSError):
-                part.unlink()
 
 
 def write_text(file: Path, content: str) -> None:
     """Write a text file whole; raises HerringboneError."""
     with replacing(file) as stream:
         stream.write(content)
-
-
-def _umask() -> int:
-    """What a new file's permissions leave out."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

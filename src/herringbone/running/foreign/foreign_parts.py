@@ -12,7 +12,7 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.activity import activity
-from herringbone.core.declaration import INTERFACE_DEGREE, is_node
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, is_node
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.adapter import PartAdapter, WithoutStates
 from herringbone.cosim.cell.part import CellPart

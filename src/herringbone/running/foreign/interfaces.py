@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from herringbone.core.declaration import is_node
+from herringbone.core.declaring.declaration import is_node
 from herringbone.core.part import Part
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System

@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
-from herringbone.core.paths import cache_root
+from herringbone.core.places.paths import cache_root
 from herringbone.cosim.signature import Answer, Kind, Signature
 from herringbone.cosim.signature.rotation import Given
 from herringbone.cosim.signature.signature import Rate

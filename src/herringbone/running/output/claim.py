@@ -8,9 +8,14 @@ from pathlib import Path
 
 from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.errors import reason
-from herringbone.core.files import is_file
+from herringbone.core.places.files import is_file
 from herringbone.result.folder.names import SUMMARY, State
 from herringbone.result.folder.run_file import read_run_file
+
+try:
+    import fcntl
+except ImportError:  # on Windows: no locks there
+    fcntl = None  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)
@@ -99,15 +104,13 @@ class FolderLock:
         self._descriptor = -1
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            if fcntl is None:
+                return
+            self._descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
         except OSError as error:
             raise HerringboneError(
                 f"cannot write {folder}: {reason(error)}; choose another folder"
             ) from error
-        try:
-            import fcntl  # noqa: PLC0415 (not on Windows: no lock there)
-        except ImportError:
-            return
-        self._descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

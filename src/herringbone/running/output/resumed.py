@@ -14,7 +14,7 @@ from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.state_file import read_state
 from herringbone.result.folder.stored_table import stored_table
 from herringbone.result.result import Result
-from herringbone.running.report import finish_report, write_summary
+from herringbone.running.reporting.report import finish_report, write_summary
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
 """The folder of a run, from the claim before it starts to its last file."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
-from herringbone.cosim.stream import Streaming
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.structure.system import System
 from herringbone.result.folder.checked_store import ReplayError
 from herringbone.result.folder.names import State, remove_results
@@ -17,7 +18,7 @@ from herringbone.result.result import Result
 from herringbone.running.output.claim import Claim, FolderLock, claimed
 from herringbone.running.output.resumed import Resumed
 from herringbone.running.output.settings import key_of, settings_of
-from herringbone.running.report import finish_report, store_result, write_summary
+from herringbone.running.reporting.report import finish_report, store_result, write_summary
 from herringbone.scenes import Scene
 
 
@@ -171,17 +172,17 @@ class RunOutput:
         if self._lock is not None:
             self._lock.release()
 
-    def explain(self, error: HerringboneError) -> None:
-        """Say of a run that could not go on writing what is there.
-
-        Raises:
-            HerringboneError: that says so, in place of the error, if there is something.
-        """
-        store = self._store
-        if store is None or not store.rows or isinstance(error, ReplayError):
-            return
-        last = float(store.table.last(1).iloc[0, 0])
-        raise HerringboneError(
-            f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}, and --resume "
-            "goes on from there"
-        ) from error
+    @contextmanager
+    def explaining(self) -> Iterator[None]:
+        """Context whose errors say what is there of a run that could not go on."""
+        try:
+            yield
+        except HerringboneError as error:
+            store = self._store
+            if store is None or not store.rows or isinstance(error, ReplayError):
+                raise
+            last = float(store.table.last(1).iloc[0, 0])
+            raise HerringboneError(
+                f"{error}; {store.rows} records up to {last:.6g} s are in {self.shown}, and "
+                "--resume goes on from there"
+            ) from error

@@ -10,7 +10,7 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
-from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.pairs.mesh_phases import steady_values
 

@@ -10,8 +10,8 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
 from herringbone.core.anatomy import Anatomy
-from herringbone.core.part_path import PartPath
-from herringbone.core.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.read_job import is_rexs, read_mounted_job

@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core.roles import GEARS, PortKind, Quantity
+from herringbone.core.declaring.roles import GEARS, PortKind, Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for

@@ -13,7 +13,7 @@ from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
-from herringbone.core.roles import GEARS, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
 
 _PHASES = 8

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from herringbone.analysis.anatomy import anatomy, value_at
-from herringbone.core.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System
 
 _OFF = 0.01

@@ -24,7 +24,7 @@ from herringbone.analysis.stability.linear_parts import Member, linear_network
 from herringbone.analysis.stability.recommendation import RULE_ERROR, separation_step
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, ParameterError
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System

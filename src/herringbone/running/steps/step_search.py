@@ -4,11 +4,11 @@ Inside a run only the error of a single step is known. What it makes of the whol
 system: the phase of an oscillation without damping drifts away with time. Where parts are foreign,
 no rule knows that, and some cannot take a step back. Whole runs tell, see `accuracy.step_power`.
 
-The first steps are long and cost little; from the second run on the step is chosen to err 0.7
-of the tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its own
-predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more. The
-first step is a 47th of the run, or five times li's own where parts of this project take part: 47 is
-prime, so that signals with a whole number of periods in the run do not look constant.
+The first steps are long and cost little; from the second run on the step is chosen to err 0.7 of
+the tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its
+own predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more.
+The first step is a 47th of the run, or five times li's own where parts of this project take part:
+47 is prime, so that signals with a whole number of periods in the run do not look constant.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.progress import Progress
+from herringbone.running.reporting.progress import Progress
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps_of
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene

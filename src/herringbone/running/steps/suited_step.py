@@ -1,7 +1,7 @@
 """The macro step of a run for which none is given, by what is known of the system's parts."""
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.scenes import Scene

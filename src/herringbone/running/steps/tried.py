@@ -9,7 +9,7 @@ from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.accuracy.step_power import left_of, step_power
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.running.coupled import Coupled
-from herringbone.running.run_result import with_coupling_row
+from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.running.steps.verification import scaled
 
 _RUNS, _FAILURES = 20, 2
@@ -100,7 +100,7 @@ class Search:
         self.why = self._over(outcome, found)
 
     def pieces(self) -> Fraction:
-        """By what the last step is to be divided to err the share of the tolerance that is aimed at.
+        """By what to divide the last step so that it errs the share of the tolerance aimed at.
 
         A whole number of the new steps makes a few of the last ones, so that both runs have points
         in common, and the whole run.

@@ -12,14 +12,14 @@ from statistics import median
 from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.roles import Quantity
+from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.algorithms import AUTO, Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.progress import Progress
-from herringbone.running.run_result import with_coupling_row
+from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.scenes import Scene
 
 _LONGER = 4.0 / 3.0

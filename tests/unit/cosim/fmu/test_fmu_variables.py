@@ -1,6 +1,7 @@
 """Variables of an FMU 3.0 as the master sees them."""
 
 import zipfile
+from types import SimpleNamespace
 
 import fmpy
 import pytest
@@ -84,3 +85,12 @@ def test_model_exchange_only(tmp_path):
         FmuError, match=r"x.fmu is for model exchange only; co-simulation is needed"
     ):
         read_fmu(file)
+
+
+def test_an_array_without_elements_takes_no_memory():
+    """Its other sizes may be anything; their numbers once stood in memory before it was empty."""
+    array = SimpleNamespace(
+        name="m", shape=(0, 1 << 62), dimensions=["rows", "columns"], type="Float64"
+    )
+    model = SimpleNamespace(modelVariables=[array])
+    assert read_elements(model) == []

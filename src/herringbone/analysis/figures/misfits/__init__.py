@@ -7,7 +7,7 @@ from herringbone.analysis.figures.misfits.flanks import of_flank
 from herringbone.analysis.figures.misfits.housings import of_housing
 from herringbone.analysis.figures.misfits.ratios import of_ratio
 from herringbone.analysis.figures.misfits.tables import of_table
-from herringbone.core.roles import Role
+from herringbone.core.declaring.roles import Role
 from herringbone.result.result import Result
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from herringbone.analysis.asked import mesh_forces, parameter
-from herringbone.core.roles import PortKind, Quantity
+from herringbone.core.declaring.roles import PortKind, Quantity
 from herringbone.result.result import TIME, Result
 
 _NAMES = {1.0: "drive", -1.0: "coast"}

@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.analysis.asked import of_both_gears, parameter, resource_file
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
-from herringbone.core.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
 from herringbone.housing import ModalHousing
 from herringbone.housing.files.plausibility import implausible
 from herringbone.result.result import Result

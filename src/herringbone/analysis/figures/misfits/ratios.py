@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from herringbone.analysis.asked import of_both_gears, parameter
-from herringbone.core.roles import Quantity, Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import Result
 
 _OFF = 1e-3

@@ -9,7 +9,7 @@ from herringbone.analysis.asked import mesh_forces, resource_file
 from herringbone.components.resources.flat_csv import read_header
 from herringbone.components.resources.stiffness_table import PAIR, read_stiffness_table
 from herringbone.core import ResourceError
-from herringbone.core.roles import SIDES, Quantity
+from herringbone.core.declaring.roles import SIDES, Quantity
 from herringbone.result.result import Result
 
 _JUMP = 2.0

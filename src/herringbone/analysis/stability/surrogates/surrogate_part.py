@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
-from herringbone.core.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
 from herringbone.cosim.nodal import NodalPart
 from herringbone.kernels import fmi_calls
-from herringbone.kernels.linear_step import HEADER, KNOWN, linear_step, map_length
+from herringbone.kernels.stepping.linear_step import HEADER, KNOWN, linear_step, map_length
 
 _MOST_LENGTHS = 12
 """Lengths of the steps that one macro step may take."""

@@ -3,6 +3,7 @@
 The rest is had from the components' own kernels at unit vectors, and checked to be linear.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,13 +19,17 @@ _SEED = 17
 
 @dataclass(frozen=True)
 class Equations:
-    """x' = a x + b u and z = c x + d u, with channels u: laws' values, sources' signals, a 1.
+    """x' = a x + b u, z = c x + d u and y = e x + g u.
+
+    The channels u are the laws' values, the sources' signals, and a 1.
 
     Attributes:
         a: (states, states).
         b: (states, channels).
         c: (arguments, states).
         d: (arguments, channels); without the laws' values.
+        e: (seen, states), of places in the twin's block that are seen.
+        g: (seen, channels).
         laws: parts with laws, in the order of their values and arguments.
         signals: part and index in the twin's block of each source's signal.
     """
@@ -33,6 +38,8 @@ class Equations:
     b: np.ndarray
     c: np.ndarray
     d: np.ndarray
+    e: np.ndarray
+    g: np.ndarray
     laws: tuple[int, ...]
     signals: tuple[tuple[int, int], ...]
 
@@ -59,9 +66,9 @@ def laws_of(instance: Instance) -> Laws | None:
 class _Given:
     """Derivatives and arguments of a twin whose laws' values and sources' signals are given."""
 
-    def __init__(self, twin: Twin) -> None:
+    def __init__(self, twin: Twin, seen: Sequence[int]) -> None:
         self._twin = twin
-        self._block = twin.block.copy()
+        self._block, self._seen = twin.block.copy(), list(seen)
         self._first = twin.layout.block_first
         self.laws = {p: found for p, i in enumerate(twin.instances) if (found := laws_of(i))}
         for p, laws in self.laws.items():
@@ -95,8 +102,11 @@ class _Given:
             c.output
         ]
 
-    def __call__(self, x: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (states,) and arguments at states and channels without the last."""
+    def __call__(self, x: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Derivatives (states,), arguments and what is seen, at states and channels.
+
+        The channels are those without the last.
+        """
         twin, block = self._twin, self._block
         firsts = twin.layout.state_first
         for p in range(len(twin.instances)):
@@ -117,7 +127,11 @@ class _Given:
                 self._feed(p)
             if self._states(p):
                 self._evaluate(p, given, dx[firsts[p] : firsts[p + 1]], rates=True)
-        return dx, self._gathered()
+        z = self._gathered()
+        for p in self._moving if self._seen else ():
+            if p not in self.laws and p not in twin.network.elements:
+                self._evaluate(p, given, dx, rates=False)
+        return dx, z, self._block[self._seen]
 
     def _feed(self, p: int) -> None:
         for target, source in self._fed[p]:
@@ -141,26 +155,34 @@ class _Given:
         return z
 
 
-def take_apart(twin: Twin) -> Equations:
+def take_apart(twin: Twin, seen: Sequence[int] = ()) -> Equations:
     """Matrices of a twin's linear rest, and its laws.
+
+    Args:
+        twin: the system.
+        seen: places in its block; whether they are affine is not checked.
 
     Raises:
         StructureError: a part is neither linear nor declares its laws, or laws depend on each
             other without delay.
     """
-    given = _Given(twin)
+    given = _Given(twin, seen)
     n, m = twin.state.size, given.values + len(given.signals)
     x0, u0 = np.zeros(n), np.zeros(m)
-    dx, z = given(x0, u0)
+    still = given(x0, u0)
     columns = [given(e, u0) for e in np.eye(n)]
     inputs = [given(x0, e) for e in np.eye(m)]
+
+    def matrices(k: int) -> tuple[np.ndarray, np.ndarray]:
+        rest = still[k]
+        over_states = [c[k] - rest for c in columns]
+        return (
+            np.column_stack(over_states) if n else np.zeros((rest.size, 0)),
+            np.column_stack([*(c[k] - rest for c in inputs), rest]),
+        )
+
     found = Equations(
-        np.column_stack([c[0] - dx for c in columns]) if n else np.zeros((0, 0)),
-        np.column_stack([*(c[0] - dx for c in inputs), dx]),
-        np.column_stack([c[1] - z for c in columns]),
-        np.column_stack([*(c[1] - z for c in inputs), z]),
-        tuple(given.laws),
-        given.signals,
+        *matrices(0), *matrices(1), *matrices(2), laws=tuple(given.laws), signals=given.signals
     )
     _check(twin, given, found)
     return found
@@ -176,7 +198,11 @@ def _check(twin: Twin, given: _Given, found: Equations) -> None:
         u = drawn.uniform(-1e3, 1e3, found.channels - 1)
         ones = np.append(u, 1.0)
         for exact, a, b, what in zip(
-            given(x, u), (found.a, found.c), (found.b, found.d), ("rates", "arguments"), strict=True
+            given(x, u)[:2],
+            (found.a, found.c),
+            (found.b, found.d),
+            ("rates", "arguments"),
+            strict=True,
         ):
             terms = (np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(ones)).max(initial=1e-300)
             deviation = np.abs(exact - a @ x - b @ ones)

@@ -5,25 +5,26 @@ import numpy as np
 from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
+from herringbone.kernels.compiling.jit import allocating, inlined, kernel
 from herringbone.kernels.condensed.collocation import (
     Nodes,
+    Room,
     Table,
-    iteration_matrix,
+    correct,
+    less_tangents,
     residuals,
+    spread,
     turned,
 )
-from herringbone.kernels.condensed.modal import add_inputs, add_rows, copy, fill, solve, turn
-from herringbone.kernels.jit import allocating, inlined, kernel
+from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
 
-DONE, NOT_CONVERGED, NOT_FINITE = 0, 1, 2
+DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
 """Status of a march."""
 MOST_ITERATIONS = 8
-STEPS, HALVINGS, EVALUATIONS = 0, 1, 2
-"""What is counted."""
-_CLOSE = 1e-8
-"""Residual of the laws' values, over their size, whose correction solves a step.
-
-Every correction makes it a thousand times smaller, or more, wherever no law bends."""
+STEPS, HALVINGS, EVALUATIONS, BENDS = 0, 1, 2, 3
+"""What is counted; bends: shortest steps in which a law bends."""
+BASE, INSIDE, RUNG, LAST, KEPT = 0, 1, 2, 3, 4
+"""Places of a state, see `State.place`."""
 _REAL = 8
 
 _call_law = c_call("address", "address", "address", "address", "address")
@@ -31,10 +32,14 @@ _call_signals = c_call("address", "real")
 
 
 @inlined
-def _call_laws(calls: Calls, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
-    """Values, tangents and indicators of all laws at their arguments."""
+def _call_laws(
+    calls: Calls, t: float, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray
+) -> None:
+    """Values, tangents and indicators of all laws at their arguments and a time [s]."""
     blocks = calls.blocks.ctypes.data
     for p in range(calls.law.size):
+        if calls.clock[p] >= 0:
+            calls.blocks[calls.clock[p]] = t
         _call_law(
             calls.law[p],
             (
@@ -57,14 +62,20 @@ def call_sources(calls: Calls, t: float) -> None:
 
 
 @inlined
-def _signals(calls: Calls, fixed: Fixed, t: float, h: float, u: np.ndarray) -> None:
+def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np.ndarray) -> None:
     """Write the signals at the nodes of a step from t [s] on, and the last channel."""
     count, signals = fixed.nodes.size, calls.signal.size
     first = u.size - count * (signals + 1)
     for i in range(count):
-        call_sources(calls, t + h * fixed.nodes[i])
+        now = t + h * fixed.nodes[i]
+        if calls.source.size > 0:
+            call_sources(calls, now)
         for k in range(signals):
-            u[first + k * count + i] = calls.blocks[calls.signal[k]]
+            if calls.source.size > 0:
+                u[first + k * count + i] = calls.blocks[calls.signal[k]]
+            else:
+                since, start, slope, bend = state.curve[k]
+                u[first + k * count + i] = start + (now - since) * (slope + (now - since) * bend)
         u[u.size - count + i] = fixed.one
 
 
@@ -75,59 +86,98 @@ def _predict(
     """Write the laws' inputs of the next step: those of the last one, continued or (-1) held."""
     count = fixed.nodes.size
     for value in range(values):
-        at = value * count
-        end = u[at + count - 1]
-        ahead[at] = end
-        for i in range(1, count):
-            if last < 0:
-                ahead[at + i] = end
-                continue
-            total = 0.0
-            row = fixed.ahead[rung - last + len(fixed.ahead) // 2, i]
+        own, to = u[value * count : (value + 1) * count], ahead[value * count : (value + 1) * count]
+        end = own[count - 1]
+        for i in range(count):
+            to[i] = end
+        if last >= 0:
+            on = fixed.ahead[rung - last + len(fixed.ahead) // 2]
             for n in range(count):
-                total += row[n] * u[at + n]
-            ahead[at + i] = total
+                change = own[n] - end
+                if change != 0.0:
+                    row = on[n]
+                    for i in range(1, count):
+                        to[i] += row[i] * change
+
+
+@inlined
+def _inputs(
+    u: np.ndarray, nodes: int, first: int, end: int, v: np.ndarray, chosen: np.ndarray
+) -> int:
+    """Write the inputs of some channels, see `Rungs`, from the values at the nodes.
+
+    Returns:
+        How many are not zero; these are `chosen`.
+    """
+    count = 0
+    for channel in range(first, end):
+        at = channel * nodes
+        start = u[at]
+        v[at] = start
+        for i in range(1, nodes):
+            v[at + i] = u[at + i] - start
+        for i in range(nodes):
+            if v[at + i] != 0.0:
+                chosen[count] = at + i
+                count += 1
+    return count
 
 
 @inlined
 def _solve_step(
     calls: Calls,
-    rungs: Rungs,
+    fixed: Fixed,
+    of_inputs: np.ndarray,
+    along: np.ndarray,
     table: Table,
     nodes: Nodes,
     state: State,
+    t: float,
+    h: float,
     u: np.ndarray,
-    room: np.ndarray,
-    rung: int,
-    matrix: np.ndarray,
-    r: np.ndarray,
+    free: np.ndarray,
+    rows: np.ndarray,
+    room: Room,
+    v: np.ndarray,
+    chosen: np.ndarray,
 ) -> bool:
     """Find the laws' inputs of a step from those in `u`; False if the iteration does not end.
 
     Args:
-        calls, rungs, table, nodes, state: of the march.
+        calls, fixed, table, nodes, state: of the march.
+        of_inputs, along: of the rung.
+        t, h: start and length of the step [s].
         u: inputs of the step.
-        room: arguments at all nodes, of the coordinates and the angles at the start.
-        rung: of the step.
-        matrix, r: room for the iteration.
+        free: rows without the laws' inputs.
+        rows, room, v, chosen: room for the iteration.
     """
-    inner = len(nodes.z)
+    inner, values = len(nodes.z), table.unknown.size
     z = nodes.z.reshape(nodes.z.size)
     for _ in range(MOST_ITERATIONS):
-        copy(room, z)
-        add_inputs(rungs.of_inputs[rung], u, 0, z)
+        copy(free, rows)
+        add_chosen(of_inputs, v, chosen, _inputs(u, inner + 1, 0, values, v, chosen), rows)
+        if fixed.lean:
+            spread(nodes, fixed.nodes, fixed.sharp, fixed.back, rows)
+        else:
+            copy(rows[: z.size], z)
         for i in range(inner):
-            _call_laws(calls, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
+            _call_laws(
+                calls,
+                t + h * fixed.nodes[i + 1],
+                nodes.z[i],
+                nodes.f[i],
+                nodes.k[i],
+                nodes.e[i + 1],
+            )
         state.counted[EVALUATIONS] += 1
-        residual = residuals(table, nodes, u, r)
-        iteration_matrix(table, nodes, rungs.along[rung], matrix)
-        solve(matrix, r)
-        for value in range(table.unknown.size):
+        residual = residuals(table, nodes, u, room.r)
+        correct(table, nodes, along, room)
+        for value in range(values):
             row = table.unknown[value]
             if row >= 0:
                 for i in range(inner):
-                    u[value * (inner + 1) + i + 1] += r[row * inner + i]
-        if residual <= _CLOSE:
+                    u[value * (inner + 1) + i + 1] += room.r[row * inner + i]
+        if residual <= fixed.close:
             return True
     return False
 
@@ -137,38 +187,42 @@ def _keep(
     samples: Samples, n: int, state: State, u: np.ndarray, t: float, h: float, end: float
 ) -> int:
     """Keep the step from t on for all times up to its end, from the n-th on; returns the next."""
+    size = state.q.size
     while n < samples.times.size and samples.times[n] < end:
-        copy(state.x, samples.x[n])
-        copy(state.y, samples.y[n])
-        copy(state.angle, samples.angle[n])
-        copy(u, samples.u[n])
+        copy(state.q, samples.held[n, :size])
+        copy(u, samples.held[n, size:])
         samples.since[n], samples.length[n] = max(0.0, samples.times[n] - t), h
         n += 1
     return n
 
 
 @kernel
-def begin(calls: Calls, table: Table, nodes: Nodes, u: np.ndarray) -> None:
+def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> None:
     """Write the laws' inputs at the end of a step in `u`, and their indicators at the start.
 
-    From the arguments, which stand in `nodes.z[0]`.
+    From the arguments at the time t [s], which stand in `nodes.z[0]`.
     """
     count = len(nodes.e)
-    _call_laws(calls, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
+    _call_laws(calls, t, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
     for value in range(table.unknown.size):
-        rest = nodes.f[0, value]
-        for j in range(len(nodes.z[0])):
-            rest -= table.tangent[value, j] * nodes.z[0, j]
-        u[value * count + count - 1] = rest
+        u[value * count + count - 1] = less_tangents(table, value, nodes.f[0, value], nodes.z[0])
 
 
 @inlined
-def _advance(rungs: Rungs, rung: int, u: np.ndarray, state: State) -> None:
-    add_rows(rungs.angle[0, rung], rungs.angle[1, rung], state.x, state.y, state.angle)
-    add_inputs(rungs.angle_of_inputs[rung], u, 0, state.angle)
-    turn(rungs.turn[0, rung], rungs.turn[1, rung], state.x, state.y)
-    add_inputs(rungs.push[0, rung], u, 0, state.x)
-    add_inputs(rungs.push[1, rung], u, 0, state.y)
+def _advance(
+    fixed: Fixed,
+    rungs: Rungs,
+    rung: int,
+    u: np.ndarray,
+    v: np.ndarray,
+    chosen: np.ndarray,
+    state: State,
+) -> None:
+    modes, rotations, q = rungs.turn.shape[2], rungs.angle.shape[2], state.q
+    add_product(rungs.angle[rung], q[: 2 * modes], q[2 * modes : 2 * modes + rotations])
+    turn(rungs.turn[rung, 0], rungs.turn[rung, 1], q)
+    count = _inputs(u, fixed.nodes.size, 0, u.size // fixed.nodes.size, v, chosen)
+    add_chosen(rungs.push[rung], v, chosen, count, q)
     copy(u, state.u)
 
 
@@ -179,6 +233,7 @@ def march(
     rungs: Rungs,
     table: Table,
     nodes: Nodes,
+    room: Room,
     state: State,
     samples: Samples,
     t0: float,
@@ -190,58 +245,63 @@ def march(
     last rung; there it is taken with the bend inside.
 
     Args:
-        calls, fixed, rungs, table, nodes: of the system.
+        calls, fixed, rungs, table, nodes, room: of the system.
         state: where it stands; changed.
-        samples: filled from the first on.
+        samples: filled from the place on that stands in the state.
         t0: start of base step 0 [s].
         steps: base steps in all.
 
     Returns:
-        A status; after NOT_CONVERGED or NOT_FINITE, `state` is at the start of the step.
+        A status; but after DONE, `state` is at the start of the step. After RUNG_WANTED, go on when
+        the rung at which it stands is made.
     """
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
-    u, room = np.zeros_like(state.u), np.zeros(nodes.z.size)
-    unknowns = rungs.along.shape[3]
-    matrix, r = np.empty((unknowns, unknowns)), np.empty(unknowns)
-    n, place = 0, state.place
-    while place[0] < steps:
-        rung = place[2]
-        t, h = t0 + (place[0] * per_step + place[1]) * shortest, rungs.lengths[rung]
-        _signals(calls, fixed, t, h, u)
-        _predict(fixed, table.unknown.size, rung, place[3], state.u, u)
-        fill(room, 0.0)
-        add_rows(rungs.rows[0, rung], rungs.rows[1, rung], state.x, state.y, room)
-        arguments = len(fixed.of_angles)
-        for node in range(len(nodes.z)):
-            for i in range(arguments):
-                room[node * arguments + i] += fixed.offset[i]
-                for k in range(state.angle.size):
-                    room[node * arguments + i] += fixed.of_angles[i, k] * state.angle[k]
-        solved = _solve_step(calls, rungs, table, nodes, state, u, room, rung, matrix, r)
+    u, v = np.zeros_like(state.u), np.zeros_like(state.u)
+    free, rows = np.zeros(fixed.offset.size), np.zeros(fixed.offset.size)
+    chosen = np.empty(v.size, dtype=np.int64)
+    count, values = len(nodes.e), table.unknown.size
+    place = state.place
+    while place[BASE] < steps:
+        rung = place[RUNG]
+        if not rungs.made[rung]:
+            return RUNG_WANTED
+        t, h = t0 + (place[BASE] * per_step + place[INSIDE]) * shortest, rungs.lengths[rung]
+        _signals(calls, fixed, state, t, h, u)
+        _predict(fixed, values, rung, place[LAST], state.u, u)
+        copy(fixed.offset, free)
+        add_product(rungs.rows[rung], state.q[: rungs.rows.shape[1]], free)
+        given = _inputs(u, count, values, u.size // count, v, chosen)
+        add_chosen(rungs.of_inputs[rung], v, chosen, given, free)
+        solved = _solve_step(
+            calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, t, h,
+            u, free, rows, room, v, chosen,
+        )  # fmt: skip
         bent = solved and turned(nodes)
         if rung < last and (bent or not solved):
-            place[2], place[3] = rung + 1, -1 if not solved else place[3]
+            place[RUNG], place[LAST] = rung + 1, -1 if not solved else place[LAST]
             state.counted[HALVINGS] += 1
             continue
         if not solved:
             return NOT_CONVERGED
         state.counted[STEPS] += 1
+        state.counted[BENDS] += bent
         size = 1 << (last - rung)
-        end = t0 + (place[0] * per_step + place[1] + size) * shortest
-        if place[0] == steps - 1 and place[1] + size == per_step:
+        end = t0 + (place[BASE] * per_step + place[INSIDE] + size) * shortest
+        if place[BASE] == steps - 1 and place[INSIDE] + size == per_step:
             end = np.inf
-        n = _keep(samples, n, state, u, t, h, end)
-        if n == samples.times.size:  # the next one may lie in this step, too
+        place[KEPT] = _keep(samples, place[KEPT], state, u, t, h, end)
+        if place[KEPT] == samples.times.size:  # the next one may lie in this step, too
             return DONE
-        _advance(rungs, rung, u, state)
-        if not np.isfinite(state.x[0] + state.y[0]):
+        _advance(fixed, rungs, rung, u, v, chosen, state)
+        if not np.isfinite(state.q[0]):
             return NOT_FINITE
-        copy(nodes.e[len(nodes.z)], nodes.e[0])
-        place[3] = -1 if bent else rung
-        place[1] += size
-        if place[1] == per_step:
-            place[0], place[1] = place[0] + 1, 0
-        while place[2] > 0 and place[1] % (1 << (last - place[2] + 1)) == 0:
-            place[2] -= 1
+        copy(nodes.e[count - 1], nodes.e[0])
+        copy(nodes.z[count - 2], nodes.start)
+        place[LAST] = -1 if bent else rung
+        place[INSIDE] += size
+        if place[INSIDE] == per_step:
+            place[BASE], place[INSIDE] = place[BASE] + 1, 0
+        while place[RUNG] > 0 and place[INSIDE] % (1 << (last - place[RUNG] + 1)) == 0:
+            place[RUNG] -= 1
     return DONE

@@ -12,8 +12,10 @@ class Calls(NamedTuple):
         blocks: the blocks of all parts, one behind the other; laws may write into theirs.
         law: (parts,) addresses of the laws.
         block: (parts,) where their blocks begin.
+        clock: (parts,) places in all blocks where they expect the time, or -1.
         argument, value, tangent, indicator: (parts + 1,) offsets.
-        source: (sources,) addresses of functions that write a source's signals.
+        source: (sources,) addresses of functions that write a source's signals, which are called
+            at every node; none if all signals are known curves.
         source_block: (sources,) where their blocks begin.
         signal: (signals,) places of the signals.
     """
@@ -21,6 +23,7 @@ class Calls(NamedTuple):
     blocks: np.ndarray
     law: np.ndarray
     block: np.ndarray
+    clock: np.ndarray
     argument: np.ndarray
     value: np.ndarray
     tangent: np.ndarray
@@ -34,37 +37,43 @@ class Fixed(NamedTuple):
     """What depends on the system and the degree alone.
 
     Attributes:
-        of_angles: (arguments, rotations).
-        offset: (arguments,), of the angles at the start.
-        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, continued;
-            the middle one is of equal steps, later ones of shorter ones.
+        offset: (rows,) of `Rungs`, of the angles at the start.
+        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, by its values,
+            continued; the middle one is of equal steps, later ones of shorter ones.
         nodes: (nodes,) places in a step.
         one: value of the last channel, 0 if nothing depends on it.
+        close: residual of the laws' values, over their size, whose correction solves a step.
+        lean: arguments are taken along sharp directions alone at the nodes inside of a step, and
+            are linear over the step along others.
+        sharp, back: (n, arguments): these directions, and their pseudo-inverse, transposed.
     """
 
-    of_angles: np.ndarray
     offset: np.ndarray
     ahead: np.ndarray
     nodes: np.ndarray
     one: float
+    close: float
+    lean: bool
+    sharp: np.ndarray
+    back: np.ndarray
 
 
 class State(NamedTuple):
     """Where a march stands.
 
     Attributes:
-        x, y: (modes,) real and imaginary parts of the coordinates.
-        angle: (rotations,) since the start [rad]: a sum of small steps keeps its digits.
-        u: (inputs,) of the step that was taken last.
+        q: (2 modes + rotations,) real parts of the coordinates, imaginary parts, and angles since
+            the start [rad]: a sum of small steps keeps its digits; then zeros, see `Rungs`.
+        u: (channels x nodes,) values of the step that was taken last.
+        curve: (signals, 4) since when [s], and coefficients of powers of the time since then.
         place: base step, place in it in shortest steps, rung, rung of the last step (-1: none, or
-            the laws bent in it).
+            the laws bent in it), times that are kept.
         counted: see `STEPS`.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    angle: np.ndarray
+    q: np.ndarray
     u: np.ndarray
+    curve: np.ndarray
     place: np.ndarray
     counted: np.ndarray
 
@@ -74,15 +83,12 @@ class Samples(NamedTuple):
 
     Attributes:
         times: ascending [s].
-        x, y, angle, u: as of `State`, at the start of the step.
+        held: (times, q + inputs): q and u of `State`, at the start of the step.
         since: [s] since the start of the step.
         length: of the step [s].
     """
 
     times: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    angle: np.ndarray
-    u: np.ndarray
+    held: np.ndarray
     since: np.ndarray
     length: np.ndarray

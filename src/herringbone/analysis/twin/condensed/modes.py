@@ -55,16 +55,16 @@ class Modes:
     start: np.ndarray
     angles: np.ndarray
 
-    def states(self, x: np.ndarray, y: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    def states(self, q: np.ndarray) -> np.ndarray:
         """States (n, times).
 
         Args:
-            x, y: (times, modes) real and imaginary parts of the coordinates.
-            angles: (times, rotations) since the start [rad].
+            q: (times, 2 modes + rotations) real parts of the coordinates, imaginary parts, and
+                angles since the start [rad].
         """
         still = self.constant + self.rigid @ self.angles
-        together = np.hstack([self.shapes.real, -self.shapes.imag, self.rigid, still[:, None]])
-        return together @ np.hstack([x, y, angles, np.ones((len(x), 1))]).T
+        together = np.hstack([self.shapes.real, -self.shapes.imag, self.rigid])
+        return together @ q.T + still[:, None]
 
 
 def mean_tangent(twin: Twin, equations: Equations) -> np.ndarray:

@@ -13,35 +13,82 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.modes import Modes
 
+_INNER = [math.sqrt((7.0 + s * 2.0 * math.sqrt(7.0)) / 21.0) for s in (1.0, -1.0)]
 LOBATTO = {
     2: (0.0, 0.5, 1.0),
     3: (0.0, 0.5 - math.sqrt(5.0) / 10.0, 0.5 + math.sqrt(5.0) / 10.0, 1.0),
     4: (0.0, 0.5 - math.sqrt(21.0) / 14.0, 0.5, 0.5 + math.sqrt(21.0) / 14.0, 1.0),
+    5: (0.0, *(0.5 - 0.5 * x for x in _INNER), *(0.5 + 0.5 * x for x in reversed(_INNER)), 1.0),
 }
 """Nodes of a step by the degree of the polynomials through them."""
+_LINE = 8  # reals
 _SERIES = 18  # terms, for arguments up to 1
 
 
-class Rungs(NamedTuple):
-    """By rung; inputs: channels x nodes, rows: (nodes - 1) x arguments.
+class Shape(NamedTuple):
+    """What the matrices of a march are over.
 
     Attributes:
-        turn: (2, rungs, modes) factors of the coordinates, real and imaginary.
-        rows: (2, rungs, modes, rows) arguments at the nodes of the coordinates at the start.
-        of_inputs: (rungs, inputs, rows) arguments at the nodes of the inputs.
-        push: (2, rungs, inputs, modes) coordinates at the end of the inputs.
-        angle: (2, rungs, modes, rotations) angles' growth of the coordinates at the start.
-        angle_of_inputs: (rungs, inputs, rotations).
+        degree: of the polynomials.
+        lean: see `Fixed.lean`.
+        directions: (tangents, arguments) of all laws.
+        sharp: (n, arguments) directions of what is taken at all nodes, if lean.
+        stiff: the laws' values that are unknowns.
+    """
+
+    degree: int
+    lean: bool
+    directions: np.ndarray
+    sharp: np.ndarray
+    stiff: tuple[int, ...]
+
+    def rows(self, full: np.ndarray) -> np.ndarray:
+        """What is wanted of arguments at all nodes, (..., nodes - 1, arguments)."""
+        *over, nodes, arguments = full.shape
+        if not self.lean:
+            return full.reshape(*over, nodes * arguments)
+        inner = (full[..., :-1, :] @ self.sharp.T).reshape(*over, (nodes - 1) * len(self.sharp))
+        return np.concatenate([inner, full[..., -1, :]], axis=-1)
+
+
+def padded(count: int) -> int:
+    """A count of reals that fills whole lines of the cache."""
+    return -(-count // _LINE) * _LINE
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros that begin with a line of the cache."""
+    size = math.prod(shape)
+    room = np.zeros(size + _LINE)
+    first = (-room.ctypes.data // room.itemsize) % _LINE
+    return room[first : first + size].reshape(shape)
+
+
+class Rungs(NamedTuple):
+    """By rung; rows: (nodes - 1) x arguments, or see `Fixed.lean`; q: as of `State`.
+
+    Both are padded with zeros where sums are formed over many of them at once.
+
+    Of each channel, the first input stands for a value at all nodes, the others for differences
+    from it at the other nodes.
+
+    Attributes:
+        made: (rungs,) 1 where there are matrices, which are made when they are asked for.
+        turn: (rungs, 2, modes) factors of the coordinates, real and imaginary.
+        rows: (rungs, q, rows) what is wanted at the nodes, of the state at the start.
+        of_inputs: (rungs, inputs, rows) the same of the inputs.
+        angle: (rungs, 2 modes, rotations) angles' growth of the coordinates at the start.
+        push: (rungs, inputs, q) state at the end of the inputs.
         along: (rungs, nodes - 1, tangents, unknowns x (nodes - 1)), see `collocation`.
         lengths: (rungs,) [s].
     """
 
+    made: np.ndarray
     turn: np.ndarray
     rows: np.ndarray
     of_inputs: np.ndarray
-    push: np.ndarray
     angle: np.ndarray
-    angle_of_inputs: np.ndarray
+    push: np.ndarray
     along: np.ndarray
     lengths: np.ndarray
 
@@ -89,67 +136,73 @@ def coefficients(degree: int) -> np.ndarray:
     return np.linalg.inv(np.vander(np.array(LOBATTO[degree]), increasing=True))
 
 
-class _Rung:
-    """One rung."""
-
-    def __init__(self, modes: Modes, h: float, degree: int) -> None:
-        nodes, fit = LOBATTO[degree], coefficients(degree)
-        channels, arguments = modes.inputs.shape[1], len(modes.arguments)
-        rows, inputs = [], np.zeros((channels, degree + 1, degree, arguments))
-        for i, c in enumerate(nodes[1:]):
-            t, share = c * h, c ** np.arange(degree + 1)
-            once = powers(modes.rates, t, degree + 1)
-            growth = once[0]
-            rows.append(modes.arguments * np.exp(modes.rates * t))
-            rows[-1] += modes.of_angles @ (modes.turns * growth)
-            of_nodes = fit.T @ (once[:-1] * share[:, None])
-            turned = fit.T @ (twice(once, t) * share[:, None])
-            driven = of_nodes[:, None] * modes.inputs.T
-            angle = ((turned[:, None] * modes.inputs.T) @ modes.turns.T).real
-            found = (driven @ modes.arguments.T).real
-            inputs[:, :, i] = (found + angle @ modes.of_angles.T).transpose(1, 0, 2)
-            inputs[:, i + 1, i] += modes.of_channels.T
-        self.turn = np.exp(modes.rates * h)
-        self.rows = np.concatenate(rows).T
-        self.of_inputs = inputs.reshape(channels * (degree + 1), -1)
-        self.push = driven.transpose(1, 0, 2).reshape(-1, modes.rates.size)
-        self.angle = (modes.turns * growth).T
-        self.angle_of_inputs = angle.transpose(1, 0, 2).reshape(-1, len(modes.turns))
+def parts(values: np.ndarray) -> np.ndarray:
+    """Rows (2 modes, ...) over real and imaginary parts, of complex rows (modes, ...)."""
+    return np.concatenate([values.real, -values.imag])
 
 
-def make_rungs(
-    modes: Modes,
-    lengths: Sequence[float],
-    degree: int,
-    directions: np.ndarray,
-    stiff: Sequence[int],
-) -> Rungs:
-    """Matrices of steps of some lengths [s].
+def _differences(matrix: np.ndarray) -> np.ndarray:
+    """Matrix over inputs, from one over values (channels, nodes, n)."""
+    found = matrix.copy()
+    found[:, 0] = matrix.sum(axis=1)
+    return found.reshape(matrix.shape[0] * matrix.shape[1], matrix.shape[2])
 
-    Args:
-        modes: of the system.
-        lengths: by rung.
-        degree: of the polynomials, see LOBATTO.
-        directions: (tangents, arguments) of all laws.
-        stiff: the laws' values that are unknowns.
-    """
-    made = [_Rung(modes, h, degree) for h in lengths]
-    inputs = np.array([r.of_inputs for r in made])
-    channels = modes.inputs.shape[1]
-    shaped = inputs.reshape(len(made), channels, degree + 1, degree, directions.shape[1])
-    along = np.einsum("ta,lsnia->litsn", directions, shaped[:, list(stiff), 1:])
+
+def empty_rungs(modes: Modes, lengths: Sequence[float], shape: Shape) -> Rungs:
+    """Room for matrices of steps of some lengths [s]; see `make_rung`."""
+    m, k, degree = modes.rates.size, len(modes.turns), shape.degree
+    rungs, size = len(lengths), 2 * m + k
+    inputs = modes.inputs.shape[1] * (degree + 1)
+    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size)
+    unknowns = len(shape.stiff) * degree
     return Rungs(
-        _parts([r.turn for r in made]),
-        _parts([r.rows for r in made]),
-        inputs,
-        _parts([r.push for r in made]),
-        _parts([r.angle for r in made]),
-        np.array([r.angle_of_inputs for r in made]),
-        np.ascontiguousarray(along.reshape(*along.shape[:3], len(stiff) * degree)),
+        np.zeros(rungs, dtype=np.int64),
+        np.zeros((rungs, 2, m)),
+        aligned(rungs, size, rows),
+        aligned(rungs, inputs, rows),
+        np.zeros((rungs, 2 * m, k)),
+        aligned(rungs, inputs, padded(size)),
+        np.zeros((rungs, degree, len(shape.directions), unknowns)),
         np.array(lengths, dtype=float),
     )
 
 
-def _parts(values: list[np.ndarray]) -> np.ndarray:
-    stacked = np.array(values)
-    return np.ascontiguousarray(np.array([stacked.real, stacked.imag]))
+def make_rung(rungs: Rungs, rung: int, modes: Modes, shape: Shape) -> None:
+    """Fill in the matrices of one rung.
+
+    Args:
+        rungs: as `empty_rungs` gives them.
+        rung: that is wanted.
+        modes: of the system.
+        shape: of the march.
+    """
+    h, m, degree = float(rungs.lengths[rung]), modes.rates.size, shape.degree
+    nodes, fit = LOBATTO[degree], coefficients(degree)
+    channels, arguments = modes.inputs.shape[1], len(modes.arguments)
+    rows, inputs = [], np.zeros((channels, degree + 1, degree, arguments))
+    for i, c in enumerate(nodes[1:]):
+        t, share = c * h, c ** np.arange(degree + 1)
+        once = powers(modes.rates, t, degree + 1)
+        growth = once[0]
+        rows.append((modes.arguments * np.exp(modes.rates * t)).T)
+        rows[-1] += (modes.of_angles @ (modes.turns * growth)).T
+        of_nodes = fit.T @ (once[:-1] * share[:, None])
+        turned = fit.T @ (twice(once, t) * share[:, None])
+        driven = of_nodes[:, None] * modes.inputs.T
+        angle = ((turned[:, None] * modes.inputs.T) @ modes.turns.T).real
+        found = (driven @ modes.arguments.T).real
+        inputs[:, :, i] = (found + angle @ modes.of_angles.T).transpose(1, 0, 2)
+        inputs[:, i + 1, i] += modes.of_channels.T
+    ends = np.concatenate([driven.real, driven.imag, angle], axis=2).transpose(1, 0, 2)
+    rungs.turn[rung] = np.exp(modes.rates * h).real, np.exp(modes.rates * h).imag
+    at_nodes = shape.rows(parts(np.stack(rows, axis=1)))
+    count, size = at_nodes.shape[1], ends.shape[2]
+    rungs.rows[rung, : 2 * m, :count] = at_nodes
+    of_angles = np.broadcast_to(modes.of_angles.T[:, None], (len(modes.turns), degree, arguments))
+    rungs.rows[rung, 2 * m :, :count] = shape.rows(of_angles)
+    rungs.of_inputs[rung, :, :count] = _differences(shape.rows(inputs))
+    rungs.angle[rung] = parts((modes.turns * growth).T)
+    rungs.push[rung, :, :size] = _differences(ends)
+    along = np.einsum("ta,snia->itsn", shape.directions, inputs[list(shape.stiff), 1:])
+    rungs.along[rung] = along.reshape(*along.shape[:2], len(shape.stiff) * degree)
+    rungs.made[rung] = 1

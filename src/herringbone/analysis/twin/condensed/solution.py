@@ -1,44 +1,74 @@
 """One solution of a condensed system, piece by piece between breakpoints."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from herringbone.analysis.twin.condensed.march import (
     DONE,
+    KEPT,
     NOT_CONVERGED,
+    RUNG,
+    RUNG_WANTED,
     begin,
-    call_sources,
     march,
 )
 from herringbone.analysis.twin.condensed.march_arrays import Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
+    Shape,
+    aligned,
     coefficients,
-    make_rungs,
+    empty_rungs,
+    make_rung,
+    padded,
     powers,
     twice,
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
-from herringbone.kernels.condensed.collocation import Nodes
+from herringbone.kernels.condensed.collocation import Nodes, make_room
 
 HALVINGS = 7
 """Rungs below the base step."""
+CLOSE = 1e-8
+"""Residual of the laws' values, over their size, whose correction solves a step.
+
+Every correction makes it a thousand times smaller, or more, wherever no law bends."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
+
+
+class CoreStopped(HerringboneError):
+    """The laws have no solution in the shortest step, or a state is not finite.
+
+    Attributes:
+        time: at which it stops [s].
+    """
+
+    def __init__(self, message: str, time: float) -> None:
+        super().__init__(message)
+        self.time = time
 
 
 class Solution:
     """A march from the start values on.
 
+    Args:
+        system: to be solved.
+        degree: of the polynomials, see `rungs.LOBATTO`.
+        close: see CLOSE.
+        lean: see `march_arrays.Fixed`.
+
     Attributes:
         state: where it stands.
     """
 
-    def __init__(self, system: Condensed, degree: int) -> None:
-        self._system, self._degree = system, degree
+    def __init__(
+        self, system: Condensed, degree: int, close: float = CLOSE, *, lean: bool = False
+    ) -> None:
+        self._system, self.degree = system, degree
         self._modes = modes = system.modes
         self._calls = calls = system.calls()
         self._table = system.table(calls)
@@ -47,24 +77,68 @@ class Solution:
             np.zeros((degree, calls.value[-1])),
             np.zeros((degree, calls.tangent[-1])),
             np.ones((degree + 1, calls.indicator[-1])),
+            np.zeros(calls.argument[-1]),
         )
-        nodes = np.array(LOBATTO[degree])
-        offset = float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1]))
+        self._corrections = make_room(len(system.stiff), degree)
+        channels = system.equations.channels
+        self._size = 2 * modes.rates.size + modes.angles.size
+        self._shape = Shape(degree, lean, system.directions, system.sharp, system.stiff)
+        turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
-            modes.of_angles, modes.of_angles @ modes.angles, _ahead(degree), nodes, offset
+            _filled(self._shape.rows(turned)),
+            _ahead(degree),
+            np.array(LOBATTO[degree]),
+            float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
+            close,
+            lean,
+            system.sharp,
+            np.ascontiguousarray(np.linalg.pinv(system.sharp).T),
         )
+        start = modes.start
         self.state = State(
-            np.ascontiguousarray(modes.start.real),
-            np.ascontiguousarray(modes.start.imag),
-            np.zeros_like(modes.angles),
-            np.zeros(system.equations.channels * (degree + 1)),
-            np.array([0, 0, 0, -1]),
-            np.zeros(3, dtype=np.int64),
+            _filled(np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)])),
+            np.zeros(channels * (degree + 1)),
+            np.zeros((len(system.equations.signals), 4)),
+            np.array([0, 0, 0, -1, 0]),
+            np.zeros(4, dtype=np.int64),
         )
+        self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
         self._rungs: dict[float, Rungs] = {}
 
-    def piece(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Iterator[np.ndarray]:
-        """States (n, times) at the wanted times of a piece [s], some thousand at once.
+    def saved(self) -> dict[str, np.ndarray]:
+        """What is needed to go on with the same bits; copies."""
+        return {name: array.copy() for name, array in self._remembered().items()}
+
+    def put(self, saved: Mapping[str, np.ndarray]) -> None:
+        """Go on from there."""
+        for name, array in self._remembered().items():
+            array[...] = saved[name]
+
+    def _remembered(self) -> dict[str, np.ndarray]:
+        nodes = self._nodes
+        more = {"scale": self._table.scale, "indicators": nodes.e[0], "arguments": nodes.start}
+        return {**self.state._asdict(), **more}
+
+    def enter(self, t0: float, t1: float) -> None:
+        """Begin a piece [s]: what came before says nothing about the laws' inputs."""
+        self.state.place[:] = 0, 0, 0, -1, 0
+        self._find_curves(t0, t1)
+        self._begin(t0)
+
+    def _find_curves(self, t0: float, t1: float) -> None:
+        """Signals of a piece as parabolas over time, exact where they are curves."""
+        half = 0.25 * (t1 - t0)
+        since = t0 + 2.0 * half
+        before, now, after = (self._system.signals(since + k * half) for k in (-1, 0, 1))
+        curve = self.state.curve
+        curve[:, 0], curve[:, 1] = since, now
+        curve[:, 2:] = 0.0
+        if half > 0.0:
+            curve[:, 2] = 0.5 * ((after - now) - (before - now)) / half
+            curve[:, 3] = 0.5 * ((after - now) + (before - now)) / half**2
+
+    def piece(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Iterator[Samples]:
+        """The steps around the wanted times of a piece [s], some thousand at once; see `part`.
 
         Args:
             t0, t1: its ends.
@@ -72,99 +146,133 @@ class Solution:
             wanted: times in it, ascending.
 
         Raises:
-            HerringboneError: the laws have no solution in the shortest step, or it diverges.
+            CoreStopped: the laws have no solution in the shortest step, or it diverges.
         """
-        if t1 <= t0:
-            yield self._modes.states(
-                *(
-                    np.tile(now, (wanted.size, 1))
-                    for now in (self.state.x, self.state.y, self.state.angle)
-                )
-            )
-            return
-        rungs = self._rungs_of(h)
-        self.state.place[:] = 0, 0, 0, -1
-        self._begin(t0)
+        self.enter(t0, t1)
         for first in range(0, max(wanted.size, 1), _AT_ONCE):
             chunk = wanted[first : first + _AT_ONCE]
-            # With a time that never comes the march goes on to the end of the piece.
-            whole = chunk if first + _AT_ONCE < wanted.size else np.append(chunk, np.inf)
-            samples = self._room(whole)
-            status = march(
-                self._calls, self._fixed, rungs, self._table, self._nodes, self.state, samples,
-                t0, round((t1 - t0) / h),
-            )  # fmt: skip
+            whole = first + _AT_ONCE < wanted.size
+            yield self.part(t0, t1, h, chunk if whole else np.append(chunk, np.inf))
+
+    def part(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Samples:
+        """The steps around some wanted times of a piece that was entered, after the last ones.
+
+        A time that never comes, infinity, leads to the end of the piece; it is left out. They are
+        good until the next call.
+
+        Raises:
+            CoreStopped: see `piece`.
+        """
+        samples, count = self._room(wanted), int(np.isfinite(wanted).sum())
+        self.state.place[KEPT] = 0
+        if t1 <= t0:
+            samples.held[:] = np.concatenate([self.state.q, self._ends])
+        else:
+            rungs = self._rungs_of(h)
+            status = RUNG_WANTED
+            while status == RUNG_WANTED:
+                self._make(rungs, int(self.state.place[RUNG]))
+                status = march(
+                    self._calls, self._fixed, rungs, self._table, self._nodes, self._corrections,
+                    self.state, samples, t0, round((t1 - t0) / h),
+                )  # fmt: skip
             if status != DONE:
                 self._fail(status, t0, rungs)
-            yield self._states(samples, chunk.size)
+        return Samples(*(array[:count] for array in samples))
 
     def _rungs_of(self, h: float) -> Rungs:
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            self._rungs[h] = make_rungs(
-                self._modes, lengths, self._degree, self._system.directions, self._system.stiff
-            )
+            self._rungs[h] = empty_rungs(self._modes, lengths, self._shape)
         return self._rungs[h]
+
+    def _make(self, rungs: Rungs, rung: int) -> None:
+        if not rungs.made[rung]:
+            make_rung(rungs, rung, self._modes, self._shape)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""
         calls, modes, state = self._calls, self._modes, self.state
-        call_sources(calls, t)
         channels = np.zeros(self._system.equations.channels)
-        channels[calls.value[-1] : -1] = calls.blocks[calls.signal]
+        channels[calls.value[-1] : -1] = self._system.signals(t)
         channels[-1] = 1.0
-        z = (modes.arguments @ (state.x + 1j * state.y)).real
+        m = modes.rates.size
+        z = (modes.arguments @ (state.q[:m] + 1j * state.q[m : 2 * m])).real
         self._nodes.z[0] = (
-            z + self._fixed.offset + modes.of_angles @ state.angle + modes.of_channels @ channels
+            z
+            + modes.of_angles @ (modes.angles + state.q[2 * m : self._size])
+            + modes.of_channels @ channels
         )
-        begin(calls, self._table, self._nodes, state.u)
+        self._nodes.start[:] = self._nodes.z[0]
+        begin(calls, self._table, self._nodes, t, state.u)
+
+    @property
+    def _ends(self) -> np.ndarray:
+        """Inputs of a step that stays where the last one ended."""
+        ends = self.state.u.reshape(-1, self.degree + 1)[:, -1]
+        return np.repeat(ends, self.degree + 1)
 
     def _room(self, times: np.ndarray) -> Samples:
-        state, n = self.state, times.size
-        return Samples(
-            times,
-            np.zeros((n, state.x.size)),
-            np.zeros((n, state.x.size)),
-            np.zeros((n, state.angle.size)),
-            np.zeros((n, state.u.size)),
-            np.zeros(n),
-            np.ones(n),
-        )
+        """Room for samples, used again and again: fresh memory costs more than filling it."""
+        n, size = times.size, self.state.q.size + self.state.u.size
+        if len(self._held) < n:
+            self._held, self._lengths = np.zeros((n, size)), np.zeros((2, n))
+        self._lengths[0, :n], self._lengths[1, :n] = 0.0, 1.0
+        return Samples(times, self._held[:n], self._lengths[0, :n], self._lengths[1, :n])
 
-    def _states(self, samples: Samples, count: int) -> np.ndarray:
-        """States (n, count) at the first times of the samples."""
-        x, y, angle = samples.x[:count], samples.y[:count], samples.angle[:count]
-        inside = np.flatnonzero(samples.since[:count] > _GRID * samples.length[:count])
+    def states(self, samples: Samples) -> np.ndarray:
+        """States (n, times) at the times of samples."""
+        return self._modes.states(self.coordinates(samples))
+
+    def coordinates(self, samples: Samples) -> np.ndarray:
+        """What `State.q` is at the times of samples, (times, 2 modes + rotations)."""
+        q = samples.held[:, : self._size].copy()
+        inside = np.flatnonzero(samples.since > _GRID * samples.length)
         if inside.size:
-            later = self._later(samples, inside)
-            x[inside], y[inside], angle[inside] = later[0].T.real, later[0].T.imag, later[1].T
-        return self._modes.states(x, y, angle)
+            m = self._modes.rates.size
+            later, q[inside, 2 * m :] = self._later(samples, inside)
+            q[inside, :m], q[inside, m : 2 * m] = later.real, later.imag
+        return q
 
     def _later(self, samples: Samples, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and angles (..., times) at times inside of steps."""
-        modes, degree = self._modes, self._degree
-        q = (samples.x[rows] + 1j * samples.y[rows]).T
+        """Coordinates and angles (times, ...) at times inside of steps."""
+        modes, degree = self._modes, self.degree
+        m, size = modes.rates.size, self._size
+        held = samples.held[rows]
+        q = (held[:, :m] + 1j * held[:, m : 2 * m]).T
         t, length = samples.since[rows], samples.length[rows]
-        nodes = samples.u[rows].reshape(rows.size, -1, degree + 1)
+        nodes = held[:, self.state.q.size :].reshape(rows.size, -1, degree + 1)
         driven = np.einsum("jn,tkn->jkt", coefficients(degree), nodes)
         of_powers = modes.inputs @ driven  # powers, modes, times
         of_powers *= ((t / length) ** np.arange(degree + 1)[:, None])[:, None]
         once = powers(modes.rates[:, None], t[None, :], degree + 1)
         growth = once[0] * q + (twice(once, t) * of_powers).sum(axis=0)
-        angle = samples.angle[rows].T + (modes.turns @ growth).real
-        return np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0), angle
+        angle = held[:, 2 * m : size] + (modes.turns @ growth).real.T
+        now = np.exp(modes.rates[:, None] * t) * q + (once[:-1] * of_powers).sum(axis=0)
+        return now.T, angle
 
     def _fail(self, status: int, t0: float, rungs: Rungs) -> None:
         count, inside = self.state.place[:2]
         t = t0 + count * rungs.lengths[0] + inside * rungs.lengths[-1]
         why = "the laws have no solution" if status == NOT_CONVERGED else "a state is not finite"
-        raise HerringboneError(
-            f"the condensed twin stops at {t:g} s, in a step of {rungs.lengths[-1]:g} s: {why}"
+        raise CoreStopped(
+            f"the condensed core of {self._system.twin.system.name} stops at {t:g} s, in a step of "
+            f"{rungs.lengths[-1]:g} s: {why}",
+            float(t),
         )
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """Values, then zeros; see `Rungs`."""
+    found = aligned(padded(values.size))
+    found[: values.size] = values
+    return found
 
 
 def _ahead(degree: int) -> np.ndarray:
     """Polynomials of a step, continued over one of 2^-d of its length, d from -HALVINGS on."""
     fit, nodes = coefficients(degree), np.array(LOBATTO[degree])
     shares = 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1)
-    return np.array([np.vander(1.0 + s * nodes, degree + 1, increasing=True) @ fit for s in shares])
+    return np.array([
+        (np.vander(1.0 + s * nodes, degree + 1, increasing=True) @ fit).T for s in shares
+    ])  # fmt: skip

@@ -33,7 +33,7 @@ class CondensedTwin:
         degree: of the polynomials, see `rungs.LOBATTO`.
 
     Attributes:
-        counts: steps taken, halvings, evaluations of the laws at all nodes.
+        counts: steps taken, halvings, evaluations of the laws at all nodes, bends located.
 
     Raises:
         StructureError: the system has no condensed core; see `Twin` for all else.
@@ -45,7 +45,7 @@ class CondensedTwin:
         equations = take_apart(twin)
         with threadpool_limits(limits=1, user_api="blas"):
             self._system = Condensed(twin, equations, make_modes(twin, equations))
-        self.counts = np.zeros(3, dtype=np.int64)
+        self.counts = np.zeros(4, dtype=np.int64)
 
     def with_step(self, step: float) -> "CondensedTwin":
         """The same twin with another longest base step [s]."""
@@ -79,9 +79,10 @@ class CondensedTwin:
             for t1 in [*self.twin.breakpoints(t_end), t_end]:
                 last = t1 == t_end
                 end = times.size if last else int(np.searchsorted(times, t1))
-                for states in run.piece(t0, t1, self.base_step(t1 - t0, times), times[row:end]):
-                    here = slice(row, row + states.shape[1])
-                    values[here] = self.twin.observe(times[here], states, columns)
+                step = self.base_step(t1 - t0, times)
+                for samples in run.piece(t0, t1, step, times[row:end]):
+                    here = slice(row, row + samples.times.size)
+                    values[here] = self.twin.observe(times[here], run.states(samples), columns)
                     row = here.stop
                     if progress:
                         progress(float(times[row - 1]), t_end)

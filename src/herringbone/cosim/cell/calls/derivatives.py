@@ -8,7 +8,7 @@ from herringbone.cosim.cell.calls.messages import LAST_GOOD, land, room, send
 from herringbone.cosim.cell.calls.operations import ask, ask_rates, begin, collected
 from herringbone.cosim.cell.calls.signals import INSTANCE_POINTER
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import allocating, c_function
 
 _DERIVATIVES = types.int32(
     INSTANCE_POINTER,

@@ -24,7 +24,7 @@ from herringbone.cosim.cell.block import (
 )
 from herringbone.cosim.cell.waiting import await_word, post
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import allocating, c_function
 
 _SIDE = types.CPointer(from_dtype(SIDE))
 LAST_GOOD, ERROR, FATAL = 1, 3, 4

@@ -15,7 +15,7 @@ from herringbone.cosim.cell.calls.messages import (
     send,
 )
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import allocating
+from herringbone.kernels.compiling.jit import allocating
 
 
 @allocating

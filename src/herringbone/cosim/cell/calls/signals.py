@@ -20,7 +20,7 @@ from herringbone.cosim.cell.calls.operations import (
     step_now,
 )
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import allocating, c_function
 
 INSTANCE_POINTER = types.CPointer(from_dtype(INSTANCE))
 _EXCHANGE = types.int32(

@@ -8,7 +8,7 @@ from herringbone.cosim.cell.calls.messages import ERROR, LAST_GOOD, room
 from herringbone.cosim.cell.calls.operations import begin, collected
 from herringbone.cosim.cell.calls.signals import INSTANCE_POINTER
 from herringbone.cosim.loops.calls import at_address
-from herringbone.kernels.jit import c_function
+from herringbone.kernels.compiling.jit import c_function
 
 _HANDLE = types.int32(INSTANCE_POINTER, types.CPointer(types.int64))
 _STATE = types.int32(INSTANCE_POINTER, types.int64)

@@ -13,11 +13,11 @@ from herringbone.core import FmuError
 from herringbone.core.activity import activity
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import kernels_key
-from herringbone.core.paths import cache_folder
+from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.inside import serving
 from herringbone.cosim.fmu import fmi3_calls
 from herringbone.cosim.fmu.fmi3_adapters import adapters
-from herringbone.kernels.jit import c_code
+from herringbone.kernels.compiling.jit import c_code
 
 _OPTIMISATION = 3
 _PASSES = 2

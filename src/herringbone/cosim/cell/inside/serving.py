@@ -34,7 +34,7 @@ from herringbone.cosim.loops.calls import (
     set_or_get_derivatives,
     step_once,
 )
-from herringbone.kernels.jit import allocating, c_function
+from herringbone.kernels.compiling.jit import allocating, c_function
 
 _POINTER = types.CPointer(from_dtype(SERVER))
 _LAST_GOOD = 1

@@ -3,11 +3,18 @@
 import ctypes
 import locale
 import os
+import platform
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+
+_X86 = {"x86_64", "AMD64"}
+_WORDS, _MXCSR = 16, 7
+"""Words of 32 bits that an fenv_t has at the most; the one that is the register MXCSR."""
+_OLD_MODES, _MODES = 0x0F3F, 0xFFC0
+"""Of the control word of x87, which stands first, and of MXCSR: all but flags."""
 
 
 def surroundings() -> dict[str, object]:
@@ -35,8 +42,11 @@ def _is_open(descriptor: int) -> bool:
     return _or_none(lambda: os.fstat(descriptor) and True) is True
 
 
-def _modes() -> tuple[int, bool]:
-    """Rounding mode, by what the C library calls it, and whether denormal numbers become zero."""
-    library = ctypes.CDLL(None)
+def _modes() -> tuple[int, ...]:
+    """Rounding, precision, masks of exceptions, and what becomes of denormal numbers."""
+    library, words = ctypes.CDLL(None), (ctypes.c_uint32 * _WORDS)()
+    if platform.machine() in _X86 and hasattr(library, "fegetenv"):
+        library.fegetenv(words)
+        return words[0] & _OLD_MODES, words[_MXCSR] & _MODES
     rounding = int(library.fegetround()) if hasattr(library, "fegetround") else 0
     return rounding, float(np.float64(sys.float_info.min) / 2.0) == 0.0

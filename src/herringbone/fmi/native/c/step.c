@@ -17,7 +17,7 @@ static uint32_t first_not_finite(const Instance *instance) {
     return hb_component.first_table;
 }
 
-/* Status of a step kernel, see kernels/adaptive.py. */
+/* Status of a step kernel, see kernels/stepping/adaptive.py. */
 enum { INNER_STEPS_TOO_SMALL = 3 };
 
 static Status explain_failure(Instance *instance, int32_t failed, double step_size) {

@@ -1,0 +1,1 @@
+"""Step sizes of a system, tried and judged."""

@@ -1,0 +1,103 @@
+"""What happens at one macro step: stable or not with each algorithm, and why not."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from herringbone.analysis.stability.amplification import Amplification
+from herringbone.analysis.stability.diagnosis import diagnose
+from herringbone.analysis.stability.growth import GROWTH
+from herringbone.analysis.stability.linear_parts import (
+    NO_STRANGERS,
+    MeshStiffness,
+    Strangers,
+    linear_network,
+)
+from herringbone.analysis.stability.steps.step_limits import Progress
+from herringbone.analysis.stability.surrogates.surrogate import PROMISED
+from herringbone.core.energy_report import Diagnosis, hertz
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.structure.system import System
+
+
+@dataclass(frozen=True)
+class StepVerdict:
+    """One algorithm at one macro step.
+
+    Attributes:
+        algorithm: what it is called on the command line.
+        step: macro step [s].
+        growth: of the fastest growing motion per macro step, largest over the mesh stiffnesses;
+            0.01 is 1 %, negative if it decays.
+        mesh_stiffness: at which it grows most: minimum, mean or maximum.
+        frequency: of that motion [Hz].
+        why: what grows at mean stiffness and what helps; None if nothing does.
+        residual: of what stands for foreign parts, on trials that were not fitted.
+    """
+
+    algorithm: str
+    step: float
+    growth: float
+    mesh_stiffness: str
+    frequency: float
+    why: Diagnosis | None
+    residual: float = 0.0
+
+    @property
+    def stable(self) -> bool:
+        """True if no motion grows at any mesh stiffness."""
+        return self.growth <= GROWTH
+
+    def lines(self) -> list[str]:
+        """For people."""
+        name = f"{self.algorithm} at {self.step:.4g} s"
+        if self.residual > PROMISED:
+            return [
+                f"{name}: nothing is promised, because what stands for foreign parts misses their "
+                f"answers by {100.0 * self.residual:.2g} %"
+            ]
+        if self.stable:
+            return [f"{name}: stable"]
+        if self.why:
+            return ["unstable: " + self.why.lines()[0], *self.why.lines()[1:]]
+        return [
+            f"unstable: {name}: a motion at {hertz(self.frequency)} grows by "
+            f"{100.0 * self.growth:.3g} % per step at {self.mesh_stiffness} mesh stiffness"
+        ]
+
+
+def step_verdicts(
+    system: System,
+    algorithms: Sequence[Algorithm],
+    step: float,
+    progress: Progress,
+    strangers: Strangers = NO_STRANGERS,
+) -> tuple[StepVerdict, ...]:
+    """Verdicts of algorithms at a macro step.
+
+    Args:
+        system: at the start values of an equilibrium under load.
+        algorithms: to examine.
+        step: macro step [s].
+        progress: called before every matrix.
+        strangers: what stands for foreign parts.
+
+    Raises:
+        StructureError: nothing stands for a foreign part.
+        HerringboneError: a mesh is open at the start, or a part fails within one step.
+    """
+    found = []
+    for algorithm in algorithms:
+        by_stiffness, residual = {}, 0.0
+        for stiffness in MeshStiffness:
+            progress(str(algorithm))
+            amplification = Amplification(*linear_network(system, stiffness, strangers), algorithm)
+            by_stiffness[stiffness] = amplification.growth(step)
+            residual = max(residual, amplification.residual)
+        worst = max(by_stiffness, key=lambda s: by_stiffness[s].radius)
+        growth = by_stiffness[worst].radius - 1.0
+        why = diagnose(system, algorithm, step, strangers) if growth > GROWTH else None
+        frequency = by_stiffness[worst].frequency
+        found.append(
+            StepVerdict(str(algorithm), step, growth, worst.value, frequency, why, residual)
+        )
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""Runs of systems whose parts are condensed into one core."""

@@ -1,0 +1,139 @@
+"""A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from herringbone.analysis.twin.condensed.equations import take_apart
+from herringbone.analysis.twin.condensed.modes import make_modes
+from herringbone.analysis.twin.condensed.outputs import Outputs, outputs_of_kernels, places_seen
+from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
+from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import StructureError
+from herringbone.core.names import matches_any
+from herringbone.cosim.structure.system import System
+
+_LEAST = 0.1
+"""The largest residual whose correction solves a step: one evaluation of the laws for most."""
+_OF_TOLERANCE = 50.0
+"""Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
+
+
+class Steps(NamedTuple):
+    """How a core is marched.
+
+    Attributes:
+        length: longest base step [s].
+        degree: of the polynomials.
+        close: see `solution.CLOSE`.
+        lean: see `march_arrays.Fixed`.
+    """
+
+    length: float
+    degree: int
+    close: float = CLOSE
+    lean: bool = True
+
+
+def closeness(tolerance: float) -> float:
+    """Residual of the laws whose correction solves a step, for a tolerance."""
+    return min(_LEAST, _OF_TOLERANCE * tolerance)
+
+
+class Core:
+    """The condensed core of a system.
+
+    Args:
+        system: its parts are all components of this package.
+
+    Attributes:
+        twin: the system as one right-hand side.
+        names: outputs that can be recorded, `instance.variable`.
+        missing: outputs that only steps of the components make.
+
+    Raises:
+        StructureError: a part can neither be condensed nor stepped inside of the core.
+        ParameterError, ResourceError: bad values.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.twin = twin = Twin(system)
+        for instance in twin.instances:
+            if instance.component.samples:
+                raise StructureError(
+                    f"{instance.name}: {instance.component.name} takes samples, so that it cannot "
+                    "be fused; run without fuse"
+                )
+        self._system = _condensed(twin)
+        self.names = outputs_of_kernels(twin)
+        declared = [
+            f"{i.name}.{v.name}" for i in twin.instances for v in i.component.declaration.outputs
+        ]
+        self.missing = tuple(name for name in declared if name not in set(self.names))
+
+    def chosen(self, patterns: Sequence[str]) -> tuple[str, ...]:
+        """Outputs that match any of the patterns or are in a group of channels; all without.
+
+        Raises:
+            StructureError: a pattern matches nothing.
+        """
+        if not patterns:
+            return self.names
+        channels = self.twin.system.channels
+        found: set[str] = set()
+        for pattern in patterns:
+            wanted = channels.get(pattern, [pattern])
+            own = {name for name in self.names if matches_any(endings_of(name), wanted)}
+            if not own:
+                groups = ", ".join(channels) or "none"
+                raise StructureError(
+                    f"record: no output matches '{pattern}'; groups of channels: {groups}"
+                )
+            found |= own
+        return tuple(name for name in self.names if name in found)
+
+    def groups(self) -> dict[str, list[str]]:
+        """Outputs by group of channels; of a system without channels all of a unit."""
+        channels = self.twin.system.channels
+        found = {
+            group: [n for n in self.names if matches_any(endings_of(n), patterns)]
+            for group, patterns in channels.items()
+        }
+        if any(found.values()):
+            return {group: names for group, names in found.items() if names}
+        by_unit: dict[str, list[str]] = {}
+        for name in self.names:
+            by_unit.setdefault(f"outputs in {self.unit(name) or '1'}", []).append(name)
+        return by_unit
+
+    def unit(self, name: str) -> str:
+        """Unit of an output, "" if it has none."""
+        part, variable = self.twin.system.split(name)
+        instance = next(i for i in self.twin.instances if i.name == part)
+        return instance.component.declaration.variable(variable).unit
+
+    def solution(self, steps: Steps) -> Solution:
+        """A march from the start values on."""
+        return Solution(self._system, steps.degree, steps.close, lean=steps.lean)
+
+    def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
+        """Values of some outputs; see `Outputs`."""
+        return Outputs(self._system, columns, steps.degree, inside=inside)
+
+
+def endings_of(name: str) -> tuple[str, ...]:
+    """An output's name, and what is left of it without the first of its paths."""
+    words = name.split(".")
+    return tuple(".".join(words[k:]) for k in range(len(words) - 1))
+
+
+def _condensed(twin: Twin) -> Condensed:
+    equations = take_apart(twin, places_seen(twin))
+    with threadpool_limits(limits=1, user_api="blas"):
+        found = Condensed(twin, equations, make_modes(twin, equations))
+    if not np.isfinite(found.modes.start).all():
+        raise StructureError(f"{twin.system.name}: its start values are not finite")
+    return found

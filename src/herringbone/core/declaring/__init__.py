@@ -1,0 +1,1 @@
+"""What a component declares: variables, units, tables, laws, roles."""

@@ -1,0 +1,89 @@
+"""What hosts of native FMUs give and want, and what an FMU made for them asks of its wrapper."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Given(StrEnum):
+    """What the host gives at a flange."""
+
+    TORQUE = "torque"
+    MOTION = "motion"
+    SPEED = "speed"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a host wants to see.
+
+    Attributes:
+        given: what it gives, by flange; torque where nothing is said.
+        outputs: patterns of further outputs, `instance.variable`.
+        internals: all variables of the parts, as locals.
+        nodes: the signals' nodes.
+        parameters: all parameters.
+        exchange: model exchange.
+    """
+
+    given: Mapping[str, Given] = field(default_factory=dict)
+    outputs: tuple[str, ...] = ()
+    internals: bool = False
+    nodes: bool = False
+    parameters: bool = False
+    exchange: bool = False
+
+
+class RunsOn(NamedTuple):
+    """An input that is the integral of another one: a held value of it runs on.
+
+    Attributes:
+        input: name of the input, such as an angle.
+        rate: name of the input that is its rate.
+        since: name of the local that the wrapper sets to the time [s] at which the input was set.
+    """
+
+    input: str
+    rate: str
+    since: str
+
+
+class Experiment(NamedTuple):
+    """FMI's default experiment.
+
+    Attributes:
+        stop: end [s].
+        step: communication step size [s].
+        tolerance: relative, of inner steps; None: they have a fixed size.
+    """
+
+    stop: float
+    step: float
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True)
+class Hosting:
+    """What a component asks of the wrapper, besides kernels and declaration.
+
+    Attributes:
+        settle: kernel settle(b, t) -> int that makes the states at the start time from parameters
+            and inputs; 0: as it was asked for. Otherwise the wrapper logs a line of `not_settled`.
+        not_settled: by status, from 1: what was looked for in vain, and what is done instead.
+        runs_on: inputs that run on.
+        tolerance: name of the local that the wrapper sets to the host's tolerance.
+        experiment: the default experiment.
+        exchange: model exchange is offered.
+        advice: what is known of communication steps, as rows of a table; the first one is its head.
+    """
+
+    settle: Callable[[np.ndarray, float], int]
+    not_settled: tuple[str, ...]
+    runs_on: tuple[RunsOn, ...]
+    tolerance: str
+    experiment: Experiment
+    exchange: bool
+    advice: Callable[[], list[tuple[str, ...]]]

@@ -1,0 +1,1 @@
+"""Where files are: folders, paths from others, temporary files."""

@@ -1,0 +1,1 @@
+"""The rows of a run: what is recorded, and where it goes."""

@@ -1,0 +1,106 @@
+"""The decorators of kernels."""
+
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+from numba import types
+from numba.core.sigutils import normalize_signature
+from numba.extending import intrinsic
+
+from herringbone.kernels.compiling.cache import cached
+from herringbone.kernels.compiling.linking import (
+    LINKED,
+    QUICK,
+    RARE,
+    WHOLE,
+    CFunction,
+    KernelDispatcher,
+)
+
+P = ParamSpec("P")
+T = TypeVar("T")
+_C_OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
+_OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True}
+
+
+def kernel(function: Callable[P, T]) -> Callable[P, T]:
+    """Compile a function in the kernel language, and cache it.
+
+    It makes no arrays, so that references to arrays need not be counted: in the compiled loop,
+    which passes dozens of them on, that would take most of the time.
+    """
+    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}), function)
+
+
+def inlined(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a part of a compiled loop: its callers contain its code.
+
+    A tuple of arrays is passed by copying every field of every array; with dozens of arrays that
+    takes longer than most functions.
+    """
+    return cached(
+        KernelDispatcher(function, {**_OPTIONS, "_nrt": False, "forceinline": True}), function
+    )
+
+
+def allocating(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a function that makes arrays of its own."""
+    return cached(
+        KernelDispatcher(function, {**_OPTIONS, "_nrt": True}), function
+    )  # whoever calls it
+
+
+def rare(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for what seldom happens: its callers call it, and keep their registers."""
+    options = {**_OPTIONS, "_nrt": False}
+    return cached(KernelDispatcher(function, options, piece_class=RARE), function)
+
+
+def seldom(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for a function that is called a few times: it is compiled quickly."""
+    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, QUICK), function)
+
+
+def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Compile a function that a factory makes for `owner`; its callers hold the cache.
+
+    The owner becomes part of its name, for messages and profiles.
+    """
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        function.__qualname__ = f"{owner}.{function.__qualname__}"
+        return KernelDispatcher(function, {**_OPTIONS, "_nrt": False})
+
+    return decorate
+
+
+@intrinsic
+def reals_at(typing_context, addresses, index):  # noqa: ANN001, ANN201
+    """Pointer to reals whose address stands at `addresses[index]`."""
+    signature = types.CPointer(types.float64)(types.CPointer(types.int64), types.int64)
+
+    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202
+        address = builder.load(builder.gep(arguments[0], [arguments[1]]))
+        return builder.inttoptr(address, context.get_value_type(signature.return_type))
+
+    return signature, generate
+
+
+def c_function(signature: object) -> Callable[[Callable], CFunction]:
+    """Compile a function of a module that is called by its C address, and cache it."""
+
+    def decorate(function: Callable) -> CFunction:
+        found = CFunction(function, normalize_signature(signature), {}, _C_OPTIONS, WHOLE)
+        return cached(found, function)
+
+    return decorate
+
+
+def c_code(signature: object, function: Callable) -> CFunction:
+    """LLVM code of a function that is called by its C address, with all that it calls.
+
+    It is not optimised: that is done for a target, see `fmi.native.objects`.
+    """
+    compiled = CFunction(function, normalize_signature(signature), {}, _C_OPTIONS, LINKED)
+    compiled.compile()
+    return compiled

@@ -1,0 +1,1 @@
+"""Derivatives of compiled functions in forward mode."""

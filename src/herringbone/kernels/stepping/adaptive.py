@@ -1,0 +1,200 @@
+"""Classical Runge-Kutta whose steps follow a tolerance.
+
+The derivative at the end of a step is that at the start of the next one, so that an embedded
+formula of order 3 costs nothing: with the stages k1 ... k4 and k5 = f(x(t + h)), the weights
+(1/6, 1/3, 1/3, 1/15, 1/10) fulfil its conditions (E. Hairer, S. P. Norsett, G. Wanner, Solving
+Ordinary Differential Equations I, 1993, section II.4); the estimate is h (k4 - k5) / 10.
+
+The estimate of a state counts by the largest one of its kind, those of the same unit and usual
+size, or by that size if it is larger: a velocity that passes zero needs no better. An angle that
+grows counts by its usual size alone, and a state vector by its largest element.
+
+No inner step is longer than the longest one that the caller keeps in the block: beyond the
+stability limit, 2.8 over the largest eigenvalue (Hairer and Wanner, Solving Ordinary Differential
+Equations II, 1996, section IV.2), an error is seen only when it has grown.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.core.declaring.declaration import Declaration
+from herringbone.core.declaring.variable import Variable
+from herringbone.kernels.compiling.jit import inner, kernel
+from herringbone.kernels.signals import STRIDE, all_finite, store_node
+from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
+
+TOO_SMALL = 3
+"""Status of a step in which the tolerance asked for inner steps below SMALLEST."""
+SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
+"""Inner steps [s]: the smallest, the first, the largest."""
+LONGEST_STEP = 10.0
+"""Longest communication step [s] of one call: about a million inner steps."""
+_WEIGHT = 0.1
+_SAFETY, _LESS, _MORE = 0.9, 0.2, 2.0
+_FLOOR = 1e-12
+"""Usual size of vectors that are at rest, in their units."""
+
+
+def adaptive_work(state_count: int, input_count: int) -> int:
+    """Length of the work space that the stepper needs."""
+    return 7 * state_count + (STRIDE + 1) * input_count
+
+
+@kernel
+def worse(a: float, b: float) -> float:
+    """The larger one; NaN if one of them is."""
+    if a >= b:
+        return a
+    return b if b > a else a + b
+
+
+@kernel
+def factor(error: float) -> float:
+    """By what a step is to be multiplied whose error is so many times the tolerance."""
+    if not error < np.inf:
+        return _LESS
+    if error < 1e-6:
+        return _MORE
+    return max(_LESS, min(_MORE, _SAFETY / math.sqrt(math.sqrt(error))))
+
+
+def _kind(v: Variable) -> tuple[str, float, bool]:
+    """What the error of a state is measured by; the last one: by its usual size alone."""
+    return v.unit, v.nominal, v.steady == "rotating"
+
+
+def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
+    rhs: Rhs, out: Out, declaration: Declaration, next_step: str, longest_step: str
+) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
+    """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
+
+    Args:
+        rhs, out: kernels.
+        declaration: of the component.
+        next_step: name of the local that keeps the length of the next inner step [s].
+        longest_step: name of the local that no inner step is longer than [s].
+
+    Returns:
+        step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
+        and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
+        TOO_LONG or TOO_SMALL.
+    """
+    n, visible = declaration.state_count, len(declaration.states)
+    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
+    following, longest = declaration.indices(next_step, longest_step)
+    kinds = list(dict.fromkeys(_kind(v) for v in declaration.states))
+    kind_of = tuple(kinds.index(_kind(v)) for v in declaration.states)
+    sizes, kind_count = tuple(size for _, size, _ in kinds), len(kinds)
+    grows = tuple(float(v.steady != "rotating") for v in declaration.states)
+    ends, at_vector = [], visible
+    for vector in declaration.vectors:
+        at_vector += vector.capacity
+        ends.append(at_vector)
+    vectors = tuple(ends)
+    x0, slope, first, last, size_of, error_of_kind, at = (k * n for k in range(1, 8))
+
+    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
+
+    @inner(declaration.name)
+    def error_of(b: np.ndarray, w: np.ndarray, hs: float) -> float:
+        """Error of the step, by the sizes of the states."""
+        worst = 0.0
+        for kind in range(kind_count):
+            w[size_of + kind], w[error_of_kind + kind] = sizes[kind], 0.0
+        for i in range(visible):
+            of = kind_of[i]
+            w[size_of + of] = max(w[size_of + of], grows[i] * abs(b[i]))
+            w[error_of_kind + of] = worse(w[error_of_kind + of], abs(w[last + i] - w[i]))
+        for kind in range(kind_count):
+            worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
+        begin = visible
+        for v in range(len(vectors)):
+            size, error = _FLOOR, 0.0
+            for i in range(begin, vectors[v]):
+                size = max(size, abs(b[i]))
+                error = worse(error, abs(w[last + i] - w[i]))
+            begin = vectors[v]
+            worst = worse(worst, error / size)
+        return _WEIGHT * hs * worst
+
+    @inner(declaration.name)
+    def runge_kutta(
+        b: np.ndarray, w: np.ndarray, ts: float, hs: float, degree: int, c: float, dc: float
+    ) -> None:
+        """One inner step, with the derivatives at its start given and those at its end found."""
+        dx = w[:n]
+        for i in range(n):
+            w[x0 + i] = b[i]
+            w[slope + i] = w[first + i]
+            b[i] = w[x0 + i] + 0.5 * hs * w[first + i]
+        set_inputs(b, w, degree, c + 0.5 * dc)
+        rhs(b, ts + 0.5 * hs, dx)
+        for i in range(n):
+            w[slope + i] += 2.0 * dx[i]
+            b[i] = w[x0 + i] + 0.5 * hs * dx[i]
+        rhs(b, ts + 0.5 * hs, dx)
+        for i in range(n):
+            w[slope + i] += 2.0 * dx[i]
+            b[i] = w[x0 + i] + hs * dx[i]
+        set_inputs(b, w, degree, c + dc)
+        rhs(b, ts + hs, dx)
+        for i in range(n):
+            w[last + i] = dx[i]
+            b[i] = w[x0 + i] + hs / 6.0 * (w[slope + i] + dx[i])
+        rhs(b, ts + hs, dx)
+
+    @inner(declaration.name)
+    def interval(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
+        tolerance: float, degree: int,
+    ) -> int:  # fmt: skip
+        """Integrate from t + begin to t + end, inside the macro step."""
+        done, hs = begin, 0.0
+        while done < end:
+            left = end - done
+            count = max(1.0, math.ceil(left / b[following] - 1e-9))
+            hs = left / count
+            runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
+            error = error_of(b, w, hs) / tolerance
+            ahead = hs * factor(error)
+            if error <= 1.0:
+                done = end if count == 1.0 else done + hs
+                for i in range(n):
+                    w[first + i] = w[i]
+                if count > 1.0 or ahead > b[following]:
+                    b[following] = min(ahead, b[longest])
+            else:
+                for i in range(n):
+                    b[i] = w[x0 + i]
+                b[following] = ahead
+                if ahead < SMALLEST:
+                    return TOO_SMALL
+        return 0
+
+    @inner(declaration.name)
+    def step(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, tolerance: float, degree: int
+    ) -> int:
+        if not h <= LONGEST_STEP:
+            return TOO_LONG
+        expand_inputs(b, w, degree)
+        intervals = max(degree, 1)
+        status, begin = 0, 0.0
+        rhs(b, t, w[:n])
+        for i in range(n):
+            w[first + i] = w[i]
+        for node in range(1, intervals + 1):
+            end = h if node == intervals else h * node / intervals
+            if status == 0 and end > begin:
+                status = interval(b, w, t, h, begin, end, tolerance, degree)
+            begin = end
+            out(b, t + end)
+            store_node(b, first_output, outputs, node)
+        restore_inputs(b, w, degree)
+        if status == 0 and not all_finite(b, 0, n):
+            status = NOT_FINITE
+        return status
+
+    return step

@@ -1,0 +1,82 @@
+"""A whole system as one native FMU."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from herringbone.analysis.hosted.boundary import is_gearbox
+from herringbone.analysis.hosted.component import make_hosted
+from herringbone.analysis.twin.composite import make_composite
+from herringbone.core import ParameterError
+from herringbone.core.declaring.hosting import Wanted
+from herringbone.core.places.files import write_whole
+from herringbone.fmi.native.build import build_models
+from herringbone.fmi.native.model import Model
+from herringbone.running.exporting.export import ready, written
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named
+from herringbone.scenes import Scene
+
+
+def export_fmu(
+    system: str | Path,
+    file: str | Path,
+    *,
+    outside: Sequence[str] = (),
+    scene: str | Path | Scene | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    platforms: Sequence[str] = (),
+    fmi: int = 2,
+    wanted: Wanted | None = None,
+) -> Path:
+    """Write a system as one native FMU, without any coupling delay inside.
+
+    A gearbox, one pair with its bearings and housing, can be made for hosts: few variables, its own
+    equilibrium at the start, inner steps by tolerance. Other systems keep all variables of their
+    parts, start where the scene does, and have fixed inner steps.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, or .ssp file; no foreign FMUs.
+        file: the .fmu file to write.
+        outside: instances that stay outside; what they feed becomes inputs of the FMU.
+        scene: name or file of the scene that gives start values; the system's default if not given.
+        values: variables to set, by `instance.variable`.
+        gear, housing: see `herringbone.run`.
+        platforms: see `herringbone.fmi.native.PLATFORMS`; this one if not given.
+        fmi: FMI version, 2 or 3.
+        wanted: what the host of a gearbox gives and wants to see; with `Wanted()` other systems
+            are taken, too. None: no FMU made for hosts.
+
+    Returns:
+        The file.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or the FMU cannot be built.
+    """
+    file = Path(file)
+    if file.suffix != ".fmu":
+        raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
+    structure, chosen = ready(system, scene, values, gear, housing)
+    hosted = wanted is not None and not outside and is_gearbox(structure)
+    if wanted not in (None, Wanted()) and not hosted:
+        raise ParameterError(
+            f"{system}: what a host gives and sees can be chosen of a whole gearbox alone: one "
+            "gear pair with bearings and housing, whose two flanges are the ports of the system"
+        )
+    if wanted is not None and hosted:
+        structure = structure.with_values(chosen.values)
+        composite = make_hosted(structure, wanted)
+    else:
+        composite = make_composite(structure, tuple(outside))
+    model = Model(
+        composite.component,
+        (make_composite.__module__, make_hosted.__module__),
+        composite.resources,
+        identity=repr((asdict(structure), tuple(outside), wanted)),
+    )
+    (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
+    with written(file):
+        write_whole(file, built.read_bytes())
+    return file

@@ -1,0 +1,1 @@
+"""Long searches for what breaks, by hand; see README.md."""

@@ -1,0 +1,195 @@
+"""Commands are killed at random moments: `python -m campaigns.kills COUNT [SEED [CASE ...]]`.
+
+What is left must be right or absent, never wrong: rows are the first ones of a whole run, files are
+whole, no process and no temporary folder stays. A run is resumed, or refused in a line; any other
+command is given again. Both must end with the bits that they have without a kill.
+"""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import herringbone as hb
+from campaigns.kill_cases import ALL, Case, all_cases
+from herringbone.core import HerringboneError
+from herringbone.core.places.paths import CACHE_VARIABLE, cache_root
+
+LONGEST = 1200.0
+_LEAVE = 60.0
+"""Seconds in which cells of a killed master end."""
+
+
+class Field:
+    """Where a case is tried.
+
+    Args:
+        case: what is killed.
+        folder: for all files.
+    """
+
+    def __init__(self, case: Case, folder: Path) -> None:
+        self.case, self.folder = case, folder
+        self.output, self.scratch = folder / case.output, folder / "scratch"
+        self.scratch.mkdir(parents=True)
+        self.cache = cache_root()
+        if case.cold:
+            self.cache = folder / "cache"  # files there are replaced, never changed: links do
+        self.renew()
+        started = time.monotonic()
+        self.ask(*case.words, "-o", str(self.output))
+        self.seconds, self.whole = time.monotonic() - started, contents(self.output)
+
+    def renew(self) -> None:
+        """The cache as it is at the start."""
+        if not self.case.cold:
+            return
+        shutil.rmtree(self.cache, ignore_errors=True)
+        if self.case.cold != ALL:
+            ignored = shutil.ignore_patterns("mypy", "fuzz", "locks", *self.case.cold)
+            shutil.copytree(cache_root(), self.cache, ignore=ignored, copy_function=os.link)
+
+    def start(self, *words: str) -> "subprocess.Popen[str]":
+        """The command in a process of its own, with temporary files of its own."""
+        return subprocess.Popen(
+            [sys.executable, "-m", "herringbone", *words], cwd=self.folder, text=True,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            env={**os.environ, "TMPDIR": str(self.scratch), CACHE_VARIABLE: str(self.cache)},
+        )  # fmt: skip
+
+    def ask(self, *words: str, may: tuple[int, ...] = (0,)) -> str:
+        """What a command says that is not killed."""
+        with self.start(*words) as process:
+            _, said = process.communicate(timeout=LONGEST)
+        assert process.returncode in may, f"{words}: {process.returncode}\n{said[-2000:]}"
+        assert "Traceback" not in said, said[-3000:]
+        return said
+
+    def kill(self, after: float) -> bool:
+        """Kill the command some seconds after its start; False if it was through."""
+        with self.start(*self.case.words, "-o", str(self.output)) as process:
+            try:
+                process.communicate(timeout=after)
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGKILL)
+                process.wait()
+                self.gone()
+            return process.returncode == -signal.SIGKILL
+
+    def gone(self) -> None:
+        """All processes end that the killed one has begun."""
+        end = time.monotonic() + _LEAVE
+        while left := [p for p in others() if str(self.scratch) in environment(p)]:
+            assert time.monotonic() < end, f"processes {left} have not ended"
+            time.sleep(0.05)
+        for folder in self.scratch.glob("herringbone_*"):
+            os.utime(folder, (0, 0))  # young ones are not swept: their owners may be locking them
+
+    def clear(self) -> None:
+        """Remove what the command has written."""
+        if self.output.is_dir():
+            shutil.rmtree(self.output)
+        self.output.unlink(missing_ok=True)
+
+    def judge(self) -> str:
+        """Look at what a kill has left, and go on; in a word how."""
+        how = self.judge_run() if self.case.runs else self.judge_files()
+        assert contents(self.output) == self.whole, f"{how}: other bits"
+        left = [f.name for f in self.scratch.glob("herringbone_*")]
+        assert not left, f"{how}: {left} is left"
+        return how
+
+    def judge_files(self) -> str:
+        """Files are absent or whole."""
+        found = contents(self.output)
+        wrong = [name for name in found if found[name] != self.whole.get(name)]
+        assert not wrong, f"{wrong} differ"
+        self.ask(*self.case.words, "-o", str(self.output))
+        return f"{len(found)} of {len(self.whole)} files"
+
+    def judge_run(self) -> str:
+        """Rows are absent, or those of the run, up to some time."""
+        try:
+            found = hb.load(self.output)
+        except HerringboneError as error:
+            assert not (self.output / "run.json").exists(), str(error)
+            self.ask(*self.case.words, "-o", str(self.output))
+            return "absent"
+        table = self.output / "results.csv"
+        assert not table.exists() or table.read_bytes() == self.whole["results.csv"]
+        rows = found.data.to_numpy()[:, : len(found.data.columns)].tobytes()
+        assert self.whole["results.npy"][128 : 128 + len(rows)] == rows, "other rows"
+        self.ask("run", "--resume", str(self.output))
+        return "resumed"
+
+
+def contents(place: Path) -> dict[str, bytes]:
+    """What counts of a file or folder: rows of runs, whole files of other commands."""
+    if (place / "run.json").exists():
+        return {name: (place / name).read_bytes() for name in ("results.npy", "results.csv")}
+    if place.is_dir():
+        files = (file for file in place.iterdir() if not file.name.startswith("."))
+        return {file.name: file.read_bytes() for file in files}
+    return {place.name: place.read_bytes()} if place.exists() else {}
+
+
+def others() -> list[Path]:
+    """All processes but this one."""
+    return [p for p in Path("/proc").glob("[0-9]*") if p.name != str(os.getpid())]
+
+
+def environment(process: Path) -> str:
+    """Of a process; "" if it is gone."""
+    try:
+        return (process / "environ").read_text(errors="replace")
+    except OSError:
+        return ""
+
+
+def try_case(case: Case, count: int, chance: random.Random, folder: Path) -> Counter:
+    """Kill a command so many times; how it went on. Raises AssertionError."""
+    field, found = Field(case, folder), Counter()
+    field.renew()
+    for _ in range(count):
+        if not case.grows:
+            field.renew()
+        field.clear()
+        killed = field.kill(chance.uniform(0.0, 0.3 if case.grows else 1.0) * field.seconds)
+        if killed and case.grows:
+            found["again"] += 1
+            continue
+        found[field.judge() if killed else "was through"] += 1
+        if not killed:
+            assert contents(field.output) == field.whole, "other bits"
+            field.renew()
+    if case.grows:
+        found[field.judge()] += 1
+    return found
+
+
+def main(count: int, seed: int, names: list[str]) -> int:
+    """Try all cases, or some; number of those that went wrong."""
+    bad = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        cases = all_cases(Path(scratch))
+        for name in names or cases:
+            started = time.monotonic()
+            try:
+                chance = random.Random(f"{seed} {name}")
+                said = str(dict(try_case(cases[name], count, chance, Path(scratch, name))))
+            except AssertionError as error:
+                said, bad = f"WRONG: {error}", bad + 1
+            sys.stdout.write(f"{name:26} {count:4d} {time.monotonic() - started:7.1f} s {said}\n")
+            sys.stdout.flush()
+    return bad
+
+
+if __name__ == "__main__":
+    numbers = [*map(int, sys.argv[1:3]), 1]
+    sys.exit(main(numbers[0], numbers[1], sys.argv[3:]))
