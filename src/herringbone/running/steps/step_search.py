@@ -21,6 +21,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import judged
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps_of
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
@@ -83,7 +84,7 @@ def searched(
     search = Search(tolerance)
     stable = {} if asked.tolerance is None else stable_inner_steps(system)
     step = asked.step or first_step(system, scene)
-    wanted = replace(asked, tolerance=None, warn=False, all_points=True)
+    wanted = replace(asked, tolerance=None, warn=False, all_points=True, judge=False)
     while not search.why:
         try:
             tried = with_inner_steps_of(system, step, stable)
@@ -96,7 +97,8 @@ def searched(
         wanted = replace(wanted, algorithm=found.algorithm)  # one for all runs, to be compared
         search.take(found)
         step = found.recording.step / float(search.pieces())
-    return search.told() if search.tried else found
+    found = search.told() if search.tried else found
+    return found._replace(result=judged(found.result, None))
 
 
 def first_step(system: System, scene: Scene) -> float:

@@ -9,7 +9,6 @@ from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.accuracy.step_power import left_of, step_power
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.running.coupled import Coupled
-from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.running.steps.verification import scaled
 
 _RUNS, _FAILURES = 20, 2
@@ -177,7 +176,7 @@ class Search:
         result = replace(result, info=replace(result.info, notes=notes))
         if found:
             verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
-            result = with_coupling_row(replace(result, verification=verification))
+            result = replace(result, verification=verification)
         return last.found._replace(result=result)
 
     def _limit(self) -> str:
