@@ -26,25 +26,6 @@ class StepStatistics(NamedTuple):
     longest: float
 
 
-class ErrorEstimate(NamedTuple):
-    """Error of a run that was asked for, and that its steps let expect.
-
-    Attributes:
-        asked: relative error that was asked for [1].
-        coupling: of the polynomials and corrections between the parts [1].
-        inner_steps: of the parts' own steps [1].
-    """
-
-    asked: float
-    coupling: float
-    inner_steps: float
-
-    @property
-    def error(self) -> float:
-        """Both together [1]."""
-        return math.hypot(self.coupling, self.inner_steps)
-
-
 class CoreStatistics(NamedTuple):
     """Steps of a system whose parts are fused into one core.
 
@@ -63,6 +44,25 @@ class CoreStatistics(NamedTuple):
     halvings: int
     evaluations: int
     bends: int
+
+
+class ErrorEstimate(NamedTuple):
+    """Error of a run that was asked for, and that its steps let expect.
+
+    Attributes:
+        asked: relative error that was asked for [1].
+        coupling: of the polynomials and corrections between the parts [1].
+        inner_steps: of the parts' own steps [1].
+    """
+
+    asked: float
+    coupling: float
+    inner_steps: float
+
+    @property
+    def error(self) -> float:
+        """Both together [1]."""
+        return math.hypot(self.coupling, self.inner_steps)
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,8 @@ class Recording:
         slow: bodies that step once in several macro steps, and in how many.
         others: recorded outputs of other types than real, (n,) of their own types by name.
         other_units: units of these, "" if not declared.
-        core: of a fused run, its steps.
         estimate: of an adaptive run, its error.
+        core: of a fused run, its steps.
     """
 
     time: np.ndarray
@@ -108,5 +108,5 @@ class Recording:
     slow: Mapping[str, int] = field(default_factory=dict)
     others: Mapping[str, np.ndarray] = field(default_factory=dict)
     other_units: Mapping[str, str] = field(default_factory=dict)
-    core: CoreStatistics | None = None
     estimate: ErrorEstimate | None = None
+    core: CoreStatistics | None = None
