@@ -163,7 +163,7 @@ def run(
             check_fixed_step(coupling, tolerance)
         if output is not None:
             output.claim(structure, chosen, replace(asked, notes=(), tolerance=aim or tolerance))
-        structure, asked = for_tolerance(structure, asked, searched=aim is not None)
+        structure, asked = for_tolerance(structure, chosen, asked, searched=aim is not None)
         if aim is not None:
             found = searched(structure, chosen, asked, aim, progress, recorded)
         else:
