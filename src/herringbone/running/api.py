@@ -18,7 +18,7 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.fused import (
+from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,
     check_record,
@@ -163,7 +163,7 @@ def run(
             check_fixed_step(coupling, tolerance)
         if output is not None:
             output.claim(structure, chosen, replace(asked, notes=(), tolerance=aim or tolerance))
-        structure, asked = for_tolerance(structure, asked, searched=aim is not None)
+        structure, asked = for_tolerance(structure, chosen, asked, searched=aim is not None)
         if aim is not None:
             found = searched(structure, chosen, asked, aim, progress, recorded)
         else:

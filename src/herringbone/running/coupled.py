@@ -62,6 +62,8 @@ class Asked:
         notes: lines that are known already.
         inner_step: longest of the own parts [s], of which an adaptive step takes account.
         part_tolerance: that parts are told; None: none.
+        judge: make the error budget, and lines on what does not fit together; False for runs that
+            only tell the error of another.
     """
 
     fmu: str
@@ -76,6 +78,7 @@ class Asked:
     notes: Sequence[str] = field(default=())
     inner_step: float = 0.0
     part_tolerance: float | None = None
+    judge: bool = True
 
 
 class Coupled(NamedTuple):
@@ -167,7 +170,9 @@ def _coupled(
                 inner_step=asked.inner_step, tolerance=asked.part_tolerance, streaming=streaming,
             )  # fmt: skip
         lines += _step_notes(asked.step, algorithm, recording)
-        every = judged(make_result(system, scene, algorithm, asked.fmu, recording, lines), bond)
+        every = make_result(system, scene, algorithm, asked.fmu, recording, lines)
+        if asked.judge:
+            every = judged(every, bond)
         _log_end(recording)
         if asked.all_points:
             result = decimated(every, scene.record_step)

@@ -265,7 +265,7 @@ def test_a_singular_jacobian():
     parts = [Echo("body"), SpringDamper("spring", 1.0, 0.0)]
     outcome = simulate(system, parts, LI(tolerance=1e-3), make_grid(1.0, 0.1, 0.1)).outcome
     assert outcome.kind is OutcomeKind.COUPLING_FAILED
-    assert "the interface Jacobian is singular at 0 s (h = 0.02 s)" in outcome.message
+    assert "the interface Jacobian is singular at 0 s (h = 0.03125 s)" in outcome.message
 
 
 def test_a_source_that_cannot_be_taken_back_is_refused():

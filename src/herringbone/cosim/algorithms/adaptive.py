@@ -33,12 +33,13 @@ from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.nodes import Buffers, Control
 from herringbone.cosim.loops.adaptive import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
-from herringbone.cosim.loops.ladder import FIRST, RUNGS, TICKS
+from herringbone.cosim.loops.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
 from herringbone.cosim.loops.nodes import REFRESH
 from herringbone.cosim.loops.step_error import (
     COUPLING,
     INNER_STEPS,
     LARGEST,
+    ORDER,
     update_scale,
 )
 from herringbone.cosim.rows.record import Grid, GrowingRecord
@@ -208,8 +209,9 @@ class PreparedAdaptive(PreparedNodes):
             np.zeros((nodes.degree + 1, nodes.unknown.size)),
             self._record.row_times,
         )
-        adaptive.state[[WANTED, USED, ROWS]] = FIRST, FIRST, 1
-        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[FIRST]
+        first = self._first_rung()
+        adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
+        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
         buffers.nodes[:] = buffers.history[0]
         update_scale(
             nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, adaptive.memory, 0.0
@@ -268,6 +270,12 @@ class PreparedAdaptive(PreparedNodes):
                 status = self._loosened(done * chunk.h)
             if status != DONE or done >= end:
                 return status, done, culprit
+
+    def _first_rung(self) -> int:
+        """About the one that will be used, so that its Jacobian serves."""
+        order = ORDER[self.nodes.degree]
+        ticks = RUNGS[FIRST] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / order)
+        return max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
 
     def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""

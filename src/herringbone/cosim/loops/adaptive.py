@@ -37,14 +37,12 @@ from herringbone.cosim.loops.common import (
 from herringbone.cosim.loops.ladder import fitting_rung
 from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
-from herringbone.cosim.loops.step_choice import continued, next_rung
+from herringbone.cosim.loops.step_choice import TOO_MUCH, continued, next_rung, too_much
 from herringbone.cosim.loops.step_error import ORDER, error_so_far, step_error, update_scale
 from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
 """Status: the smallest step still errs too much."""
-TOO_MUCH = 2.5
-"""A step with more than this many tolerances is taken back; the error of a run is a mean."""
 PATIENCE = 100
 """So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
 forces, or from rest, where their size is not yet known, no step is small enough."""
@@ -89,7 +87,9 @@ def _accept(
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, adaptive.covered[0])
+    adaptive.far[0] = error_so_far(
+        nodes, buffers, nodes.group, adaptive.errors, adaptive.covered[0]
+    )
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
@@ -155,9 +155,9 @@ def _complete(
     wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
     state[WANTED] = min(wanted, rung) if state[TAKEN_BACK] else wanted
     state[TAKEN_BACK] = 0
-    too_much = not error <= TOO_MUCH * adaptive.tolerance
-    state[MISSED] += too_much
-    state[MISSED_NOW] = state[MISSED_NOW] + 1 if too_much else 0
+    missed = not error <= TOO_MUCH * adaptive.tolerance
+    state[MISSED] += missed
+    state[MISSED_NOW] = state[MISSED_NOW] + 1 if missed else 0
     return STEP_LIMIT if state[MISSED_NOW] == PATIENCE else DONE, ticks, -1
 
 
@@ -178,7 +178,7 @@ def _macro_step(
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
-    if smaller and not error <= TOO_MUCH * adaptive.tolerance:
+    if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
         failed = _take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
         wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])

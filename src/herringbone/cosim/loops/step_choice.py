@@ -14,6 +14,13 @@ _NOW = 0.5
 """Share of the present error factor that counts at least."""
 _AIM, _SAVED = 0.85, 1.6
 """Share of the tolerance that is aimed at; times what at the most where steps have erred less."""
+TOO_MUCH = 2.5
+"""A step with more than this many tolerances is taken back; the error of a run is a mean."""
+_SUDDEN, _TOO_MUCH_AT_ONCE = 6.0, 1.3
+"""So many, if its error is so many times what the steps before let expect: teeth meet, say."""
+_COARSE = 40.0
+"""At a loose tolerance steps are so long that the derivatives which the estimate lacks count, too:
+1.6 to 2.1 times 1e-2 was reached on the test rig without."""
 _LEAST, _MOST = 0.3, 1.6
 """Times what the step may change."""
 
@@ -21,10 +28,18 @@ _LEAST, _MOST = 0.3, 1.6
 @inlined
 def _aim(adaptive: Adaptive) -> float:
     """Error of the next steps: more than the tolerance's share where steps have erred less."""
-    aim = _AIM * adaptive.tolerance
+    aim = _AIM * adaptive.tolerance / (1.0 + _COARSE * adaptive.tolerance)
     if adaptive.far[0] > 0.0:
         aim *= min(max(aim / adaptive.far[0], 1.0), _SAVED)
     return aim
+
+
+@inlined
+def too_much(adaptive: Adaptive, rung: int, error: float, order: int) -> bool:
+    """True if a step is to be taken back."""
+    expected = adaptive.sharpness[0] * adaptive.rungs[rung] ** order
+    most = _TOO_MUCH_AT_ONCE if error > _SUDDEN * expected else TOO_MUCH
+    return not error <= most * adaptive.tolerance
 
 
 @inlined

@@ -150,17 +150,20 @@ def step_error(
 
 
 @allocating
-def error_so_far(nodes: NodeLayout, buffers: Buffers, errors: np.ndarray, covered: float) -> float:
+def error_so_far(
+    nodes: NodeLayout, buffers: Buffers, group: np.ndarray, errors: np.ndarray, covered: float
+) -> float:
     """Relative error of the run so far, of the group that errs most.
 
     Args:
         nodes, buffers: after `update_scale`.
+        group: of each unknown.
         errors: (2, groups): integrals of the squares of `step_error` over time.
         covered: time since the start [s].
     """
     sizes = np.zeros(errors.shape[1])
     for k in range(nodes.unknown.size):
-        sizes[nodes.group[k]] += covered * buffers.scale[k] ** 2
+        sizes[group[k]] += covered * buffers.scale[k] ** 2
     worst = 0.0
     for g in range(sizes.size):
         if sizes[g] > 0.0:

@@ -5,14 +5,14 @@ much as `li` of degree 3 with the macro step that suits the tolerance (see `step
 of them would cost time for nothing. So the longest inner step is the distance of two nodes at that
 macro step, which the fastest bond gives by `LI.accurate_step`; polynomials of degree 4 are for
 longer macro steps, and take shorter inner ones beside each other. It is not longer than is stable
-for what a part does by itself. Where the run begins without load the teeth will part: there it is
-what leaves half the tolerance by `separation_step`. An inner step that is set by name stays.
+for what a part does by itself. Where the run begins without load, or with a kick, teeth part: there
+`separation_step` tells. An inner step that is set by name stays.
 
 Where the system's start is no load, or foreign parts take part, each gearbox is looked at by
 itself under a torque.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -34,7 +34,9 @@ from herringbone.running.pairs.open_flanges import loaded
 _LI = LI()
 _RULE = _LI.accurate_step or 0.0
 _BY_DEGREE = {4: 0.7}
-_HALF = 0.5
+_OPEN, _KICKED = 0.5, 5.0
+"""Error by `separation_step` over the tolerance. Macro steps are short while teeth part: for a few
+blows they do."""
 _SHORTEST = 5e-7
 """Where teeth part [s]: a millisecond takes two thousand of them."""
 _STABLE = 2.5
@@ -60,13 +62,16 @@ class InnerSteps(NamedTuple):
     lines: tuple[str, ...] = ()
 
 
-def with_inner_steps(system: System, tolerance: float, degree: int = 3) -> InnerSteps:
+def with_inner_steps(
+    system: System, tolerance: float, degree: int = 3, *, kicked: bool = False
+) -> InnerSteps:
     """The system with inner steps that suit a tolerance, where none are set by name.
 
     Args:
         system: with all values.
         tolerance: relative error that the inner steps may leave [1].
         degree: of the forces' polynomials.
+        kicked: the run does not begin in equilibrium, so that teeth may part for a while.
     """
     found = _linear(system)
     bond = highest_frequency(found.network, found.members) if found else 0.0
@@ -75,25 +80,36 @@ def with_inner_steps(system: System, tolerance: float, degree: int = 3) -> Inner
     macro = _RULE / bond * (tolerance / RULE_ERROR) ** (1.0 / _LI.convergence_order)
     wanted = macro / _LI.degree * _BY_DEGREE.get(degree, 1.0)
     why = ""
-    apart = separation_step(_HALF * tolerance)
-    if found.open and apart < wanted:
+    apart = separation_step((_OPEN if found.open else _KICKED) * tolerance)
+    if (found.open or kicked) and apart < wanted:
         wanted = max(apart, _SHORTEST)
-        why = "because teeth part" if wanted > apart else "the shortest that is taken"
-    own = {member.name: member for member in found.members if isinstance(member, Instance)}
-    chosen, said = {}, []
-    for part, path in _paths(system):
-        spec = system.part(part)
-        variable = system.split(path)[1]
-        if variable in spec.values:
-            continue
-        declared = component(str(spec.component)).declaration.variable(variable)
-        stable = _stable_step(own[part]) if part in own else float(declared.start)
-        step = max(min(wanted, stable, declared.maximum or wanted), declared.minimum or 0.0)
-        chosen[path] = step
-        reason = "the longest that is stable" if step == stable else why
-        said.append(f"{part} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
+        why = "the shortest that is taken" if wanted > apart else "because teeth part"
+    stable = _stable(system, found)
+    chosen = {path: min(wanted, longest) for path, longest in stable.items()}
+    said = []
+    for path, step in chosen.items():
+        reason = "the longest that is stable" if step == stable[path] else why
+        said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
     lines = (f"inner steps: {', '.join(said)}",) if said else ()
     return InnerSteps(system.with_values(chosen), _longest(system, chosen), lines)
+
+
+def stable_inner_steps(system: System) -> dict[str, float]:
+    """The longest inner step [s] that own parts may take, by path, where none is set by name."""
+    return _stable(system, _linear(system))
+
+
+def with_inner_steps_of(system: System, step: float, stable: Mapping[str, float]) -> System:
+    """The system with inner steps in proportion to a macro step, as far as they are stable.
+
+    Runs with ever shorter macro steps so tell what both err.
+
+    Args:
+        system: with all values.
+        step: macro step [s].
+        stable: see `stable_inner_steps`.
+    """
+    return system.with_values({p: min(step / _LI.degree, most) for p, most in stable.items()})
 
 
 def _paths(system: System) -> Iterator[tuple[str, str]]:
@@ -103,6 +119,20 @@ def _paths(system: System) -> Iterator[tuple[str, str]]:
         path = known.column(part, Quantity.MICRO_STEP)
         if path and not system.part(part).foreign:
             yield part, path
+
+
+def _stable(system: System, found: "_Linear | None") -> dict[str, float]:
+    """See `stable_inner_steps`; of a part that could not be made linear the declared step."""
+    members = found.members if found else []
+    own = {member.name: member for member in members if isinstance(member, Instance)}
+    steps = {}
+    for part, path in _paths(system):
+        spec, variable = system.part(part), system.split(path)[1]
+        declared = component(str(spec.component)).declaration.variable(variable)
+        if variable not in spec.values:
+            stable = _stable_step(own[part]) if part in own else float(declared.start)
+            steps[path] = min(stable, declared.maximum or stable)
+    return steps
 
 
 def _longest(system: System, chosen: dict[str, float]) -> float:
@@ -139,6 +169,8 @@ def _linear(system: System) -> _Linear | None:
     except HerringboneError:
         return None
     boxes = _only(system, _BOX)
+    if not boxes.parts:
+        return None
     try:
         alone = loaded(boxes, _TORQUE)
         return _Linear(*linear_network(alone.with_values(loaded_start(alone)[0])), open=with_load)
