@@ -37,7 +37,7 @@ def all_cases(folder: Path) -> dict[str, Case]:
     """All cases by name; systems are written to a folder."""
     together, plain = reels(folder), reels(folder, "plain", saves=False)
     alone = write_system(folder, "alone", [], {"left": python_reel(folder)})
-    late = ("--set=left.holds=9000", "--set=right.holds=1e9", "--step=1e-4", "--t-end=1")
+    late = ("--set=left.holds=27000", "--set=right.holds=1e9", "--step=1e-4", "--t-end=3")
     return {
         "own": Case(("run", "gearbox", "--fmu=native", "--t-end=0.05")),
         "own_python": Case(("run", "gearbox", "--fmu=python", "--t-end=0.05")),

@@ -42,9 +42,14 @@ class Field:
         if case.cold:
             self.cache = folder / "cache"  # files there are replaced, never changed: links do
         self.renew()
+        self.seconds = self.since_rows = 0.0
         started = time.monotonic()
-        self.ask(*case.words, "-o", str(self.output))
-        self.seconds, self.whole = time.monotonic() - started, contents(self.output)
+        with self.start(*case.words, "-o", str(self.output)) as process:
+            self.wait_for_rows(process)
+            rows = time.monotonic()
+            assert not process.communicate(timeout=LONGEST)[1] or process.returncode == 0
+        self.seconds, self.since_rows = time.monotonic() - started, time.monotonic() - rows
+        self.whole = contents(self.output)
 
     def renew(self) -> None:
         """The cache as it is at the start."""
@@ -71,11 +76,23 @@ class Field:
         assert "Traceback" not in said, said[-3000:]
         return said
 
-    def kill(self, after: float) -> bool:
-        """Kill the command some seconds after its start; False if it was through."""
+    def wait_for_rows(self, process: "subprocess.Popen[str]") -> None:
+        """Until a run has a folder with rows, or ends."""
+        while process.poll() is None and not (self.output / "run.json").exists():
+            time.sleep(0.02)
+
+    def kill(self, share: float, *, with_rows: bool = False) -> bool:
+        """Kill the command after a share of its time; False if it was through.
+
+        with_rows: of the time from its first rows on.
+        """
         with self.start(*self.case.words, "-o", str(self.output)) as process:
+            if with_rows:
+                self.wait_for_rows(process)
             try:
-                process.communicate(timeout=after)
+                process.communicate(
+                    timeout=share * (self.since_rows if with_rows else self.seconds)
+                )
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGKILL)
                 process.wait()
@@ -156,11 +173,12 @@ def try_case(case: Case, count: int, chance: random.Random, folder: Path) -> Cou
     """Kill a command so many times; how it went on. Raises AssertionError."""
     field, found = Field(case, folder), Counter()
     field.renew()
-    for _ in range(count):
+    for n in range(count):
         if not case.grows:
             field.renew()
         field.clear()
-        killed = field.kill(chance.uniform(0.0, 0.3 if case.grows else 1.0) * field.seconds)
+        share = chance.uniform(0.0, 0.3 if case.grows else 1.0)
+        killed = field.kill(share, with_rows=case.runs and not case.grows and n % 2 == 1)
         if killed and case.grows:
             found["again"] += 1
             continue

@@ -29,6 +29,8 @@ from herringbone.cosim.structure.system import System
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.running.foreign.foreign_parts import alike, understood
+from herringbone.running.fused.charted import fused_points
+from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
@@ -51,6 +53,7 @@ def measure(
     housing: Named | None = None,
     replace_parts: Mapping[str, str | Path] | None = None,
     fmu: str = AUTO_FMU,
+    fuse: bool = False,
     progress: Progress = lambda algorithm, step: None,
 ) -> WorkPrecision:
     """Run algorithms up a ladder of steps, against the monolithic twin.
@@ -64,6 +67,7 @@ def measure(
         t_end: duration of each run [s]; the scene's if not given.
         values, gear, housing, replace_parts: as in `herringbone.run`.
         fmu: kind of the parts' FMUs, as in `herringbone.run`.
+        fuse: curves of the fused system, too; its steps are the base steps of the core.
         progress: called before each run with the algorithm and the step [s].
 
     Raises:
@@ -106,6 +110,10 @@ def measure(
 
     reference = _reference(structure, opened, grids)
     found = list(run_points(structure, opened, reference, chosen, grids, progress))
+    if fuse:
+        refuse_strangers(structure)
+    if fuse and isinstance(reference, Reference):
+        found += [(p, ()) for p in fused_points(structure, reference, grids, progress)]
     modes, micro_step = 0, 0.0
     if isinstance(reference, Reference):
         modes, micro_step = _internals(reference.twin)

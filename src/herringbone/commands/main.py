@@ -124,6 +124,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--tolerances", type=float, nargs="+", help="relative errors: a curve of adaptive li"
     )
+    sub.add_argument("--fuse", action="store_true", help="curves of the fused system, too")
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     add_kind(sub)
     add_replacements(sub)
@@ -165,6 +166,7 @@ def _chart(options: argparse.Namespace) -> int:
         as_json=options.json,
         scene=options.scene,
         fmu=options.fmu,
+        fuse=options.fuse,
         values=start_values(options.set),
         gear=files.gear,
         housing=files.housing,

@@ -18,7 +18,7 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.fused import (
+from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,
     check_record,

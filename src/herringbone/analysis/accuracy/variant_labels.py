@@ -12,7 +12,7 @@ def variant_labels(algorithms: tuple[str, ...]) -> dict[str, str]:
     found = {}
     for algorithm in algorithms:
         family, values = _options(algorithm)
-        _, usual = _options(str(ALGORITHMS[family]()))
+        usual = _options(str(ALGORITHMS[family]()))[1] if family in ALGORITHMS else {}
         others = [own for kind, own in map(_options, algorithms) if kind == family]
         shown = [
             option

@@ -33,7 +33,7 @@ def unsettled(result: Result) -> list[str]:
     if not result.outcome.completed or time.size < _FEWEST_ROWS or not steady_part(result).steady:
         return []
     frequency = run_mesh_frequency(result)
-    if frequency is not None and frequency * time[-1] < _FEWEST_PERIODS:
+    if frequency is not None and frequency * (time[-1] - time[0]) < _FEWEST_PERIODS:
         return []
     changes = {
         name: change
@@ -54,9 +54,9 @@ def unsettled(result: Result) -> list[str]:
 
 def _change(values: np.ndarray, time: np.ndarray) -> float | None:
     """Larger of both changes, of channels (times, n) together; None if they stand still."""
-    end = time[-1]
-    third = values[(time >= 0.5 * end) & (time < 0.75 * end)]
-    last = values[time >= 0.75 * end]
+    since = time - time[0]  # of a long run, the last rows are there
+    third = values[(since >= 0.5 * since[-1]) & (since < 0.75 * since[-1])]
+    last = values[since >= 0.75 * since[-1]]
     before, after = (float(np.sqrt(part.var(axis=0).sum())) for part in (third, last))
     if max(before, after) <= _ROUNDING * np.abs(values).max(initial=0.0):
         return None

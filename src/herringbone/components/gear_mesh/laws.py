@@ -120,8 +120,8 @@ def _directions(block: np.ndarray) -> np.ndarray:
     return rows
 
 
-def _phases(block: np.ndarray) -> np.ndarray:
-    """Phases of the meshes, left and right, without run-out."""
+def _sharp(block: np.ndarray) -> np.ndarray:
+    """Approach and its rate, and phases of the meshes, left and right, without run-out."""
     prepared = block.copy()
     derive(prepared)
     rows = np.zeros((2, 2 * _POSITIONS))
@@ -129,7 +129,7 @@ def _phases(block: np.ndarray) -> np.ndarray:
         rows[side, _ANGLE] = prepared[at.PHASE_RATE]
         rows[side, _TWIST_P] = side * prepared[at.PHASE_RATE]
         rows[side, _AXIS + side] = (1.0 - 2.0 * side) * prepared[at.AXIAL_PHASE]
-    return rows
+    return np.concatenate([_directions(block), rows])
 
 
 def _mean(block: np.ndarray) -> np.ndarray:
@@ -173,5 +173,5 @@ LAWS = Laws(
     mean=_mean,
     prepare=derive,
     refusal=_refusal,
-    sharp=_phases,
+    sharp=_sharp,
 )  # fmt: skip

@@ -46,8 +46,9 @@ class Laws:
         mean: (tangents,), their means, from parameters and tables alone.
         prepare: kernel, writes into a block what follows from its parameters, before the others.
         needed: False if the component is linear with the parameters of a block.
-        sharp: (n, arguments), further directions along which the values change fast; along others,
-            arguments may be interpolated over a step where the tolerance allows it.
+        sharp: (n, arguments), directions along which the values change fast: along others,
+            arguments may be interpolated over a step where the tolerance allows it; `directions`
+            if not given.
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
     """

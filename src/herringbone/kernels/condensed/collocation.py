@@ -112,39 +112,54 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
     return largest
 
 
+class Sharp(NamedTuple):
+    """Directions along which arguments are taken at all nodes; others are linear over a step.
+
+    Attributes:
+        at: (nodes,) places in a step.
+        first: (n + 1,) where each direction begins.
+        argument, coefficient: of what is not zero in them.
+        back: (n, arguments) their pseudo-inverse, transposed.
+    """
+
+    at: np.ndarray
+    first: np.ndarray
+    argument: np.ndarray
+    coefficient: np.ndarray
+    back: np.ndarray
+
+
 @inlined
-def spread(
-    nodes: Nodes, at: np.ndarray, sharp: np.ndarray, back: np.ndarray, rows: np.ndarray
-) -> None:
+def spread(sharp: Sharp, nodes: Nodes, rows: np.ndarray) -> None:
     """Write arguments at all nodes from those at the end, and along sharp directions.
 
     Args:
+        sharp: directions.
         nodes: with arguments at the start; `z` is written.
-        at: (nodes,) places in a step.
-        sharp, back: see `Fixed` of the march.
-        rows: along the directions at all nodes but start and end, then arguments at the end.
+        rows: along the directions at all nodes but start and end, then arguments at the end;
+            changed.
     """
-    count, arguments = sharp.shape
+    count, arguments = sharp.back.shape
     last = len(nodes.z) - 1
     end, first = nodes.z[last], last * count
     for a in range(arguments):
         end[a] = rows[first + a]
     for k in range(count):
-        before, after = 0.0, 0.0
-        for a in range(arguments):
-            if sharp[k, a] != 0.0:
-                before += sharp[k, a] * nodes.start[a]
-                after += sharp[k, a] * end[a]
+        before, change = 0.0, 0.0
+        for n in range(sharp.first[k], sharp.first[k + 1]):
+            a, by = sharp.argument[n], sharp.coefficient[n]
+            before += by * nodes.start[a]
+            change += by * (end[a] - nodes.start[a])
         for i in range(last):
-            rows[i * count + k] -= before + at[i + 1] * (after - before)
+            rows[i * count + k] -= before + sharp.at[i + 1] * change
     for i in range(last):
-        c, z = at[i + 1], nodes.z[i]
+        c, z = sharp.at[i + 1], nodes.z[i]
         for a in range(arguments):
             z[a] = nodes.start[a] + c * (end[a] - nodes.start[a])
         for k in range(count):
-            miss = rows[i * count + k]
+            miss, back = rows[i * count + k], sharp.back[k]
             for a in range(arguments):
-                z[a] += back[k, a] * miss
+                z[a] += back[a] * miss
 
 
 @inlined

@@ -157,7 +157,7 @@ def _solve_step(
         copy(free, rows)
         add_chosen(of_inputs, v, chosen, _inputs(u, inner + 1, 0, values, v, chosen), rows)
         if fixed.lean:
-            spread(nodes, fixed.nodes, fixed.sharp, fixed.back, rows)
+            spread(fixed.sharp, nodes, rows)
         else:
             copy(rows[: z.size], z)
         for i in range(inner):

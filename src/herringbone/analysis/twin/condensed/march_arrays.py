@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.kernels.condensed.collocation import Sharp
+
 
 class Calls(NamedTuple):
     """Laws and sources by address; offsets by part, totals at the end.
@@ -45,7 +47,7 @@ class Fixed(NamedTuple):
         close: residual of the laws' values, over their size, whose correction solves a step.
         lean: arguments are taken along sharp directions alone at the nodes inside of a step, and
             are linear over the step along others.
-        sharp, back: (n, arguments): these directions, and their pseudo-inverse, transposed.
+        sharp: these directions.
     """
 
     offset: np.ndarray
@@ -54,8 +56,7 @@ class Fixed(NamedTuple):
     one: float
     close: float
     lean: bool
-    sharp: np.ndarray
-    back: np.ndarray
+    sharp: Sharp
 
 
 class State(NamedTuple):

@@ -59,6 +59,7 @@ class Outputs:
 
     Args:
         system: its equations show `places_seen`.
+        affine: which of these are, see `affine_places`.
         columns: `instance.variable`.
         degree: of the solution's polynomials.
         inside: some records lie inside of steps, where the laws' values are less exact than what
@@ -69,15 +70,20 @@ class Outputs:
     """
 
     def __init__(
-        self, system: Condensed, columns: Sequence[str], degree: int, *, inside: bool
+        self,
+        system: Condensed,
+        affine: np.ndarray,
+        columns: Sequence[str],
+        degree: int,
+        *,
+        inside: bool,
     ) -> None:
         self.names, self._system, self._degree = tuple(columns), system, degree
         twin, first = system.twin, system.twin.layout.block_first
         wanted = [twin.index(c) for c in columns]
         rows = {place: row for row, place in enumerate(places_seen(twin))}
-        affine = _affine(system, rows)
         if inside:
-            affine &= ~np.any(system.equations.g[:, : len(system.modes.tangent)], axis=1)
+            affine = affine & ~np.any(system.equations.g[:, : len(system.modes.tangent)], axis=1)
         own = sorted({_part_of(twin, place) for place in wanted if not affine[rows[place]]})
         targets = [place for p in own for place in _needed(twin, p)]
         equations = system.equations
@@ -157,16 +163,22 @@ class _Rows:
         share = np.round(samples.since / (_GRID * samples.length)).astype(np.int64)
         if not share.any():  # all at starts of steps
             return self._product(samples.held, self._rows(1.0, 0), at_start=True)
-        keys, place = np.unique(
-            np.column_stack([samples.length, share]), axis=0, return_inverse=True
-        )
-        if len(keys) + len(self._kept) > _MOST_PLACES:
+        places = self._places(samples.length, share)
+        if len(places) + len(self._kept) > _MOST_PLACES:
             return self._one_by_one(run, samples)
         found = np.empty((samples.times.size, self._still.size))
-        for k, (length, own) in enumerate(keys):
-            here = np.flatnonzero(place.ravel() == k)
-            rows = self._rows(float(length), int(own))
+        for (length, own), here in places.items():
+            rows = self._rows(length, own)
             found[here] = self._product(samples.held[here], rows, at_start=not own)
+        return found
+
+    def _places(self, lengths: np.ndarray, shares: np.ndarray) -> dict[tuple, np.ndarray]:
+        """Which samples lie at each share of each length of a step."""
+        found = {}
+        for length in np.unique(lengths):
+            of_length = np.flatnonzero(lengths == length)
+            for own in np.unique(shares[of_length]):
+                found[float(length), int(own)] = of_length[shares[of_length] == own]
         return found
 
     def _rows(self, length: float, share: int) -> np.ndarray:
@@ -219,15 +231,15 @@ class _Rows:
         return np.hstack([parts(modal.T).T, turned, rest, inputs.reshape(count, -1)])
 
 
-def _affine(system: Condensed, rows: dict[int, int]) -> np.ndarray:
-    """Whether each place that is seen is affine; (seen,)."""
+def affine_places(system: Condensed) -> np.ndarray:
+    """Whether each of the places that are seen is affine; (seen,)."""
     twin, equations = system.twin, system.equations
     calls = system.calls()
     values = int(calls.value[-1])
-    found = np.ones(len(rows), dtype=bool)
+    places = np.array(places_seen(twin), dtype=np.int64)
+    found = np.ones(places.size, dtype=bool)
     drawn = np.random.default_rng(_SEED)
     size = np.maximum(np.abs(twin.state), 1e-3)
-    places = np.array(list(rows), dtype=np.int64)
     for spread in _SPREADS:
         x = twin.state + spread * size * drawn.uniform(0.5, 2.0, size.size)
         u = np.zeros(equations.channels)

@@ -28,7 +28,7 @@ from herringbone.analysis.twin.condensed.rungs import (
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
-from herringbone.kernels.condensed.collocation import Nodes, make_room
+from herringbone.kernels.condensed.collocation import Nodes, Sharp, make_room
 
 HALVINGS = 7
 """Rungs below the base step."""
@@ -36,6 +36,8 @@ CLOSE = 1e-8
 """Residual of the laws' values, over their size, whose correction solves a step.
 
 Every correction makes it a thousand times smaller, or more, wherever no law bends."""
+_LEAN_AHEAD = 2
+"""Degree of the prediction over long steps, where a higher one goes farther off."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
 
@@ -86,13 +88,16 @@ class Solution:
         turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
             _filled(self._shape.rows(turned)),
-            _ahead(degree),
+            _ahead(degree, _LEAN_AHEAD if lean else degree),
             np.array(LOBATTO[degree]),
             float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
             close,
             lean,
-            system.sharp,
-            np.ascontiguousarray(np.linalg.pinv(system.sharp).T),
+            Sharp(
+                np.array(LOBATTO[degree]),
+                *_not_zero(system.sharp),
+                np.ascontiguousarray(np.linalg.pinv(system.sharp).T),
+            ),
         )
         start = modes.start
         self.state = State(
@@ -262,6 +267,13 @@ class Solution:
         )
 
 
+def _not_zero(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where each row begins, then columns and values of what is not zero."""
+    rows, columns = np.nonzero(matrix)
+    first = np.searchsorted(rows, np.arange(len(matrix) + 1))
+    return first.astype(np.int64), columns.astype(np.int64), matrix[rows, columns]
+
+
 def _filled(values: np.ndarray) -> np.ndarray:
     """Values, then zeros; see `Rungs`."""
     found = aligned(padded(values.size))
@@ -269,10 +281,19 @@ def _filled(values: np.ndarray) -> np.ndarray:
     return found
 
 
-def _ahead(degree: int) -> np.ndarray:
-    """Polynomials of a step, continued over one of 2^-d of its length, d from -HALVINGS on."""
-    fit, nodes = coefficients(degree), np.array(LOBATTO[degree])
-    shares = 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1)
-    return np.array([
-        (np.vander(1.0 + s * nodes, degree + 1, increasing=True) @ fit).T for s in shares
-    ])  # fmt: skip
+def _ahead(degree: int, of: int) -> np.ndarray:
+    """Values of a step, continued over one of 2^-d of its length, d from -HALVINGS on.
+
+    Along the polynomial of a degree that goes through the end and fits the other nodes best.
+    """
+    nodes = np.array(LOBATTO[degree])
+    since_end = np.vander(nodes - 1.0, of + 1, increasing=True)[:, 1:]
+    from_end = np.eye(degree + 1)
+    from_end[:, -1] -= 1.0
+    fit = np.linalg.pinv(since_end) @ from_end
+    found = []
+    for share in 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1):
+        on = np.vander(share * nodes, of + 1, increasing=True)[:, 1:] @ fit
+        on[:, -1] += 1.0
+        found.append(on.T)
+    return np.array(found)

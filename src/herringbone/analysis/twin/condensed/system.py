@@ -37,18 +37,16 @@ class Condensed:
 
     @cached_property
     def sharp(self) -> np.ndarray:
-        """(n, arguments): directions of tangents, and others along which values change fast."""
-        more = self._rows(lambda laws, block: laws.sharp(block) if laws.sharp else None)
-        return np.concatenate([self.directions, more])
+        """(n, arguments): directions along which the laws change fast."""
+        return self._rows(lambda laws, block: (laws.sharp or laws.directions)(block))
 
-    def _rows(self, given: Callable[[Laws, np.ndarray], np.ndarray | None]) -> np.ndarray:
+    def _rows(self, given: Callable[[Laws, np.ndarray], np.ndarray]) -> np.ndarray:
         """Rows over the arguments of all laws, from those over their own."""
         rows, at = [np.zeros((0, len(self.equations.c)))], 0
         for instance, laws in self._parts():
             own = given(laws, instance.block)
-            if own is not None:
-                rows.append(np.zeros((len(own), len(self.equations.c))))
-                rows[-1][:, at : at + own.shape[1]] = own
+            rows.append(np.zeros((len(own), len(self.equations.c))))
+            rows[-1][:, at : at + own.shape[1]] = own
             at += len(laws.arguments)
         return np.concatenate(rows)
 

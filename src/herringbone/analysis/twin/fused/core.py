@@ -8,7 +8,12 @@ from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
-from herringbone.analysis.twin.condensed.outputs import Outputs, outputs_of_kernels, places_seen
+from herringbone.analysis.twin.condensed.outputs import (
+    Outputs,
+    affine_places,
+    outputs_of_kernels,
+    places_seen,
+)
 from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
@@ -18,7 +23,7 @@ from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
 """The largest residual whose correction solves a step: one evaluation of the laws for most."""
-_OF_TOLERANCE = 50.0
+_OF_TOLERANCE = 100.0
 """Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
 
 
@@ -68,6 +73,7 @@ class Core:
                     "be fused; run without fuse"
                 )
         self._system = _condensed(twin)
+        self._affine = affine_places(self._system)
         self.names = outputs_of_kernels(twin)
         declared = [
             f"{i.name}.{v.name}" for i in twin.instances for v in i.component.declaration.outputs
@@ -121,7 +127,7 @@ class Core:
 
     def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
         """Values of some outputs; see `Outputs`."""
-        return Outputs(self._system, columns, steps.degree, inside=inside)
+        return Outputs(self._system, self._affine, columns, steps.degree, inside=inside)
 
 
 def endings_of(name: str) -> tuple[str, ...]:

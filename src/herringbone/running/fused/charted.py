@@ -1,0 +1,47 @@
+"""A fused system as a curve of the speed-accuracy chart."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from herringbone.analysis.accuracy.step_ladder import Progress, Reference
+from herringbone.analysis.accuracy.work_precision import Point
+from herringbone.analysis.twin.fused.core import Core, Steps
+from herringbone.analysis.twin.fused.measured import DEGREES
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.structure.system import System
+from herringbone.running.fused.loop import FusedRun
+
+_CLOSE = 1e-4
+"""Residual of the laws, over their size, whose correction solves a step."""
+_REPEATS = 3
+
+
+def fused_points(
+    system: System, reference: Reference, grids: Sequence[Grid], progress: Progress
+) -> Iterator[Point]:
+    """The base steps of a ladder, for each degree; passes are evaluations of all laws.
+
+    Raises:
+        StructureError: the system cannot be fused.
+    """
+    core = Core(system)
+    columns = [name for names in reference.groups.values() for name in names]
+    for degree in DEGREES:
+        name = f"fused:degree={degree}"
+        for grid in grids:
+            progress(name, grid.step)
+            steps = Steps(grid.step, degree, _CLOSE)
+            FusedRun(core, steps, columns, Grid(grid.step, 2, 1), None).go(None)  # loads code
+            runs = [FusedRun(core, steps, columns, grid, None).go(None) for _ in range(_REPEATS)]
+            recording = runs[0]
+            evaluations = recording.core.evaluations if recording.core else math.nan
+            reached = recording.outcome.time
+            yield Point(
+                name,
+                grid.step,
+                1e-3 * evaluations / reached if reached else math.nan,
+                min(run.wall_seconds for run in runs),
+                reached,
+                reference.errors(recording),
+                str(recording.outcome.kind),
+            )
