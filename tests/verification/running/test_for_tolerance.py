@@ -58,7 +58,7 @@ def test_teeth_that_will_part_get_shorter_ones(rig):
     """Of a start without load; the kick of `separation` asks for less."""
     runup = prepared("test_rig", "runup", Wishes()).system
     assert with_inner_steps(runup, 1e-4).longest == pytest.approx(separation_step(0.5e-4))
-    assert with_inner_steps(rig.system, 1e-5, 4, kicked=True).longest == separation_step(5e-5)
+    assert with_inner_steps(rig.system, 1e-5, 4, kicked=True).longest == separation_step(1.5e-5)
 
 
 def test_algorithm_and_shares(rig):

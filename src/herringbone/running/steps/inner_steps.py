@@ -34,7 +34,7 @@ from herringbone.running.pairs.open_flanges import loaded
 _LI = LI()
 _RULE = _LI.accurate_step or 0.0
 _BY_DEGREE = {4: 0.7}
-_OPEN, _KICKED = 0.5, 5.0
+_OPEN, _KICKED = 0.5, 1.5
 """Error by `separation_step` over the tolerance. Macro steps are short while teeth part: for a few
 blows they do."""
 _SHORTEST = 5e-7
