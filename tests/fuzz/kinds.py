@@ -27,7 +27,8 @@ from support.housing import small_housing
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.flat_csv import read_flat_csv
 from herringbone.components.resources.stiffness_table import read_stiffness_table
-from herringbone.core import HerringboneError, Instance, temporary
+from herringbone.core import HerringboneError, Instance
+from herringbone.core.places import temporary
 from herringbone.core.places.paths import component_folder, systems_folder
 from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu

@@ -2,7 +2,7 @@
 
 libcosim (through libcosimpy) and ecos (through ecospy) step all FMUs in parallel on held inputs:
 `Jacobi(order=0, schedule="parallel")` of this package. The step lies below the stability limit of
-that scheme at the stiffest bearing, about 3e-6 s.
+that scheme at the stiffest bearing, as `herringbone stability` says.
 """
 
 import importlib.util

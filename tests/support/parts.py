@@ -202,7 +202,7 @@ class CallbackPart:
             self.out()
         return [self[name] for name in names]
 
-    def enter_initialization(self, start_time, stop_time):
+    def enter_initialization(self, start_time, stop_time, tolerance=None):
         """Compute the outputs of the start."""
         self.out()
 

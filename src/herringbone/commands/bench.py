@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from typing import TYPE_CHECKING, Any
 
 from herringbone.commands.options import (
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
 
 _RIG = "macro-step"
-_PARTS = (_RIG, "accuracy", "fmus")
+_PARTS = (_RIG, "accuracy", "fused", "fmus")
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -128,4 +129,21 @@ def _fmus() -> tuple[str, dict[str, Any]]:
     return "\n".join(lines), {"platforms": platforms, "fmus": figures}
 
 
-_MEASURE = {"accuracy": _accuracy, "fmus": _fmus}
+def _fused() -> tuple[str, dict[str, Any]]:
+    from herringbone.benchmarks import fused  # noqa: PLC0415
+
+    found = fused.measure()
+    lines = [
+        f"Test rig, records every {1e3 * fused.RECORD_STEP:g} ms, for an error of "
+        f"{fused.TOLERANCE:.1%}: simulated time over CPU time of the loop",
+        f"{'x':>8}{'error':>10}{'worst':>10}  run; error of the worse group, worst channel",
+    ]
+    for row in found:
+        errors = "".join(
+            f"{'-' if math.isnan(e) else f'{e:.3%}':>10}" for e in (row.error, row.worst)
+        )
+        lines.append(f"{row.factor:8.1f}{errors}  {row.name}")
+    return "\n".join(lines), {row.name: row._asdict() for row in found}
+
+
+_MEASURE = {"accuracy": _accuracy, "fused": _fused, "fmus": _fmus}

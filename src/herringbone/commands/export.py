@@ -69,7 +69,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         HerringboneError: something about the options is wrong, or the export fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
-    from herringbone.running.exporting.export import PARALLEL_STEP, export_ssp, fmu_file_name  # noqa: PLC0415
+    from herringbone.running.exporting.export import export_ssp, fmu_file_name  # noqa: PLC0415
     from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
 
     name = Path(options.system).stem
@@ -104,7 +104,7 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         options.system,
         options.output or Path(f"{name}.ssp"),
         scene=options.scene,
-        step=PARALLEL_STEP if options.step is None else options.step,
+        step=options.step,
         values=values,
         gear=files.gear,
         housing=files.housing,

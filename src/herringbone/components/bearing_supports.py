@@ -17,8 +17,8 @@ so that the damping acts only on the loaded part, and f = 0 where its sign is no
 bearing with clearance never pulls. Without clearance g = 1, and f may have any sign.
 
 A master that steps all FMUs in parallel sees this element one macro step h late; gear and seat then
-are stable only for h < 4/3 zeta / w with the local w, zeta (here about 3e-6 s). A master
-that steps it after the bodies, over the same interval, has no delay.
+are stable only for h < 4/3 zeta / w with the local w, zeta; `herringbone stability` computes the
+limit of a system. A master that steps it after the bodies, over the same interval, has no delay.
 
 Source: the thesis, table 3.1 (radial 6.34e8 N/m, axial 2.03e8 N/m, read as per half of the wheel);
 damping 2 % of the local critical damping of a half-body, a choice of this project.

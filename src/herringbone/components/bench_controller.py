@@ -146,5 +146,6 @@ BENCH_CONTROLLER = Component(
     __doc__,
     load=ResourceLoader(_d.texts, _load, _REFUSALS, scratch=1),
     breakpoints=_breakpoints,
+    curve=2,  # a linear cycle times a linear ramp
     of_pair=_of_pair,
 )

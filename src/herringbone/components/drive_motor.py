@@ -152,6 +152,12 @@ def _inside(block: np.ndarray) -> np.ndarray:
     return np.ones(2)
 
 
+def _nothing(block: np.ndarray) -> np.ndarray:
+    """A limit is a straight line on both sides of its bend."""
+    del block
+    return np.zeros((0, 2))
+
+
 _LAWS = Laws(
     arguments=("torque before the limit", "acceleration of the set point before the limit"),
     values=("torque", "acceleration of the set point"),
@@ -162,6 +168,7 @@ _LAWS = Laws(
     apply=_apply,
     directions=_each,
     mean=_inside,
+    sharp=_nothing,
 )
 
 DRIVE_MOTOR = Component(

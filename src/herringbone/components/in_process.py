@@ -154,7 +154,9 @@ class InProcessPart:
         """Texts, which are all that is not real."""
         return [self.instance.texts[name] for name in names]
 
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
         """Compute initial outputs; raises ParameterError, ResourceError."""
         del stop_time
         self._start_time, self._stale = start_time, True

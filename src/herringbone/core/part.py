@@ -125,8 +125,15 @@ class Part(Protocol):
     def get_values(self, names: Sequence[str]) -> list[Value]:
         """Values of variables of other types than real; raises FmuError."""
 
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
-        """Go to initialisation mode; start values have been set."""
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
+        """Go to initialisation mode; start values have been set.
+
+        Args:
+            start_time, stop_time: [s].
+            tolerance: relative error that the part may leave [1]; None: its own choice.
+        """
 
     def exit_initialization(self) -> None:
         """Go to step mode; raises HerringboneError if the part refuses."""

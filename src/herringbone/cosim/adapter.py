@@ -45,9 +45,11 @@ class PartAdapter:
         """See `Part`."""
         return self.part.get_values(names)
 
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
         """See `Part`."""
-        self.part.enter_initialization(start_time, stop_time)
+        self.part.enter_initialization(start_time, stop_time, tolerance)
 
     def exit_initialization(self) -> None:
         """See `Part`."""

@@ -15,6 +15,7 @@ def initialise(
     t_end: float,
     watch: EnergyWatch,
     others: OtherSignals,
+    tolerance: float | None = None,
 ) -> AlgebraicLoop | None:
     """Enter and leave initialisation; outputs are propagated bodies -> elements -> bodies.
 
@@ -24,6 +25,7 @@ def initialise(
         t_end: end of the run [s].
         watch: of the energy; it begins with the first outputs.
         others: signals of other types than real.
+        tolerance: that the parts are told [1]; None: none.
 
     Returns:
         The algebraic loop, solved, if there is one.
@@ -33,7 +35,7 @@ def initialise(
     """
     parts = network.parts
     for part in parts:
-        part.enter_initialization(0.0, t_end)
+        part.enter_initialization(0.0, t_end, tolerance)
     _hold_unconnected_inputs(network, degrees)
     _propagate(network)
     for _ in network.others:  # a chain of them is as long at the most

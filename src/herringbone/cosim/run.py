@@ -251,6 +251,7 @@ class Run:
             {self.network.parts[p].name: m for p, m in self.network.slow.items()},
             kept.others,
             self.others.units,
+            estimate=self.prepared.estimate,
         )
 
     def _step(self, done: int) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
+from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
@@ -68,6 +69,8 @@ def simulate(
     *,
     bond_frequency: float | None = None,
     slow: Mapping[str, int] | None = None,
+    inner_step: float = 0.0,
+    tolerance: float | None = None,
     streaming: Streaming | None = None,
 ) -> Recording:
     """Run a system of instantiated parts, whose start values have been set.
@@ -84,6 +87,9 @@ def simulate(
             five of its periods.
         slow: bodies that step once in several macro steps, and in how many; the step is shortened
             so that the end is a communication point of all.
+        inner_step: the longest of the bodies' own integration [s], of which an adaptive step takes
+            account; 0 if there is none, or unknown.
+        tolerance: that parts are told [1]; None: none.
         streaming: where rows go while the run goes on; None: they stay in memory.
 
     Raises:
@@ -97,12 +103,14 @@ def simulate(
         check_multirate(algorithm)
         grid = _common(grid, math.lcm(*network.slow.values()))
     prepared = algorithm.prepare(network)
+    if isinstance(prepared, PreparedAdaptive):
+        prepared.inner_step = inner_step
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     others = OtherSignals(network)
-    loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others)
+    loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others, tolerance)
     notes = [*settle_derivatives(network, prepared), *others.notes]
     run = Run(network, prepared, grid, watch, notes, others, streaming)
     run.start_offsets = start_offsets(network)

@@ -45,6 +45,8 @@ class RunInfo:
         notes: downgrades and other lines to read.
         steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
             "shortest", "median" and "longest" of the accepted ones [s].
+        estimate: if the step is adaptive, the relative error "asked" for, and what the steps let
+            expect: of the "coupling", and of the "inner_steps" of the parts.
         energy: what the coupling did to the energy; None where no element has dampers.
         why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
         slow: bodies that step once in several macro steps, and in how many.
@@ -70,6 +72,7 @@ class RunInfo:
     wall_s: float
     notes: tuple[str, ...] = ()
     steps: Mapping[str, float] | None = None
+    estimate: Mapping[str, float] | None = None
     energy: EnergyReport | None = None
     why: Diagnosis | None = None
     slow: Mapping[str, int] = field(default_factory=dict)

@@ -8,7 +8,7 @@ from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
-from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm, with_tolerance
+from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import housing_of_strangers
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import check_grid
@@ -18,7 +18,7 @@ from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
-from herringbone.running.fused import (
+from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,
     check_record,
@@ -31,6 +31,7 @@ from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import compared
+from herringbone.running.steps.for_tolerance import for_tolerance
 from herringbone.running.steps.step_search import searched, searched_tolerance
 from herringbone.running.steps.verification import (
     can_be_verified,
@@ -128,8 +129,6 @@ def run(
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
-    if verify and not fuse:
-        check_fixed_step(coupling, tolerance)
     wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
     with housing_of_strangers(in_process=in_process, deadline=call_deadline):
         structure, chosen, notes = prepared(
@@ -141,21 +140,33 @@ def run(
         if fuse:
             wanted = FusedAsked(step, tolerance, tuple(record), notes=notes)
             return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
+        adapts = tolerance is not None or (coupling is not None and coupling.adaptive)
+        if verify and adapts and not structure.foreign_parts:
+            reference, verify = True, False
         if reference:
             refuse_foreign_parts(structure)
         fmu, slower = choose_kind(fmu)
         said = (*notes, *slower)
         asked = Asked(
-            fmu, coupling, step, tolerance, slow, probe, record_step, reference, notes=said
+            fmu,
+            coupling,
+            step,
+            tolerance,
+            slow=slow,
+            probe=probe,
+            record_step=record_step,
+            all_points=reference,
+            notes=said,
         )
         aim = searched_tolerance(structure, asked)
+        if verify and aim is None:
+            check_fixed_step(coupling, tolerance)
         if output is not None:
             output.claim(structure, chosen, replace(asked, notes=(), tolerance=aim or tolerance))
+        structure, asked = for_tolerance(structure, chosen, asked, searched=aim is not None)
         if aim is not None:
             found = searched(structure, chosen, asked, aim, progress, recorded)
         else:
-            if coupling is not None and tolerance is not None:
-                asked = replace(asked, algorithm=with_tolerance(coupling, tolerance))
             found = coupled(structure, chosen, asked, progress, recorded, output)
         result = found.result
         if reference:

@@ -16,7 +16,6 @@ from herringbone.cosim.algorithms import (
     Jacobi,
     choose_algorithm,
     start_step,
-    with_tolerance,
 )
 from herringbone.cosim.cell.policy import remarks_of_cells
 from herringbone.cosim.exit_guard import exit_guard
@@ -53,13 +52,18 @@ class Asked:
     Attributes:
         algorithm: of the coupling.
         step: macro step [s].
-        tolerance: for which the step adapts.
+        tolerance: relative error of the run.
         slow: bodies that step once in several macro steps.
         fmu: kind of the parts' FMUs.
         probe: find out what foreign FMUs are.
         record_step: that the caller gave [s].
         all_points: keep all communication points beside the result.
         warn: say whether the step is stable.
+        notes: lines that are known already.
+        inner_step: longest of the own parts [s], of which an adaptive step takes account.
+        part_tolerance: that parts are told; None: none.
+        judge: make the error budget, and lines on what does not fit together; False for runs that
+            only tell the error of another.
     """
 
     fmu: str
@@ -72,6 +76,9 @@ class Asked:
     all_points: bool = False
     warn: bool = True
     notes: Sequence[str] = field(default=())
+    inner_step: float = 0.0
+    part_tolerance: float | None = None
+    judge: bool = True
 
 
 class Coupled(NamedTuple):
@@ -132,7 +139,7 @@ def _coupled(
     lines, algorithm = list(asked.notes), asked.algorithm
     with same_folder(), exit_guard(), closing_all(open_parts(system, asked.fmu)) as opened:
         parts: Sequence[Part] = opened
-        if not system.connections and algorithm is None and asked.tolerance is None:
+        if not system.connections and algorithm is None:
             asked = replace(asked, step=asked.step or min(scene.record_step, scene.t_end))
             algorithm = Jacobi(order=0)
             lines.append(f"auto: {algorithm}, once per record, because nothing is connected")
@@ -141,7 +148,7 @@ def _coupled(
             parts, said = understood(system, opened, instances, trial)
             lines += [*said, *unfed(system, parts)]
         if algorithm is None:
-            algorithm, why = _chosen_for(parts, asked)
+            algorithm, why = choose_algorithm(parts, asked.step)
             lines.append(why)
         bond = fastest_bond(system)
         own = start_step(algorithm, parts)
@@ -160,10 +167,12 @@ def _coupled(
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
                 system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
-                streaming=streaming,
+                inner_step=asked.inner_step, tolerance=asked.part_tolerance, streaming=streaming,
             )  # fmt: skip
         lines += _step_notes(asked.step, algorithm, recording)
-        every = judged(make_result(system, scene, algorithm, asked.fmu, recording, lines), bond)
+        every = make_result(system, scene, algorithm, asked.fmu, recording, lines)
+        if asked.judge:
+            every = judged(every, bond)
         _log_end(recording)
         if asked.all_points:
             result = decimated(every, scene.record_step)
@@ -182,12 +191,6 @@ def _streaming(
     """Where rows go: those that the scene asks for."""
     every = make_grid(scene.t_end, step, scene.record_step).every if asked.all_points else 1
     return output.stream(start, every, keeps_all=asked.all_points)
-
-
-def _chosen_for(parts: Sequence[Part], asked: Asked) -> tuple[Algorithm, str]:
-    """The algorithm that suits the parts, and why."""
-    found, why = choose_algorithm(parts, asked.tolerance, asked.step)
-    return (found if asked.tolerance is None else with_tolerance(found, asked.tolerance)), why
 
 
 def _stability_notes(

@@ -153,10 +153,12 @@ def test_coupling_by_its_rule(table):
         assert "--reference measures" in unknown.how
 
 
-def test_coupling_that_adapts_is_as_good_as_its_tolerance(table):
+def test_coupling_that_adapts_is_as_good_as_its_steps_tell(table):
     result = result_with(table)
-    info = replace(result.info, algorithm="li:tolerance=1e-3")
-    assert coupling_row(replace(result, info=info), 2e4).value == 1e-3
+    estimate = {"asked": 1e-3, "coupling": 4e-4, "inner_steps": 2e-4}
+    info = replace(result.info, algorithm="li:tolerance=1e-3", estimate=estimate)
+    found = coupling_row(replace(result, info=info), 2e4)
+    assert (found.value, found.known) == (4e-4, Known.ESTIMATED)
 
 
 def test_coupling_measured_is_the_worst_group(table):

@@ -210,6 +210,15 @@ def test_geometry_and_foreign_annotations_are_passed_over(edited, system):
     assert read_ssp(folder).connections == system.connections
 
 
+def test_connectors_that_are_no_port_are_open(edited, system):
+    """One that leads to a single variable, and is told."""
+    found = read_ssp(edited('startElement="left" ', ""))
+    (note,) = found.notes
+    assert note.endswith("connectors of no port are open: port.s")
+    assert found.ports == {}
+    assert set(found.connections) == set(system.connections) - {("left.port.s", "spring.s")}
+
+
 REFUSED_STRUCTURES = {
     "version": ('version="1.0" name="chain"', 'version="2.0" name="chain"', "SSP version '2.0'"),
     "values of a nested system": (
@@ -232,10 +241,10 @@ REFUSED_STRUCTURES = {
         'endConnector="f"><ssc:LinearTransformation factor="2"/></ssd:Connection>',
         "connection 'spring.force' - 'left.f': LinearTransformation is not supported",
     ),
-    "system connector": (
-        'startElement="left" ',
-        "",
-        "connection 'system.port.s' - 'spring.s': connectors of the system",
+    "no component": (
+        'startElement="left" startConnector="port.s" endElement="spring" ',
+        'startConnector="port.s" ',
+        "connection 'system.port.s' - 'system.s': it needs connectors, and a component at one end",
     ),
     "other type": (
         'name="spring" type="application/x-fmu-sharedlibrary"',
@@ -420,9 +429,11 @@ def test_nested_systems_stay_so_and_are_wired_alike(system, fmus, tmp_path):
 
 def test_nested_systems_are_read_again(system, fmus, tmp_path):
     """Paths, values and connections; a connector that nothing arrives at is refused."""
-    whole, file = replace(nested(system), ports={}), tmp_path / "nested.ssp"
+    whole, file = nested(system), tmp_path / "nested.ssp"
     write_ssp(whole, fmus, file, step=1e-5, t_end=0.25, nested=True)
     found = read_ssp(file)
+    assert found.ports == whole.ports
+    assert not found.notes
     assert sorted(found.paths) == sorted(whole.paths)
     assert set(found.connections) == set(whole.connections)
     for part in whole.parts:

@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.cosim.loops.step_error import AMPLIFICATION, FLOOR, ORDER, step_error, update_scale
+from herringbone.cosim.loops.step_error import (
+    AMPLIFICATION,
+    COUPLING,
+    FLOOR,
+    INNER,
+    INNER_STEPS,
+    ORDER,
+    error_so_far,
+    step_error,
+    update_scale,
+)
 
 KAPPA = {1: 1 / 12, 2: 1 / 960, 3: 1 / 6480, 4: 1 / 387072}
 SPACING = (1.25, 0.8)
@@ -30,9 +40,11 @@ def found_force(force, degree, scale=1.0):
     return nodes, buffers
 
 
-def error(force, degree, *, held=0, known=9, scale=1.0):
+def error(force, degree, *, held=0, known=9, scale=1.0, inner_steps=np.inf, squares=None):
     nodes, buffers = found_force(force, degree, scale)
-    return step_error(nodes, buffers, ONE, np.array([held], np.int64), np.zeros(1), known)[0]
+    held = np.array([held], np.int64)
+    squares = np.zeros((2, 1)) if squares is None else squares
+    return step_error(nodes, buffers, ONE * 0, held, squares, known, inner_steps)[0]
 
 
 @pytest.mark.parametrize("degree", KAPPA)
@@ -88,7 +100,26 @@ def test_without_history_a_lower_derivative_stands_in():
 def test_what_is_left_of_the_correction_counts():
     nodes, buffers = found_force(lambda t: 0.0, 3)
     buffers.rest[:] = [[1.0], [2.0], [-3.0]]
-    assert step_error(nodes, buffers, ONE, 0 * ONE, np.zeros(1), 9)[0] == 3.0
+    assert step_error(nodes, buffers, 0 * ONE, 0 * ONE, np.zeros((2, 1)), 9, np.inf)[0] == 3.0
+
+
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_inner_steps_err_with_the_fourth_derivative(degree, count):
+    """d^4 f^(4) of t^4 is 4! d^4, with d = 1 / (p n); both errors make the step's, as of a norm."""
+    squares = np.zeros((2, 1))
+    both = error(lambda t: (t + 0.3) ** 4, degree, inner_steps=count, squares=squares)
+    inner = AMPLIFICATION * INNER * 24.0 / (degree * count) ** 4
+    assert math.sqrt(squares[INNER_STEPS, 0]) == pytest.approx(inner, rel=1e-6)
+    assert both == pytest.approx(math.sqrt(squares.sum()), rel=1e-9)
+
+
+def test_error_of_the_run_is_a_mean():
+    """Errors of 0.3 and 0.4 over two seconds, on a force with a standard deviation of 10."""
+    nodes, buffers = found_force(lambda t: 0.0, 3, scale=10.0)
+    errors = np.zeros((2, 1))
+    errors[[COUPLING, INNER_STEPS], 0] = 2.0 * 0.3**2, 2.0 * 0.4**2
+    assert error_so_far(nodes, buffers, ONE * 0, errors, 2.0) == pytest.approx(0.05, rel=1e-12)
 
 
 def test_size_of_the_forces_is_their_standard_deviation():
@@ -96,14 +127,28 @@ def test_size_of_the_forces_is_their_standard_deviation():
     w, mean = 2.0 * math.pi, 50.0
     rng = np.random.default_rng(1)
     times = np.sort(np.concatenate([[0.0, 10.0], rng.uniform(0.0, 10.0, 3000)]))
-    moments, weight = np.zeros((4, 1)), np.zeros(1)
+    moments, covered = np.zeros((5, 1)), np.zeros(4)
     nodes, buffers = found_force(lambda t: mean, 3)
-    update_scale(nodes, buffers, ONE * 0, moments, weight, 0.0)
+    update_scale(nodes, buffers, ONE * 0, moments, covered, 50.0, 0.0)
     assert buffers.scale[0] == pytest.approx(FLOOR * mean)
     for start, end in pairwise(times):
         at = start + (end - start) * np.arange(4) / 3
         buffers.nodes[:, 0] = mean + 3.0 * np.sin(w * at)
-        update_scale(nodes, buffers, ONE * 0, moments, weight, end - start)
-    assert weight[0] == pytest.approx(10.0)
-    # Values at nodes stand for the third before them: off by (w h / 3) / 2 of the amplitude.
-    assert buffers.scale[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=0.01)
+        update_scale(nodes, buffers, ONE * 0, moments, covered, 50.0, end - start)
+    assert covered[0] == pytest.approx(10.0)
+    # The line needs a period or two until it is the mean, within 2 / (w t) of the amplitude.
+    assert buffers.scale[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=0.05)
+
+
+def test_a_load_that_rises_is_no_vibration():
+    """A ramp of 100 a second, and 0.5 sin at 8 Hz on it: the line takes the ramp out."""
+    moments, covered = np.zeros((5, 1)), np.zeros(4)
+    nodes, buffers = found_force(lambda t: 0.0, 3)
+    update_scale(nodes, buffers, ONE * 0, moments, covered, 1.0, 0.0)
+    for start, end in pairwise(np.linspace(0.0, 20.0, 8001)):
+        at = start + (end - start) * np.arange(4) / 3
+        buffers.nodes[:, 0] = 100.0 * at + 0.5 * np.sin(16.0 * math.pi * at)
+        update_scale(nodes, buffers, ONE * 0, moments, covered, 1.0, end - start)
+    # A mean over 20 s would be off by 577; the vibration moves the line by 1 / (w memory) = 2 %.
+    vibration = math.sqrt(moments[2, 0] / covered[0])
+    assert vibration == pytest.approx(0.5 / math.sqrt(2.0), rel=0.05)

@@ -40,7 +40,7 @@ def mean(result, column):
 def test_headline_and_cost(rig):
     text = summary_text(rig)
     assert text.startswith("test_rig, scene loaded: completed, 0.2 of 0.2 s\n")
-    assert "real-time factor 2.5" in line(text, "Cost")
+    assert "0.4 times real time" in line(text, "Cost")
     assert "50 us per macro step; 10000 steps" in text
     assert len(text.splitlines()) <= 36
     assert max(map(len, text.splitlines())) <= 100

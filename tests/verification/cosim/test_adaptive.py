@@ -150,7 +150,7 @@ def test_steps_taken_back_leave_no_trace():
     """The same run from another first step: what was taken back is not in the result."""
     problem = TwoMass(zeta=0.1)
     recording = go(problem, largest=16.0, t_end=32.0)  # begins with h w = 3.2
-    assert recording.steps.rejected >= 3
+    assert recording.steps.rejected >= 2
     assert LOW <= force_error(problem, recording) / 1e-3 <= HIGH
 
 
@@ -265,7 +265,7 @@ def test_a_singular_jacobian():
     parts = [Echo("body"), SpringDamper("spring", 1.0, 0.0)]
     outcome = simulate(system, parts, LI(tolerance=1e-3), make_grid(1.0, 0.1, 0.1)).outcome
     assert outcome.kind is OutcomeKind.COUPLING_FAILED
-    assert "the interface Jacobian is singular at 0 s (h = 0.02 s)" in outcome.message
+    assert "the interface Jacobian is singular at 0 s (h = 0.03125 s)" in outcome.message
 
 
 def test_a_source_that_cannot_be_taken_back_is_refused():

@@ -1,6 +1,7 @@
 """The gearbox as an FMU for hosts: what it shows, how it starts, what a flange takes."""
 
 import math
+import random
 import re
 import time
 from functools import cache
@@ -80,7 +81,14 @@ def test_no_input_is_missing(exported, capfd):
     assert "issing" not in "".join(capfd.readouterr())
 
 
-@pytest.mark.parametrize(("speed", "torque"), [(0.0, 0.0), (1.0, 200.0), (3.0, 900.0)])
+DRAWN = random.Random("operating points")
+POINTS = [
+    (0.0, 0.0), (1.0, 200.0), (3.0, 900.0), (1.0, -200.0),
+    *((DRAWN.uniform(0.1, 3.5), DRAWN.uniform(-900.0, 900.0)) for _ in range(2)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("speed", "torque"), POINTS)
 def test_start_at_any_operating_point(speed, torque, exported, tmp_path):
     host = Fmi2Host(exported(0), tmp_path, values=load(torque, speed * SPEED))
     step, rows = 2e-5, []
@@ -93,7 +101,10 @@ def test_start_at_any_operating_point(speed, torque, exported, tmp_path):
 
 def test_start_on_the_coast_flank(exported, tmp_path):
     """Torque reversed: the mirror image of the same load, to what the apex deviation changes."""
-    found = [Fmi2Host(exported(0), tmp_path / str(t), values=load(t)) for t in (200.0, -200.0)]
+    found = [
+        Fmi2Host(exported(0), tmp_path / str(t), values={**load(t), "start_mode": 1.0})
+        for t in (200.0, -200.0)
+    ]
     drive, coast = (h.get("mesh_left.force", "bearing.pinion_left.f_y") for h in found)
     assert coast == pytest.approx(-drive, rel=1e-3)
 

@@ -4,7 +4,10 @@ With an error of the power p of the step the difference of both runs is 1 - 2^-p
 7/8, 15/16 for p = 1 to 4; times 4/3 that is 0.67 to 1.25 of the error.
 """
 
+import json
+
 import pytest
+from support.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.commands.main import main
@@ -34,7 +37,25 @@ def test_it_is_said_and_takes_the_rule_s_place(tmp_path, capsys):
     assert "coupling (estimated; " in said
 
 
-def test_a_step_that_adapts_itself_is_refused(tmp_path, capsys):
-    command = ["run", "test_rig", "--t-end", "0.002", "--fmu", "in-process", "--verify"]
-    assert main([*command, "--tolerance", "1e-2", "-o", str(tmp_path)]) == 2
+def test_a_step_that_adapts_is_verified_by_the_twin(tmp_path, capsys):
+    """Asked, estimated and measured stand in the summary; an explicit step of a part stays."""
+    command = ["run", "test_rig", "--t-end", "0.01", "--fmu", "in-process", "--verify", "--json"]
+    command += ["--tolerance", "1e-3", "--set", "drive_motor.micro_step=2e-5", "-o", str(tmp_path)]
+    assert main(command) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["estimate"]["asked"] == 1e-3
+    assert 0.02e-3 < max(summary["error"].values()) < 2e-3
+    assert 0.1e-3 < summary["estimate"]["coupling"] < 1e-3
+    assert summary["micro_steps"]["drive_motor"] == 2e-5
+    assert summary["micro_steps"]["gearbox.gear_mesh"] > 1e-5
+    said = (tmp_path / "summary.txt").read_text(encoding="utf-8")
+    assert "asked 0.1 %, estimated" in said
+    assert "the cheapest for it" in " ".join(said.split())
+
+
+def test_foreign_parts_and_a_step_that_adapts_are_refused(tmp_path, capsys):
+    housing = c_housing_fmu(tmp_path, ("SAVES",), saves=True)
+    command = ["run", "test_rig", "--t-end", "0.002", f"--replace=modal_housing={housing}"]
+    command += ["--algorithm", "li:tolerance=1e-2", "--verify", "-o", str(tmp_path / "out")]
+    assert main(command) == 2
     assert "adapts its step to the tolerance" in capsys.readouterr().err

@@ -124,11 +124,10 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
         return BudgetRow(source, quantity, value, Known.ESTIMATED, result.verification.how)
     if result.info.core is not None:
         return BudgetRow(source, _FORCE, None, Known.UNKNOWN, "nothing varies")
+    if (estimate := result.info.estimate) is not None:
+        how = "by the differences of the forces in each step; --reference measures"
+        return BudgetRow(source, _FORCE, estimate["coupling"], Known.ESTIMATED, how)
     algorithm = parse_algorithm(result.info.algorithm)
-    if algorithm.adaptive:
-        how = "the tolerance of its steps; --reference measures"
-        tolerance = getattr(algorithm, "tolerance", None)
-        return BudgetRow("coupling", _FORCE, tolerance, Known.ESTIMATED, how)
     rule = algorithm.accurate_step
     if rule is None or not bond_frequency or result.info.slow:
         how = "no rule for this algorithm and system; --reference measures"
@@ -142,14 +141,13 @@ def _inner_steps(result: Result) -> Iterator[BudgetRow]:
     for part, step in result.info.micro_steps.items():
         if Role.GEAR_PAIR not in result.info.anatomy.parts[part].roles:
             continue
-        apart = _separates(result, part)
+        apart, estimate = _separates(result, part), result.info.estimate
         value = separation_floor(step) if apart else contact_floor(step)
-        how = (
-            f"micro steps of {1e6 * step:g} us {'where teeth separate' if apart else 'in contact'}"
-        )
-        yield BudgetRow(
-            f"inner steps of {part}", _FORCE, value, Known.ESTIMATED, f"{how}, as on the test rig"
-        )
+        where = "where teeth separate" if apart else "in contact"
+        how = f"micro steps of {1e6 * step:.3g} us {where}, as on the test rig"
+        if estimate is not None and not apart:  # macro steps cut them shorter
+            value, how = estimate["inner_steps"], "by the differences of the forces in each step"
+        yield BudgetRow(f"inner steps of {part}", _FORCE, value, Known.ESTIMATED, how)
 
 
 def _separates(result: Result, gear: str) -> bool:

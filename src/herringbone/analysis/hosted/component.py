@@ -17,7 +17,7 @@ from herringbone.analysis.hosted.declaration import (
     own_states,
     since,
 )
-from herringbone.analysis.hosted.places import Places, elastic_states
+from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice
 from herringbone.analysis.twin.composite import Composite
@@ -47,6 +47,7 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.periodic.motion import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
 from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper
 from herringbone.kernels.stepping.newton import newton_scratch
@@ -56,7 +57,10 @@ EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
 _NOT_SETTLED = (
     "no equilibrium of the elastic coordinates was found under these torques; they start "
-    "undeformed, and will vibrate: look at the torques, or set start_mode = 0"
+    "undeformed, and will vibrate: look at the torques, or set start_mode = 0",
+    "no vibration was found that repeats itself every mesh period at this speed and these torques; "
+    "the elastic coordinates start in equilibrium, and will settle: look for teeth that separate, "
+    "or set start_mode = 1",
 )
 
 
@@ -74,9 +78,11 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     parts = make_parts(boundary.system)
     guesses = _guesses(boundary, parts)
     count = parts.layout.state_first[-1] + sum(len(own_states(f)) for f in boundary.flanges)
-    unknowns = sum(name is not None for name in elastic_states(boundary, parts))
-    unknowns += sum(bool(f.shaft) for f in boundary.flanges)
-    scratch = count + max(newton_scratch(unknowns), radius_scratch(count))
+    found = coordinates(boundary, parts)
+    unknowns = sum(not c.turns for c in found) + sum(bool(f.shaft) for f in boundary.flanges)
+    scratch = count + max(
+        newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
+    )
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses)
     places = Places(boundary, parts, declaration)
     source = composite_source(

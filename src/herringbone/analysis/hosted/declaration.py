@@ -18,6 +18,8 @@ from herringbone.core.declaring.roles import Port, PortKind, Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.kernels.stepping.adaptive import FIRST, LARGEST, adaptive_work
 
+AS_SET, EQUILIBRIUM, PERIODIC = range(3)
+"""Start modes."""
 START_MODE, INITIAL_SPEED = "start_mode", "initial_speed"
 TOLERANCE, NEXT_STEP, INNER_STEP, STEP_START, STEPPING, FLANK = (
     "tolerance", "next_inner_step", "longest_inner_step", "step_start", "stepping",
@@ -192,11 +194,12 @@ def _parameters(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
     yield parameter(
         START_MODE,
         "1",
-        "start of the elastic coordinates; 1: equilibrium, they move as one with the gears; "
-        "0: as_set, undeformed or as the states were set",
-        1.0,
-        minimum=0,
-        maximum=1,
+        "start of the elastic coordinates; 2: periodic, they vibrate as they do when all has "
+        "settled; 1: equilibrium, they move as one with the gears; 0: as_set, undeformed or as "
+        "the states were set",
+        float(PERIODIC),
+        minimum=AS_SET,
+        maximum=PERIODIC,
         whole=True,
     )
     if all(f.given is Given.TORQUE for f in boundary.flanges):

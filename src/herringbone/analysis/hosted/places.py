@@ -1,5 +1,8 @@
 """Where everything of a gearbox for hosts lies: in its own block, and in those of its parts."""
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 from herringbone.analysis.hosted.boundary import Boundary, HostFlange
 from herringbone.analysis.hosted.declaration import (
     FLANK,
@@ -14,12 +17,12 @@ from herringbone.analysis.hosted.declaration import (
     own_states,
     rotation,
 )
-from herringbone.analysis.hosted.source import FlangePlaces, StartPlaces
+from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
 from herringbone.analysis.twin.composite_parts import Parts, full_name
 from herringbone.analysis.twin.composite_source import BlockMap
 from herringbone.core import Declaration, Variable
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
-from herringbone.core.declaring.roles import Quantity
+from herringbone.core.declaring.roles import GEARS, Quantity
 from herringbone.core.declaring.variable import Causality
 
 _SIZES = {"m": 1e-6, "rad": 1e-3, "kg^1/2.m": 1e-6}
@@ -28,22 +31,39 @@ _HIDDEN = 1e-6
 """Usual size of elements of vectors, in their units."""
 
 
-def elastic_states(boundary: Boundary, parts: Parts) -> list[tuple[int, int, str] | None]:
-    """By part's state that is a position: it, its rate and its unit; None: it turns."""
-    found: list[tuple[int, int, str] | None] = []
+class Coordinate(NamedTuple):
+    """A position among the states of the parts.
+
+    Attributes:
+        x, rate: places of it and of its rate.
+        unit: of it.
+        turns: it is the angle that grows.
+    """
+
+    x: int
+    rate: int
+    unit: str
+    turns: bool
+
+
+def coordinates(boundary: Boundary, parts: Parts) -> list[Coordinate]:
+    """All positions among the states of the parts."""
+    found = []
     for first, i in zip(parts.layout.state_first, parts.instances, strict=False):
         declaration = i.component.declaration
         at = {v.name: k for k, v in enumerate(declaration.states)}
         for v in declaration.states:
             if f"der({v.name})" in at:
                 turns = i.name == boundary.pair and v.name == rotation(boundary, parts)
-                pair = first + at[v.name], first + at[f"der({v.name})"], v.unit
-                found.append(None if turns else pair)
+                x, rate = first + at[v.name], first + at[f"der({v.name})"]
+                found.append(Coordinate(x, rate, v.unit, turns))
         places = declaration.vector_indices
         for vector in declaration.vectors:
             if f"der({vector.name})" in places:
                 x, rate = first + places[vector.name], first + places[f"der({vector.name})"]
-                found += [(x + k, rate + k, vector.unit) for k in range(vector.capacity)]
+                found += [
+                    Coordinate(x + k, rate + k, vector.unit, False) for k in range(vector.capacity)
+                ]
     return found
 
 
@@ -127,7 +147,9 @@ class Places:
     def start(self, guesses: list[Variable]) -> StartPlaces:
         """Places for the search of the equilibrium."""
         d, index, own = self.declaration, self.declaration.index, self.own
-        elastic = [found for found in elastic_states(self.boundary, self.parts) if found]
+        found = coordinates(self.boundary, self.parts)
+        elastic = [c for c in found if not c.turns]
+        angle = next(k for k, c in enumerate(found) if c.turns)
         shafts = [f for f in self.boundary.flanges if f.shaft]
         offsets = tuple(index[offset(f)] for f in shafts)
         turning = f"{self.boundary.pair}.{rotation(self.boundary, self.parts)}"
@@ -142,10 +164,15 @@ class Places:
             first=d.first_table,
             own=own,
             states=d.state_count,
-            unknowns=(*(own + x for x, _, _ in elastic), *offsets),
-            sizes=(*(_SIZES[unit] for _, _, unit in elastic), *(_SIZES["rad"] for _ in offsets)),
-            rows=tuple(own + rate for _, rate, _ in elastic),
+            unknowns=(*(own + c.x for c in elastic), *offsets),
+            sizes=(*(_SIZES[c.unit] for c in elastic), *(_SIZES["rad"] for _ in offsets)),
+            rows=tuple(own + c.rate for c in elastic),
             state_sizes=(*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states),
+            coordinates=tuple((own + c.x, own + c.rate) for c in found),
+            coordinate_sizes=tuple(_SIZES[c.unit] for c in found),
+            turning=(*self._turning_flanges(), own + found[angle].x),
+            free=-1 if shafts else angle,
+            teeth=self._teeth(),
             speed=index[self.boundary.name(f"der({turning})")],
             initial_speed=index.get(INITIAL_SPEED, -1),
             start_mode=index[START_MODE],
@@ -165,6 +192,19 @@ class Places:
             scratch=d.size - d.tables + sum(i.block.size for i in self.parts.instances),
             owner=d.name,
         )
+
+    def _turning_flanges(self) -> Iterator[int]:
+        """States of flanges that are angles."""
+        for f in self.boundary.flanges:
+            names = own_states(f)
+            yield from (self.declaration.index[n] for n in names if n.endswith(".angle"))
+
+    def _teeth(self) -> int:
+        """Number of teeth of the pinion, in the blocks of the parts."""
+        pair = next(i for i in self.parts.instances if i.name == self.boundary.pair)
+        offered = pair.component.declaration.offered(Quantity.NUMBER_OF_TEETH)
+        (name,) = (v.name for v in offered if v.place == GEARS[0])
+        return self.inside[full_name(pair, name)]
 
     def starts(self) -> str:
         """Calls of the parts' start kernels on their blocks."""

@@ -1,31 +1,30 @@
 """Largest stable communication steps of a gearbox, by what the host has at a flange.
 
-The equations are linearised in the equilibrium of the start; of the motions those are kept that the
-flange feels most, the others follow it at once. What the host does is in `flange.hosted_flange`.
+The equations are linearised in the equilibrium of the start, and averaged over a mesh period; of
+motions those are kept that the flange feels most, the others follow it at once. What the host does
+is in `flange.hosted_flange`.
+
+A loop of one's own finds the same limits where it looks closely enough: bands of unstable steps can
+be a few per cent wide, where a motion meets its mirror image at half the rate of the communication
+points, and beyond a limit a motion may grow by e in a second.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import schur
 
 from herringbone.analysis.flange.hosted_flange import Host, host_limits
 from herringbone.analysis.hosted.boundary import HostFlange
-from herringbone.analysis.stability.surrogates.identification import LinearModel
+from herringbone.analysis.hosted.flange_model import averaged, reduced, started
 from herringbone.analysis.twin.composite import Composite
-from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given
-from herringbone.cosim.signature.rotation import Given as Rule
 
 INERTIAS = (0.02, 0.1, 1.0)
 """Of the host at the flange [kg.m2]."""
 SHAFT = (6e4, 5.0)
 """Of the host where the gearbox takes torque [N.m/rad, N.m.s/rad]."""
-_SMALL = {"m": 1e-9, "m/s": 1e-6, "rad": 1e-8, "rad/s": 1e-5}
-_SMALL_VECTOR = 1e-9
-_FREE = 1.0
-"""Eigenvalues [1/s] of free rotation are smaller."""
-_PAIRS = 14
+_NARROW = 1.2
+"""A band of unstable steps is told that ends sooner, if steps beyond it are stable for longer."""
 
 
 _HEAD = ("flange", "host gives", "what the host has there", "held", "with derivatives")
@@ -39,8 +38,17 @@ def advice(composite: Composite, flanges: tuple[HostFlange, ...]) -> list[tuple[
         if limit.given is Given.TORQUE:
             there += f" behind a shaft of {SHAFT[0]:g} N.m/rad, {SHAFT[1]:g} N.m.s/rad"
         row = limit.flange, limit.given.value, there
-        rows.setdefault(row, []).append(f"{1e6 * limit.step:.0f} us")
+        rows.setdefault(row, []).append(_cell(limit))
     return [_HEAD, *((*row, *steps) for row, steps in rows.items())]
+
+
+def _cell(limit: "StepLimit") -> str:
+    """The limit, and beyond a narrow band of unstable steps where steps are stable again."""
+    start, end = limit.again
+    text = f"{1e6 * limit.step:.0f} us"
+    if start < _NARROW * limit.step < end:
+        text += f", and from {1e6 * start:.0f} to {1e6 * end:.0f} us"
+    return text
 
 
 class StepLimit(NamedTuple):
@@ -51,6 +59,7 @@ class StepLimit(NamedTuple):
         inertia: of the host [kg.m2].
         order: 0: what is exchanged is held; 1: its derivatives are given.
         step: [s].
+        again: steps [s] between which all is stable again, behind the first unstable band.
     """
 
     flange: str
@@ -58,110 +67,25 @@ class StepLimit(NamedTuple):
     inertia: float
     order: int
     step: float
+    again: tuple[float, float]
 
 
 def step_limits(composite: Composite, flanges: tuple[HostFlange, ...]) -> list[StepLimit]:
     """Limits at every flange, where the host evaluates its shaft at the communication points."""
-    block = _started(composite)
+    block = started(composite)
     found = []
     for flange in flanges:
-        model = _reduced(_linear(composite, block, flange))
+        model = reduced(averaged(composite, block, flange))
         takes_torque = flange.given is Given.TORQUE
         for inertia in INERTIAS:
             host = Host(inertia, *(SHAFT if takes_torque else (0.0, 0.0)))
             for limit in host_limits(model, host, takes_torque=takes_torque):
                 if not limit.parallel and limit.order <= 1:
                     row = flange.name, flange.given, inertia, limit.order, limit.limit
-                    found.append(StepLimit(*row))
+                    found.append(StepLimit(*row, _again(limit.unstable_bands)))
     return found
 
 
-def _started(composite: Composite) -> np.ndarray:
-    """The block in its equilibrium."""
-    component = composite.component
-    d = component.declaration
-    block = np.zeros(d.size)
-    for v in d.variables:
-        block[d.index[v.name]] = v.start
-    component.load(block, {t.name: composite.resources[t.start] for t in d.texts})
-    if component.hosting is None or component.hosting.settle(block, 0.0):
-        raise ParameterError(f"{d.name}: no equilibrium at the start, so that no step is known")
-    return block
-
-
-def _linear(composite: Composite, block: np.ndarray, flange: HostFlange) -> LinearModel:
-    """From what the host gives at a flange to what it gets; the speed alone is like a motion."""
-    kernels, d = composite.component.kernels, composite.component.declaration
-    motion = [f"{flange.name}.phi", f"{flange.name}.w"]
-    torque = [f"{flange.name}.tau"]
-    inputs, outputs = (torque, motion) if flange.given is Given.TORQUE else (motion, torque)
-    places = [d.index.get(name, d.index.get(f"{flange.name}.angle", 0)) for name in inputs]
-    wanted = [d.index[name] for name in outputs]
-    small = [_SMALL.get(v.unit, 1.0) for v in d.states] + [_SMALL_VECTOR] * d.hidden_states
-
-    def answers() -> np.ndarray:
-        dx = np.zeros(d.state_count)
-        kernels.rhs(block, 0.0, dx)
-        kernels.out(block, 0.0)
-        return np.concatenate([dx, block[wanted]])
-
-    def slope(place: int, size: float) -> np.ndarray:
-        kept, found = block[place], []
-        for sign in (1.0, -1.0):
-            block[place] = kept + sign * size
-            found.append(answers())
-        block[place] = kept
-        return (found[0] - found[1]) / (2.0 * size)
-
-    whole = np.array([slope(i, small[i]) for i in range(d.state_count)]).T
-    given = np.array([slope(p, 1e-6 if len(places) > 1 else 1.0) for p in places]).T
-    n = d.state_count
-    own = {i for i, v in enumerate(d.states) if v.unit == "N.m.s"} | set(places)
-    live = [i for i in range(n) if i not in own and (whole[i, :n].any() or whole[:n, i].any())]
-    runs_on = len(places) > 1
-    return LinearModel(
-        whole[np.ix_(live, live)],
-        given[live],
-        whole[n:][:, live],
-        given[n:],
-        (Rule.START,) * len(places),
-        (1, -1) if runs_on else (-1,),
-    )
-
-
-def _reduced(model: LinearModel) -> LinearModel:
-    """The model with its free rotation and the motions that count most at the flange."""
-    values, right = np.linalg.eig(model.a)
-    left = np.linalg.pinv(right)  # free rotation has one vector only; its part is not used
-    free = np.abs(values) < _FREE
-    basis, dual = _rigid(model.a), _rigid(model.a.T)
-    dual = dual @ np.linalg.inv(basis.T @ dual)
-    b_of, c_of = left @ model.b, model.c @ right
-    weight = np.linalg.norm(b_of, axis=1) * np.linalg.norm(c_of, axis=0)
-    weight /= np.maximum(np.abs(values), 1e-9) * np.sqrt(np.maximum(-values.real, 1.0))
-    order = [k for k in np.argsort(-weight) if not free[k] and values[k].imag >= 0.0]
-    columns, rows = [basis], [dual.T]
-    d = model.d.astype(complex)
-    for rank, k in enumerate(order):
-        twice = 2.0 if values[k].imag > 0.0 else 1.0
-        if rank < _PAIRS:
-            columns.append(_real(right[:, k], twice))
-            rows.append(_real(left[k], twice, dual=True).T)
-        else:  # it follows at once
-            d = d + np.real(twice * np.outer(c_of[:, k], b_of[k]) / -values[k])
-    v, w = np.hstack(columns), np.vstack(rows)
-    return LinearModel(w @ model.a @ v, w @ model.b, model.c @ v, d.real, model.given, model.rates)
-
-
-def _rigid(a: np.ndarray) -> np.ndarray:
-    """Basis of the motions with small eigenvalues."""
-    _, vectors, count = schur(a, sort=lambda re, im: re * re + im * im < _FREE**2)
-    return vectors[:, :count]
-
-
-def _real(vector: np.ndarray, twice: float, *, dual: bool = False) -> np.ndarray:
-    """Real basis (n, 1 or 2) of a pair of conjugate vectors, or of its dual."""
-    if twice == 1.0:
-        return vector.real[:, None]
-    pair = np.stack([vector.real, vector.imag], axis=1)
-    return pair * np.array([2.0, -2.0]) if dual else pair
+def _again(bands: tuple[tuple[float, float], ...]) -> tuple[float, float]:
+    """Steps between the first two unstable bands; infinite where there is one alone."""
+    return (bands[0][1], bands[1][0]) if len(bands) > 1 else (np.inf, np.inf)

@@ -100,6 +100,11 @@ def separation_floor(micro_step: float) -> float:
     return max(error, contact_floor(micro_step))
 
 
+def separation_step(error: float) -> float:
+    """Micro step [s] that leaves a relative error where teeth separate."""
+    return CHARTED_MICRO_STEP * (error / SEPARATION_ERROR) ** (1.0 / _SEPARATION_ORDER)
+
+
 def rule_error(algorithm: Algorithm, step: float) -> float:
     """Relative error of the coupling by the rule, at a step over that of 0.1 %."""
     return RULE_ERROR * step ** _order(algorithm, step > 1.0)

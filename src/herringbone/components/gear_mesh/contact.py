@@ -55,6 +55,7 @@ def _flank(
     """
     x = depth if depth > 0.0 else OPEN
     force, tangent, slope = force_law.law(b, at.TABLE[0] + side * force_law.TABLE_SIZE, phase, x)
+    b[at.TANGENT + 2 * side + (0 if f > 0.0 else 1)] = tangent
     damping = 2.0 * b[at.ZETA] * math.sqrt(tangent * b[at.PATH_MASS])
     if depth <= 0.0:
         return damping * rate, 0.0
@@ -119,7 +120,7 @@ def _mesh(
 def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
     """eps_z [m], normal forces and pushes [N] of both meshes, left before right, after `derive`.
 
-    Writes depths, and the torques of what is moved by a rotation.
+    Writes depths, tangents, and the torques of what is moved by a rotation.
     """
     for i in range(4):
         b[at.TORQUE + i] = b[at.HELD + 2 + i]

@@ -10,7 +10,7 @@ import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
-from herringbone.components.gear_mesh.contact import approach, derive, meshes
+from herringbone.components.gear_mesh.contact import derive, meshes
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Laws
 from herringbone.core.declaring.roles import GEARS
@@ -52,9 +52,7 @@ def _place(b: np.ndarray, z: np.ndarray) -> None:
 
 
 @kernel
-def _tangent(
-    b: np.ndarray, side: int, flank: int, phase: float, carries: bool
-) -> tuple[float, float, float]:
+def _tangent(b: np.ndarray, side: int, flank: int, carries: bool) -> tuple[float, float, float]:
     """Tangent stiffness [N/m] and damping [N s/m] of a flank, and its depth past the gate [m]."""
     depth = b[at.DEPTH + 2 * side + flank]
     if tooth_deviations.given(b, at.DEVIATIONS, side, flank):
@@ -62,9 +60,7 @@ def _tangent(
     past = depth - 1.0 / b[at.PER_TRANSITION]
     if not carries:
         return 0.0, 0.0, past
-    own = phase if flank == 0 else b[at.COAST_PHASE] - phase
-    table = at.TABLE[0] + side * force_law.TABLE_SIZE
-    _, stiffness, _ = force_law.law(b, table, own, max(depth, 0.0))
+    stiffness = b[at.TANGENT + 2 * side + flank]
     g = max(0.0, min(1.0, depth * b[at.PER_TRANSITION]))
     g *= g * (3.0 - 2.0 * g)
     if b[at.GATE] == 0.0:
@@ -75,7 +71,7 @@ def _tangent(
 @kernel
 def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray) -> None:
     _place(b, z)
-    eps, f[0], f[1], push_left, push_right = meshes(b)
+    _, f[0], f[1], push_left, push_right = meshes(b)
     f[2], f[3] = push_left - b[at.COS] * f[0], push_right - b[at.COS] * f[1]
     if b[at.DRAG] > 0.0:
         w = b[at.ANGLE + at.RATE]
@@ -86,12 +82,11 @@ def _evaluate(b: np.ndarray, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.
         f[5 + 2 * i] = b[at.TORQUE + 1 + 2 * i] - b[at.TORQUE + 2 * i]
     gated = b[at.GATE] != 0.0
     for side in range(2):
-        _, _, phase = approach(b, side, eps, 0.0)
         k[side], k[2 + side] = 0.0, 0.0
         for flank in range(2):
             depth = b[at.DEPTH + 2 * side + flank]
             pressed = f[side] > 0.0 if flank == 0 else f[side] < 0.0
-            stiffness, damping, past = _tangent(b, side, flank, phase, pressed)
+            stiffness, damping, past = _tangent(b, side, flank, pressed)
             k[side] += stiffness
             k[2 + side] += damping
             place = _KINKS * side + flank
@@ -123,6 +118,18 @@ def _directions(block: np.ndarray) -> np.ndarray:
         row[_TWIST_W] = -side * math.cos(beta) * block[at.RB[1]]
         rows[side, :_POSITIONS] = rows[2 + side, _POSITIONS:] = row
     return rows
+
+
+def _sharp(block: np.ndarray) -> np.ndarray:
+    """Approach and its rate, and phases of the meshes, left and right, without run-out."""
+    prepared = block.copy()
+    derive(prepared)
+    rows = np.zeros((2, 2 * _POSITIONS))
+    for side in range(2):
+        rows[side, _ANGLE] = prepared[at.PHASE_RATE]
+        rows[side, _TWIST_P] = side * prepared[at.PHASE_RATE]
+        rows[side, _AXIS + side] = (1.0 - 2.0 * side) * prepared[at.AXIAL_PHASE]
+    return np.concatenate([_directions(block), rows])
 
 
 def _mean(block: np.ndarray) -> np.ndarray:
@@ -166,4 +173,5 @@ LAWS = Laws(
     mean=_mean,
     prepare=derive,
     refusal=_refusal,
+    sharp=_sharp,
 )  # fmt: skip

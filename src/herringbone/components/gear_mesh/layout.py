@@ -30,7 +30,7 @@ _HELD = 6
 _RATIOS = 2
 _TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR + _HELD
 _TEETH = 2 * tooth_pair_law.TABLE_SIZE + tooth_deviations.TABLE_SIZE + _PAIR + _RATIOS
-_RESULTS = 12
+_RESULTS = 16
 
 DECLARATION = Declaration(
     "gear_mesh",
@@ -160,5 +160,7 @@ PRESSED = _results + 4
 """In the order of the depths, if teeth deviate: mean depth where they press [m]."""
 TORQUE = _results + 8
 """By body: torque [N m] of what moves the flanks by a rotation."""
+TANGENT = _results + 12
+"""In the order of the depths: tangent stiffness [N/m] of flanks that press."""
 
 TWO_PI = 2.0 * math.pi

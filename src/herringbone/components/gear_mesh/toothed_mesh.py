@@ -89,6 +89,7 @@ def deviating(
             f, own, depth, rate = -1.0, b[at.COAST_PHASE] - phase, coast, coast_rate
         force, tangent, slope, x = _elastic(b, side, flank, own, depth)
         b[at.PRESSED + 2 * side + flank] = x if force > 0.0 else 0.0
+        b[at.TANGENT + 2 * side + flank] = tangent
         if force > 0.0 or (open_flanks and flank == 0):
             open_flanks = False
             pressure = _pressure(b, side, f, own, depth, rate, force, tangent, x)

@@ -90,6 +90,8 @@ class Component:
         of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
             given the pair and the part's parameters, as they are without the pair. None: none do.
         hosting: what it asks of its native FMU besides; None: nothing.
+        curve: degree of the polynomials of time that the outputs of a source are between
+            breakpoints, at most 2; None: they are not, or it is no source.
         laws: its scalar laws, apart from the linear rest; None: the component is linear, or what it
             has is not of that form.
         folder: where script, README and golden result lie, and `resources`; that of its name if
@@ -113,6 +115,7 @@ class Component:
     freeze: Freeze | None = None
     of_pair: OfPair | None = None
     hosting: Hosting | None = None
+    curve: int | None = None
     laws: "Laws | None" = None
     folder: Path = field(default=Path())
 

@@ -71,8 +71,8 @@ class Hosting:
 
     Attributes:
         settle: kernel settle(b, t) -> int that makes the states at the start time from parameters
-            and inputs; 0: as it was asked for. Otherwise the wrapper logs `not_settled`.
-        not_settled: what was looked for in vain, and what is done instead.
+            and inputs; 0: as it was asked for. Otherwise the wrapper logs a line of `not_settled`.
+        not_settled: by status, from 1: what was looked for in vain, and what is done instead.
         runs_on: inputs that run on.
         tolerance: name of the local that the wrapper sets to the host's tolerance.
         experiment: the default experiment.
@@ -81,7 +81,7 @@ class Hosting:
     """
 
     settle: Callable[[np.ndarray, float], int]
-    not_settled: str
+    not_settled: tuple[str, ...]
     runs_on: tuple[RunsOn, ...]
     tolerance: str
     experiment: Experiment

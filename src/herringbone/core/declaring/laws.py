@@ -46,6 +46,9 @@ class Laws:
         mean: (tangents,), their means, from parameters and tables alone.
         prepare: kernel, writes into a block what follows from its parameters, before the others.
         needed: False if the component is linear with the parameters of a block.
+        sharp: (n, arguments), directions along which the values change fast: along others,
+            arguments may be interpolated over a step where the tolerance allows it; `directions`
+            if not given.
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
     """
@@ -61,5 +64,6 @@ class Laws:
     mean: Callable[[np.ndarray], np.ndarray]
     prepare: Callable[[np.ndarray], None] = unchanged
     needed: Callable[[np.ndarray], bool] = _always
+    sharp: Callable[[np.ndarray], np.ndarray] | None = None
     clock: int | None = None
     refusal: Callable[[np.ndarray], str] = _nothing

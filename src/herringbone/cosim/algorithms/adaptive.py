@@ -33,15 +33,23 @@ from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.nodes import Buffers, Control
 from herringbone.cosim.loops.adaptive import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
-from herringbone.cosim.loops.ladder import FIRST, RUNGS, TICKS
+from herringbone.cosim.loops.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
 from herringbone.cosim.loops.nodes import REFRESH
-from herringbone.cosim.loops.step_error import update_scale
+from herringbone.cosim.loops.step_error import (
+    COUPLING,
+    INNER_STEPS,
+    LARGEST,
+    ORDER,
+    update_scale,
+)
 from herringbone.cosim.rows.record import Grid, GrowingRecord
-from herringbone.cosim.rows.recording import StepStatistics
+from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
 
-RESIDUAL_SHARE = 0.1
+RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
+MEMORY = 100.0
+"""Over which the mean of the forces is taken, in largest steps."""
 _STATE = 10
 
 
@@ -75,6 +83,10 @@ class PreparedAdaptive(PreparedNodes):
         corrections: how many at least.
         most: how many at most.
         tolerance: relative error that is asked for.
+
+    Attributes:
+        inner_step: longest of the bodies' own integration [s], of which the error takes account; 0
+            if there is none, or unknown.
     """
 
     def __init__(
@@ -96,6 +108,7 @@ class PreparedAdaptive(PreparedNodes):
         self._record = GrowingRecord(0)
         self._tick = 0.0
         self._kept, self._missing = tolerance, ""
+        self.inner_step = 0.0
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
@@ -128,6 +141,24 @@ class PreparedAdaptive(PreparedNodes):
             float(np.median(lengths)),
             float(lengths[-1]),
         )
+
+    @property
+    def estimate(self) -> ErrorEstimate | None:
+        """Error of the run so far: of the group of forces that errs most, over their alternation.
+
+        That of the run, if it goes on as it began, see `step_error`.
+        """
+        if self._adaptive is None or self._buffers is None:
+            return None
+        covered, errors = self._adaptive.covered[0], self._adaptive.errors
+        group, scale = self.nodes.group, self._buffers.scale
+        if not covered > 0.0 or not group.size:
+            return None
+        sizes = np.zeros(errors.shape[1])
+        np.add.at(sizes, group, covered * scale**2)
+        parts = np.sqrt(errors / sizes)
+        worst = parts[:, np.hypot(*parts).argmax()]
+        return ErrorEstimate(self.tolerance, float(worst[COUPLING]), float(worst[INNER_STEPS]))
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
@@ -166,17 +197,25 @@ class PreparedAdaptive(PreparedNodes):
             np.zeros(rungs, dtype=np.int64),
             np.zeros(rungs, dtype=np.int64),
             np.array([source in held_by for source in sources], dtype=np.int64),
-            np.zeros(groups),
-            np.zeros((4, max(nodes.unknown.size, groups))),
+            np.zeros((2, groups)),
+            np.zeros((2, groups)),
             np.zeros(1),
+            np.zeros((5, max(nodes.unknown.size, groups))),
+            np.zeros(4),
+            MEMORY * TICKS * self._tick,
+            self.inner_step,
             np.zeros(1),
             np.zeros(_STATE, dtype=np.int64),
+            np.zeros((nodes.degree + 1, nodes.unknown.size)),
             self._record.row_times,
         )
-        adaptive.state[[WANTED, USED, ROWS]] = FIRST, FIRST, 1
-        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[FIRST]
+        first = self._first_rung()
+        adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
+        adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
         buffers.nodes[:] = buffers.history[0]
-        update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, 0.0)
+        update_scale(
+            nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, adaptive.memory, 0.0
+        )
         return adaptive
 
     def saved(self) -> Arrays:
@@ -232,6 +271,12 @@ class PreparedAdaptive(PreparedNodes):
             if status != DONE or done >= end:
                 return status, done, culprit
 
+    def _first_rung(self) -> int:
+        """About the one that will be used, so that its Jacobian serves."""
+        order = ORDER[self.nodes.degree]
+        ticks = RUNGS[FIRST] * (self.tolerance / FIRST_TOLERANCE) ** (1.0 / order)
+        return max(0, int(np.searchsorted(RUNGS, ticks, side="right")) - 1)
+
     def _correct(self, buffers: Buffers, adaptive: Adaptive, done: int, tick: float) -> int:
         """Correction of the rung in use; a status of the loop."""
         rung = int(adaptive.state[USED])
@@ -261,7 +306,7 @@ class PreparedAdaptive(PreparedNodes):
     ) -> np.ndarray:
         self.jacobians += 1
         buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
-        size = np.maximum(adaptive.moments[2, self.nodes.group], SMALLEST)
+        size = np.maximum(adaptive.moments[LARGEST, self.nodes.group], SMALLEST)
         return self.jacobian.measure(buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
 
     def _fitted(self, rung: int) -> np.ndarray:

@@ -21,7 +21,7 @@ from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import NodeLayout
 from herringbone.cosim.rows.record import Grid, Record, UniformRecord
-from herringbone.cosim.rows.recording import StepStatistics
+from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
 
 
@@ -180,6 +180,11 @@ class PreparedRun(ABC):
     @property
     def steps(self) -> StepStatistics | None:
         """Lengths of the macro steps, if they differ."""
+        return None
+
+    @property
+    def estimate(self) -> ErrorEstimate | None:
+        """Error that the steps let expect, if they follow a tolerance."""
         return None
 
     def passes(self, macro_steps: int) -> list[int]:

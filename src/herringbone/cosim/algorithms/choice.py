@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from herringbone.core import ParameterError
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.iterated import answers_again
@@ -12,9 +11,7 @@ from herringbone.cosim.algorithms.li import LI
 AUTO = "auto"
 
 
-def choose_algorithm(
-    parts: Sequence[Part], tolerance: float | None = None, step: float | None = None
-) -> tuple[Algorithm, str]:
+def choose_algorithm(parts: Sequence[Part], step: float | None = None) -> tuple[Algorithm, str]:
     """The most accurate algorithm that the parts allow, and a line that says why.
 
     li repeats steps. Parts that cannot take theirs once, on predicted inputs, which jacobi does
@@ -22,11 +19,7 @@ def choose_algorithm(
 
     Args:
         parts: participants.
-        tolerance: for which the step is to be adapted, if it is; see `LI`.
         step: that was asked for [s].
-
-    Raises:
-        ParameterError: the step is to be adapted, but a part cannot repeat a step.
     """
     unable = [
         part.name
@@ -34,11 +27,6 @@ def choose_algorithm(
         if not part.addresses.can_restore
         and any(v.causality == "input" for v in part.variables.values())
     ]
-    if unable and tolerance is not None:
-        raise ParameterError(
-            f"tolerance = {tolerance:g}: {', '.join(unable)} cannot save and restore its state, "
-            "as an adaptive step needs; leave the tolerance out"
-        )
     unable = [name for name in unable if name not in _answering(parts)]
     long = step is not None and step > Jacobi.default_step
     able = any(part.addresses.can_restore for part in parts) or bool(_answering(parts))

@@ -1,6 +1,7 @@
 """The interface Jacobian of the iterated algorithms, and the correction that follows from it."""
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from herringbone.core import HerringboneError
 from herringbone.cosim.layouts.layout import Layout
@@ -13,6 +14,7 @@ PREDICTION = 2
 ALIKE = 1e-6
 """A repeated step may differ by this share of the largest signal of the same unit."""
 _CHANGE = 1e-4
+_BLAS = ThreadpoolController()
 
 
 class CouplingError(HerringboneError):
@@ -96,7 +98,8 @@ def correction_matrix(jacobian: np.ndarray, t: float, h: float) -> np.ndarray:
         CouplingError: the matrix is singular.
     """
     try:
-        return np.linalg.inv(np.eye(len(jacobian)) - jacobian)
+        with _BLAS.limit(limits=1, user_api="blas"):  # threads wait for each other far longer
+            return np.linalg.inv(np.eye(len(jacobian)) - jacobian)
     except np.linalg.LinAlgError:
         raise CouplingError(
             f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "

@@ -144,9 +144,12 @@ class CellPart:
         """Values of variables of other types than real; raises FmuError."""
         return self._ask("get_values", list(names))  # type: ignore[return-value]
 
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""
-        self._ask("enter_initialization", float(start_time), float(stop_time))
+        share = () if tolerance is None else (float(tolerance),)
+        self._ask("enter_initialization", float(start_time), float(stop_time), *share)
 
     def exit_initialization(self) -> None:
         """Go to step mode; raises FmuError."""

@@ -82,8 +82,8 @@ class Fmu2Part(FmuPart):
     def _read(self, references: list[int]) -> list[float]:
         return self.slave.getReal(references)
 
-    def _enter(self, start_time: float, stop_time: float) -> None:
-        self.slave.setupExperiment(startTime=start_time, stopTime=stop_time)
+    def _enter(self, start_time: float, stop_time: float, tolerance: float | None) -> None:
+        self.slave.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
         self.slave.enterInitializationMode()
 
     def ended(self) -> float | None:

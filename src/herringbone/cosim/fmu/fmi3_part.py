@@ -213,9 +213,11 @@ class Fmu3Part(FmuPart):
         if status > _WARNING:
             raise FMICallException(function=function, status=status)
 
-    def _enter(self, start_time: float, stop_time: float) -> None:
+    def _enter(self, start_time: float, stop_time: float, tolerance: float | None) -> None:
         self._initialised = True
-        self.slave.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+        self.slave.enterInitializationMode(
+            tolerance=tolerance, startTime=start_time, stopTime=stop_time
+        )
         arrays = np.flatnonzero(self._elements["size"] > 1)
         if arrays.size:  # a size that was set makes other start values
             self._read(arrays.tolist())

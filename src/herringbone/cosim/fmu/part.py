@@ -111,7 +111,7 @@ class FmuPart(ABC):
         """Values of real variables; raises FMICallException."""
 
     @abstractmethod
-    def _enter(self, start_time: float, stop_time: float) -> None:
+    def _enter(self, start_time: float, stop_time: float, tolerance: float | None) -> None:
         """Set up the experiment and enter initialisation mode; raises FMICallException."""
 
     def _address(self, function: str) -> int:
@@ -217,10 +217,12 @@ class FmuPart(ABC):
             ) from error
 
     @keeping_modes
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
         """Set up the experiment and enter initialisation mode; raises FmuError."""
         try:
-            self._enter(start_time, stop_time)
+            self._enter(start_time, stop_time, tolerance)
         except FMICallException as error:
             raise FmuError(self._refusal(f"{self.name} does not initialise", error)) from error
 

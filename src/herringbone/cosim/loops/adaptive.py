@@ -37,42 +37,16 @@ from herringbone.cosim.loops.common import (
 from herringbone.cosim.loops.ladder import fitting_rung
 from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
-from herringbone.cosim.loops.step_error import ORDER, step_error, update_scale
+from herringbone.cosim.loops.step_choice import TOO_MUCH, continued, next_rung, too_much
+from herringbone.cosim.loops.step_error import ORDER, error_so_far, step_error, update_scale
 from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
 """Status: the smallest step still errs too much."""
-TOO_MUCH = 1.3
-"""A step with more than this many tolerances is taken back; the error of a run is a mean."""
 PATIENCE = 100
 """So many smallest steps in a row that err too much end the run. A few do not: at a jump of the
 forces, or from rest, where their size is not yet known, no step is small enough."""
 _DISCARDED = 2
-MEMORY = 0.65
-"""Share of the largest error factor that is kept from step to step."""
-_SAFETY, _LEAST, _MOST = 0.7, 0.3, 1.6
-
-
-@inlined
-def _next_rung(adaptive: Adaptive, rung: int, error: float, order: int) -> int:
-    """The largest rung up to the step at which the error would be within the tolerance.
-
-    The error falls with h^order; its largest factor is remembered over some steps, because it
-    passes through zero whenever the forces swing.
-    """
-    h = adaptive.rungs[rung]
-    factor = max(error / h**order, MEMORY * adaptive.sharpness[0])
-    if factor - factor == 0.0:
-        adaptive.sharpness[0] = factor
-    ticks = _MOST * h
-    if factor > 0.0:
-        ticks = min(ticks, (_SAFETY * adaptive.tolerance / factor) ** (1.0 / order))
-    ticks = max(ticks, _LEAST * h)
-    found = 0
-    for k in range(adaptive.rungs.size):
-        if adaptive.rungs[k] <= ticks:
-            found = k
-    return found
 
 
 @inlined
@@ -107,7 +81,18 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    update_scale(nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, h)
+    update_scale(
+        nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, adaptive.memory, h
+    )
+    for row in range(adaptive.errors.shape[0]):
+        for g in range(adaptive.errors.shape[1]):
+            adaptive.errors[row, g] += h * adaptive.squares[row, g]
+    adaptive.far[0] = error_so_far(
+        nodes, buffers, nodes.group, adaptive.errors, adaptive.covered[0]
+    )
+    for k in range(nodes.degree + 1):
+        for i in range(nodes.unknown.size):
+            adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
     state[BEFORE_THAT], state[BEFORE] = state[BEFORE], adaptive.rungs[rung]
     state[ACCEPTED] += 1
     adaptive.taken[rung] += 1
@@ -133,11 +118,18 @@ def _try(
     buffers.spacing[1] = state[BEFORE_THAT] / adaptive.rungs[rung]
     buffers.counts[2] = 0
     failed = begin(layout, nodes, buffers, control.order, known, t, h, False)
+    if known > 1:
+        continued(nodes, buffers, adaptive.before)
     if failed < 0:
         failed, _ = converge(layout, nodes, buffers, adaptive.corrections[rung], control, t, h)
     if failed >= 0:
         return failed, np.inf
-    error, culprit = step_error(nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known)
+    inner_steps = np.inf
+    if adaptive.inner_step > 0.0:
+        inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
+    error, culprit = step_error(
+        nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known, inner_steps
+    )
     state[CULPRIT] = culprit
     return -1, error
 
@@ -160,12 +152,12 @@ def _complete(
     failed = _record(layout, adaptive, buffers.history, chunk, done + ticks)
     if failed >= 0:
         return PART_FAILED, ticks, failed
-    wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
+    wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
     state[WANTED] = min(wanted, rung) if state[TAKEN_BACK] else wanted
     state[TAKEN_BACK] = 0
-    too_much = not error <= TOO_MUCH * adaptive.tolerance
-    state[MISSED] += too_much
-    state[MISSED_NOW] = state[MISSED_NOW] + 1 if too_much else 0
+    missed = not error <= TOO_MUCH * adaptive.tolerance
+    state[MISSED] += missed
+    state[MISSED_NOW] = state[MISSED_NOW] + 1 if missed else 0
     return STEP_LIMIT if state[MISSED_NOW] == PATIENCE else DONE, ticks, -1
 
 
@@ -186,10 +178,10 @@ def _macro_step(
     smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
-    if smaller and not error <= TOO_MUCH * adaptive.tolerance:
+    if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
         failed = _take_back(layout, nodes, buffers)
         adaptive.rejected[rung] += 1
-        wanted = _next_rung(adaptive, rung, error, ORDER[nodes.degree])
+        wanted = next_rung(adaptive, rung, error, ORDER[nodes.degree])
         state[WANTED], state[TAKEN_BACK] = min(rung - 1, wanted), 1
         return PART_FAILED if failed >= 0 else DONE, 0, failed
     corrections = buffers.counts[1] - before

@@ -15,7 +15,8 @@ RUNGS = (4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100, 125, 160, 200,
 TICKS = RUNGS[-1]
 """Ticks of the largest step."""
 FIRST = len(RUNGS) - 8
-"""Rung with which a run begins: a fifth of the largest step."""
+"""Rung with which a run begins that asks for FIRST_TOLERANCE: a fifth of the largest step."""
+FIRST_TOLERANCE = 1e-4
 
 
 @kernel

@@ -1,5 +1,6 @@
 """What a run leaves behind."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -45,6 +46,25 @@ class CoreStatistics(NamedTuple):
     bends: int
 
 
+class ErrorEstimate(NamedTuple):
+    """Error of a run that was asked for, and that its steps let expect.
+
+    Attributes:
+        asked: relative error that was asked for [1].
+        coupling: of the polynomials and corrections between the parts [1].
+        inner_steps: of the parts' own steps [1].
+    """
+
+    asked: float
+    coupling: float
+    inner_steps: float
+
+    @property
+    def error(self) -> float:
+        """Both together [1]."""
+        return math.hypot(self.coupling, self.inner_steps)
+
+
 @dataclass(frozen=True)
 class Recording:
     """What a run left behind.
@@ -67,6 +87,7 @@ class Recording:
         slow: bodies that step once in several macro steps, and in how many.
         others: recorded outputs of other types than real, (n,) of their own types by name.
         other_units: units of these, "" if not declared.
+        estimate: of an adaptive run, its error.
         core: of a fused run, its steps.
     """
 
@@ -87,4 +108,5 @@ class Recording:
     slow: Mapping[str, int] = field(default_factory=dict)
     others: Mapping[str, np.ndarray] = field(default_factory=dict)
     other_units: Mapping[str, str] = field(default_factory=dict)
+    estimate: ErrorEstimate | None = None
     core: CoreStatistics | None = None

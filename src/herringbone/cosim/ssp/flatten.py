@@ -11,6 +11,8 @@ from herringbone.cosim.ssp.format import NAMESPACES, PARTS_ANNOTATION, local_nam
 Refusal = Callable[[str], StructureError]
 _SEPARATOR = "__"
 _ENDS = ("start", "end")
+_OUTSIDE = ""
+"""What stands for the whole system, whose connectors lead outside."""
 
 
 def flattened(system: Element, refusal: Refusal) -> Element:
@@ -73,14 +75,14 @@ def _links(system: Element, path: str) -> Iterator[Element]:
 
 
 def _connections(system: Element, components: set[str], refusal: Refusal) -> Iterator[Element]:
-    """Connections of components, followed through connectors of systems."""
+    """Connections of components and of the whole system, followed through connectors of others."""
     links = list(_links(system, ""))
     arriving = {(x.get("endElement"), x.get("endConnector")): x for x in links}
     for link in links:
-        if link.get("endElement") not in components:
+        if link.get("endElement") not in {*components, _OUTSIDE}:
             continue
         found, seen = link, 1
-        while (start := found.get("startElement")) not in components:
+        while (start := found.get("startElement")) not in {*components, _OUTSIDE}:
             before = arriving.get((start, found.get("startConnector")))
             if before is None or seen > len(links):
                 raise refusal(
@@ -91,6 +93,9 @@ def _connections(system: Element, components: set[str], refusal: Refusal) -> Ite
             found, seen = before, seen + 1
         for key in ("startElement", "startConnector"):
             link.set(key, found.get(key, ""))
+        for end in _ENDS:
+            if link.get(f"{end}Element") == _OUTSIDE:
+                del link.attrib[f"{end}Element"]
         yield link
 
 

@@ -5,7 +5,7 @@ annotations of other tools. SSP allows any names; what is no identifier is mappe
 `core.names.identifier_for`), and a note says so.
 """
 
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote, urlparse
@@ -33,6 +33,7 @@ from herringbone.cosim.ssp.format import (
     read_structure,
     unpack,
 )
+from herringbone.cosim.ssp.ports import Outside, ports_of
 from herringbone.cosim.structure.system import PartSpec, System
 
 _TYPES: Mapping[str, Callable[[str], float | str]] = {
@@ -109,11 +110,14 @@ class _Reader:
             parts.append(part)
             variables |= {f"{part.name}.{n}": v for n, v in part_variables.items()}
         values = self.values(element, "the system", variables)
+        ends = list(self.connections(element))
+        ports = self.ports(ends)
         system = System(
             name,
             element.get("description", ""),
             tuple(parts),
-            tuple(self.connections(element)),
+            tuple((a, b) for a, b in ends if isinstance(a, str) and isinstance(b, str)),
+            ports=ports,
             channels=self.channels(element),
             notes=tuple(self.notes),
         )
@@ -187,20 +191,36 @@ class _Reader:
             raise self.refusal(f"{where}: there is no '{source}' in the file")
         return path
 
-    def connections(self, system: Element) -> Iterator[tuple[str, str]]:
+    def connections(self, system: Element) -> Iterator[tuple[str | Outside, str | Outside]]:
         for element in system.iterfind("ssd:Connections/ssd:Connection", NAMESPACES):
             ends = [
                 (element.get(f"{end}Element"), element.get(f"{end}Connector"))
                 for end in ("start", "end")
             ]
             where = "connection " + " - ".join(f"'{a or 'system'}.{b}'" for a, b in ends)
-            if any(part is None or name is None for part, name in ends):
-                raise self.refusal(f"{where}: connectors of the system are not supported")
+            if all(part is None for part, _ in ends) or any(name is None for _, name in ends):
+                raise self.refusal(f"{where}: it needs connectors, and a component at one end")
             for child in element:
                 if local_name(child) not in {"ConnectionGeometry", "Annotations"}:
                     raise self.refusal(f"{where}: {local_name(child)} is not supported")
-            first, second = (self.path_here(f"{part}.{name}") for part, name in ends)
+            first, second = (
+                self.path_here(f"{part}.{name}") if part is not None else Outside(str(name), "")
+                for part, name in ends
+            )
             yield first, second
+
+    def ports(self, ends: Iterable[tuple[str | Outside, str | Outside]]) -> dict[str, str]:
+        """The system's ports; a note names its connectors that are none."""
+        outside = []
+        for first, second in ends:
+            if isinstance(first, Outside):
+                outside.append(Outside(first.connector, str(second)))
+            elif isinstance(second, Outside):
+                outside.append(Outside(second.connector, first))
+        ports, others = ports_of(outside)
+        if others:
+            self.notes.append(f"{self.file}: connectors of no port are open: {', '.join(others)}")
+        return ports
 
     def values(
         self, element: Element, where: str, variables: Mapping[str, PartVariable]

@@ -12,6 +12,7 @@ from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.fmi.archive import add_to_archive
+from herringbone.fmi.native.carried import carried_fmu
 from herringbone.fmi.native.compiler import compile_library, compile_wrapper, require_compiler
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.native.model import Model, registered_model
@@ -67,14 +68,18 @@ def build_models(
     if fmi not in VERSIONS:
         raise ParameterError(f"FMI version {fmi}; it must be 2 or 3")
     chosen = _chosen(platforms)
+    carried = {model.name: carried_fmu(model, chosen, fmi) for model in models}
     fmus = {
-        model.name: cache_folder("native-fmus")
+        model.name: carried[model.name]
+        or cache_folder("native-fmus")
         / f"{model.name}-{model.key}"
         / f"fmi{fmi}-{'+'.join(p.name for p in chosen)}"
         / f"{model.name}.fmu"
         for model in models
     }
-    missing = [model for model in models if not is_stored(fmus[model.name])]
+    missing = [
+        model for model in models if not carried[model.name] and not is_stored(fmus[model.name])
+    ]
     for model in missing:
         with activity(f"building the native FMU of {model.name}", "only when its code has changed"):
             content = _built(model, chosen, fmi)

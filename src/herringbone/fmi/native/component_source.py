@@ -56,6 +56,7 @@ def component_source(used: UsedStates) -> str:
         _array("HbVector vectors", _vectors(used)),
         *_grammars(declaration.texts),
         _array("HbRunsOn runs_on", _runs_on(component)),
+        _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
         _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
@@ -90,7 +91,7 @@ def component_source(used: UsedStates) -> str:
         "load": "hb_load" if loader else "NULL",
         "verify": "hb_verify" if loader and loader.check else "NULL",
         "settle": "hb_settle" if hosting else "NULL",
-        "not_settled": _string(hosting.not_settled if hosting else ""),
+        "not_settled": "not_settled",
         "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",

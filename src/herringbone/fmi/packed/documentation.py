@@ -25,9 +25,11 @@ _HOSTED = (
     "has its initial torque. A held angle runs on: phi + w (t - time of the last set); if the host "
     "gives derivatives of phi, these alone count. tau_mean is the mean of tau over the last "
     "communication step: its product with the mean speed is the energy that was handed over. "
-    "At the start the elastic coordinates are in equilibrium with the torques, and move as one "
-    "with the gears; start_mode = 0 leaves them undeformed. The tolerance that the host gives, or "
-    "that of the default experiment, decides inner steps: relative, of each state by its size."
+    "At the start the elastic coordinates vibrate as they do when all has settled under the "
+    "torques. start_mode = equilibrium: they move as one with the gears, which is no part of that "
+    "vibration, so that another one rings down; as_set: they start undeformed. The tolerance that "
+    "the host gives, or that of the default experiment, decides inner steps: relative, of states "
+    "by the largest of their kind."
 )
 
 

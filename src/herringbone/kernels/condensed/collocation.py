@@ -42,41 +42,32 @@ class Nodes(NamedTuple):
         f: (nodes - 1, values).
         k: (nodes - 1, tangents).
         e: (nodes, indicators), the start included.
+        start: (arguments,) at the start.
     """
 
     z: np.ndarray
     f: np.ndarray
     k: np.ndarray
     e: np.ndarray
+    start: np.ndarray
 
 
 class Room(NamedTuple):
     """Room for the correction of a step.
 
     Attributes:
-        matrix, right: (unknowns x nodes, the same), (unknowns x nodes,).
+        matrix: (unknowns x nodes, the same).
         r: (unknowns x nodes,) residuals, then corrections.
-        bent: (unknowns,) unknowns whose tangents differ from their means.
-        row: (unknowns,) place of an unknown among these, else -1.
     """
 
     matrix: np.ndarray
-    right: np.ndarray
     r: np.ndarray
-    bent: np.ndarray
-    row: np.ndarray
 
 
 def make_room(unknowns: int, inner: int) -> Room:
     """Room for so many unknowns at so many nodes."""
     size = unknowns * inner
-    return Room(
-        np.empty((size, size)),
-        np.empty(size),
-        np.empty(size),
-        np.empty(unknowns, dtype=np.int64),
-        np.empty(unknowns, dtype=np.int64),
-    )
+    return Room(np.empty((size, size)), np.empty(size))
 
 
 @inlined
@@ -96,67 +87,104 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
     inner = len(nodes.z)
     largest = 0.0
     for value in range(table.unknown.size):
-        row, scale = table.unknown[value], table.scale[value]
-        off = 0.0
+        unknown = table.unknown[value]
+        own = u[value * (inner + 1) + 1 : (value + 1) * (inner + 1)]
+        if unknown < 0:
+            for i in range(inner):
+                own[i] = nodes.f[i, value]
+            continue
+        to = r[unknown * inner : (unknown + 1) * inner]
         for i in range(inner):
-            force = nodes.f[i, value]
-            scale = max(scale, abs(force))
-            rest = less_tangents(table, value, force, nodes.z[i])
-            place = value * (inner + 1) + i + 1
-            if row >= 0:
-                miss = rest - u[place]
-                r[row * inner + i] = miss
-                if not abs(miss) <= off:
-                    off = abs(miss)
-            else:
-                u[place] = rest
+            to[i] = nodes.f[i, value]
+        for k in range(table.first[value], table.first[value + 1]):
+            tangent, argument = table.tangent[k], table.argument[k]
+            for i in range(inner):
+                to[i] -= tangent * nodes.z[i, argument]
+        scale, off = table.scale[value], 0.0
+        for i in range(inner):
+            scale = max(scale, abs(nodes.f[i, value]))
+            to[i] -= own[i]  # last, so that a solution leaves nothing, not even rounding
+            if not abs(to[i]) <= off:
+                off = abs(to[i])
         table.scale[value] = scale
         if not off <= largest * scale:
             largest = off / scale
     return largest
 
 
+class Sharp(NamedTuple):
+    """Directions along which arguments are taken at all nodes; others are linear over a step.
+
+    Attributes:
+        at: (nodes,) places in a step.
+        first: (n + 1,) where each direction begins.
+        argument, coefficient: of what is not zero in them.
+        back: (n, arguments) their pseudo-inverse, transposed.
+    """
+
+    at: np.ndarray
+    first: np.ndarray
+    argument: np.ndarray
+    coefficient: np.ndarray
+    back: np.ndarray
+
+
 @inlined
-def _bent(table: Table, nodes: Nodes, room: Room) -> int:
-    """Number the unknowns whose tangents differ from their means; returns how many."""
-    for row in range(room.row.size):
-        room.row[row] = -1
-    count = 0
+def spread(sharp: Sharp, nodes: Nodes, rows: np.ndarray) -> None:
+    """Write arguments at all nodes from those at the end, and along sharp directions.
+
+    Args:
+        sharp: directions.
+        nodes: with arguments at the start; `z` is written.
+        rows: along the directions at all nodes but start and end, then arguments at the end;
+            changed.
+    """
+    count, arguments = sharp.back.shape
+    last = len(nodes.z) - 1
+    end, first = nodes.z[last], last * count
+    for a in range(arguments):
+        end[a] = rows[first + a]
+    for k in range(count):
+        before, change = 0.0, 0.0
+        for n in range(sharp.first[k], sharp.first[k + 1]):
+            a, by = sharp.argument[n], sharp.coefficient[n]
+            before += by * nodes.start[a]
+            change += by * (end[a] - nodes.start[a])
+        for i in range(last):
+            rows[i * count + k] -= before + sharp.at[i + 1] * change
+    for i in range(last):
+        c, z = sharp.at[i + 1], nodes.z[i]
+        for a in range(arguments):
+            z[a] = nodes.start[a] + c * (end[a] - nodes.start[a])
+        for k in range(count):
+            miss, back = rows[i * count + k], sharp.back[k]
+            for a in range(arguments):
+                z[a] += back[a] * miss
+
+
+@inlined
+def _bent(table: Table, nodes: Nodes, r: np.ndarray) -> tuple[int, int]:
+    """First unknown, and the one after the last, that a correction is to be solved for.
+
+    All others have tangents that are their means, and no residual.
+    """
+    inner = len(nodes.z)
+    first, end = r.size // inner, 0
     for t in range(table.value.size):
-        row = table.unknown[table.value[t]]
-        for i in range(len(nodes.z)):
-            if room.row[row] < 0 and nodes.k[i, t] != table.mean[t]:
-                room.row[row] = count
-                room.bent[count] = row
-                count += 1
-    return count
-
-
-@inlined
-def _bend_rows(
-    nodes: Nodes, along: np.ndarray, room: Room, t: int, first: int, mean: float
-) -> None:
-    """Add what one tangent's differences from its mean make of the rows from the first one on."""
-    inner, matrix, r = len(nodes.z), room.matrix, room.r
-    for i in range(inner):
-        rest = nodes.k[i, t] - mean
-        row = first + i
-        for unknown in range(room.row.size):
-            at = room.row[unknown]
-            for n in range(inner):
-                column = unknown * inner + n
-                if at >= 0:
-                    matrix[row, at * inner + n] -= rest * along[i, t, column]
-                elif r[column] != 0.0:
-                    room.right[row] += rest * along[i, t, column] * r[column]
+        unknown = table.unknown[table.value[t]]
+        if first <= unknown < end:
+            continue
+        off = 0.0
+        for i in range(inner):
+            off += abs(nodes.k[i, t] - table.mean[t]) + abs(r[unknown * inner + i])
+        if off != 0.0:
+            first, end = min(first, unknown), max(end, unknown + 1)
+    return first, end
 
 
 @inlined
 def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
     """Replace residuals by the corrections of the inputs, by one step of Newton.
-
-    Unknowns whose tangents are the means are corrected by their residuals: their row of the matrix
-    is that of the identity.
 
     Args:
         table, nodes: with tangents.
@@ -164,20 +192,24 @@ def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
         room: with residuals.
     """
     inner = len(nodes.z)
-    count = _bent(table, nodes, room)
-    matrix, right, r = room.matrix, room.right, room.r
-    for k in range(count * inner):
-        right[k] = r[room.bent[k // inner] * inner + k % inner]
-        for j in range(count * inner):
-            matrix[k, j] = 1.0 if k == j else 0.0
+    first, end = _bent(table, nodes, room.r)
+    begin, size = first * inner, (end - first) * inner
+    if size <= 0:
+        return
+    for row in range(size):
+        matrix = room.matrix[row]
+        for column in range(size):
+            matrix[column] = 0.0
+        matrix[row] = 1.0
     for t in range(table.value.size):
-        place = room.row[table.unknown[table.value[t]]]
-        if place >= 0:
-            _bend_rows(nodes, along, room, t, place * inner, table.mean[t])
-    solve(matrix, right, count * inner)
-    for k in range(count):
-        for i in range(inner):
-            r[room.bent[k] * inner + i] = right[k * inner + i]
+        place = (table.unknown[table.value[t]] - first) * inner
+        if 0 <= place < size:
+            for i in range(inner):
+                rest = nodes.k[i, t] - table.mean[t]
+                matrix, own = room.matrix[place + i], along[i, t, begin : begin + size]
+                for column in range(size):
+                    matrix[column] -= rest * own[column]
+    solve(room.matrix, room.r[begin : begin + size])
 
 
 @inlined

@@ -63,22 +63,27 @@ def turn(real: np.ndarray, imag: np.ndarray, q: np.ndarray) -> None:
 
 
 @kernel
-def solve(a: np.ndarray, r: np.ndarray, n: int) -> None:
+def solve(a: np.ndarray, r: np.ndarray) -> None:
     """Solve a x = r by elimination without pivots, for a matrix near the identity; x in `r`.
 
-    Of both, the first n rows and columns are used.
+    Of `a` as many rows and columns are used as `r` has.
     """
+    n = r.size
     for k in range(n):
-        per = 1.0 / a[k, k]
+        pivot = a[k]
+        per = 1.0 / pivot[k]
+        right = r[k]
         for i in range(k + 1, n):
-            factor = a[i, k] * per
+            row = a[i]
+            factor = row[k] * per
             if factor != 0.0:
                 for j in range(k + 1, n):
-                    a[i, j] -= factor * a[k, j]
-                r[i] -= factor * r[k]
+                    row[j] -= factor * pivot[j]
+                r[i] -= factor * right
     for back in range(n):
         k = n - 1 - back
+        row = a[k]
         total = r[k]
         for j in range(k + 1, n):
-            total -= a[k, j] * r[j]
-        r[k] = total / a[k, k]
+            total -= row[j] * r[j]
+        r[k] = total / row[k]

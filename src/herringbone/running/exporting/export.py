@@ -14,13 +14,11 @@ from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.native.started import build_started_fmu
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.carried_files import carried_files, refuse_files, without_files
+from herringbone.running.exporting.parallel_step import parallel_step
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Scene
 
-PARALLEL_STEP = 2e-6
-"""Communication step size [s] at which the test rig is stable in masters that step all FMUs
-in parallel on held inputs; the limit is about 3e-6 s."""
 _log = logging.getLogger(__name__)
 
 
@@ -120,7 +118,7 @@ def export_ssp(
     file: str | Path,
     *,
     scene: str | Path | Scene | None = None,
-    step: float = PARALLEL_STEP,
+    step: float | None = None,
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
@@ -141,7 +139,9 @@ def export_ssp(
         system: name of a shipped system, folder with system.toml, or .ssp file.
         file: the .ssp file to write.
         scene: name or file of a scene; the system's default if not given.
-        step: communication step size [s]; shortened so that a whole number makes the end time.
+        step: communication step size [s]; shortened so that a whole number makes the end time. If
+            not given, one that is stable in masters that step all FMUs in parallel, see
+            `exporting.parallel_step`.
         values: variables to set, by `instance.variable`.
         gear, housing: see `herringbone.run`.
         native: FMUs without Python; else Python FMUs.
@@ -158,6 +158,7 @@ def export_ssp(
     if file.suffix != ".ssp":
         raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
     structure, chosen = ready(system, scene, values, gear, housing)
+    step = parallel_step(structure) if step is None else step
     step = make_grid(chosen.t_end, step, step).step
     own = [part for part in structure.parts if not part.foreign]
     if native:

@@ -73,6 +73,7 @@ def make_result(
         wall_s=recording.wall_seconds,
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
+        estimate=recording.estimate and recording.estimate._asdict(),
         energy=recording.energy,
         slow=recording.slow,
         core=recording.core and recording.core._asdict(),

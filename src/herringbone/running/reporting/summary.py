@@ -102,16 +102,17 @@ def _core(info: RunInfo) -> Iterator[str]:
     yield _line("", f"{core['bends']} located bends of laws, {core['evaluations']} evaluations")
 
 
+def _wall(info: RunInfo, reached: float) -> str:
+    speed = f"{reached / info.wall_s:.3g} times real time"
+    return _line("Cost", f"{_time(info.wall_s)} wall time for {_time(reached)} simulated, {speed}")
+
+
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
     if info.core:
         yield from _core(info)
         if reached > 0.0:
-            yield _line(
-                "Cost",
-                f"{_time(info.wall_s)} wall time for {_time(reached)} simulated, "
-                f"real-time factor {info.wall_s / reached:.3g}",
-            )
+            yield _wall(info, reached)
         return
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
     yield _line("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
@@ -119,11 +120,7 @@ def _cost(result: Result) -> Iterator[str]:
     if micro:
         yield _line("Micro steps", f"at most: {micro}")
     if info.macro_steps and reached > 0.0:
-        yield _line(
-            "Cost",
-            f"{_time(info.wall_s)} wall time for {_time(reached)} simulated, "
-            f"real-time factor {info.wall_s / reached:.3g}",
-        )
+        yield _wall(info, reached)
         yield _line(
             "",
             f"{_time(info.wall_s / info.macro_steps)} per macro step; {info.macro_steps} steps, "
@@ -285,6 +282,11 @@ def _signals(result: Result) -> Iterator[str]:
 
 
 def _errors(result: Result) -> Iterator[str]:
+    if (estimate := result.info.estimate) is not None:
+        asked, coupling, inner = (100.0 * estimate[k] for k in ("asked", "coupling", "inner_steps"))
+        both = math.hypot(coupling, inner)
+        yield _line("Tolerance", f"asked {asked:.3g} %, estimated {both:.2g} %: coupling "
+                    f"{coupling:.2g} %, inner steps {inner:.2g} %")  # fmt: skip
     if result.error:
         errors = ", ".join(
             f"{name.replace('_', ' ')} {100.0 * e:.3g} %" for name, e in result.error.items()

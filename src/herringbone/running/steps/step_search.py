@@ -4,11 +4,11 @@ Inside a run only the error of a single step is known. What it makes of the whol
 system: the phase of an oscillation without damping drifts away with time. Where parts are foreign,
 no rule knows that, and some cannot take a step back. Whole runs tell, see `accuracy.step_power`.
 
-The first steps are long and cost little; from the second run on the step is chosen to err half the
-tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its own
-predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more. The
-first step is a 47th of the run, or five times li's own where parts of this project take part: 47 is
-prime, so that signals with a whole number of periods in the run do not look constant.
+The first steps are long and cost little; from the second run on the step is chosen to err 0.7 of
+the tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its
+own predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more.
+The first step is a 47th of the run, or five times li's own where parts of this project take part:
+47 is prime, so that signals with a whole number of periods in the run do not look constant.
 """
 
 from collections.abc import Callable
@@ -21,6 +21,8 @@ from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import judged
+from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps_of
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
 
@@ -80,11 +82,13 @@ def searched(
         HerringboneError: see `coupled`, for the first run.
     """
     search = Search(tolerance)
+    stable = {} if asked.tolerance is None else stable_inner_steps(system)
     step = asked.step or first_step(system, scene)
-    wanted = replace(asked, tolerance=None, warn=False, all_points=True)
+    wanted = replace(asked, tolerance=None, warn=False, all_points=True, judge=False)
     while not search.why:
         try:
-            found = coupled(system, scene, replace(wanted, step=step), progress, recorded)
+            tried = with_inner_steps_of(system, step, stable)
+            found = coupled(tried, scene, replace(wanted, step=step), progress, recorded)
         except HerringboneError as error:
             if not search.tried:
                 raise
@@ -92,8 +96,9 @@ def searched(
             break
         wanted = replace(wanted, algorithm=found.algorithm)  # one for all runs, to be compared
         search.take(found)
-        step = found.recording.step / search.pieces()
-    return search.told() if search.tried else found
+        step = found.recording.step / float(search.pieces())
+    found = search.told() if search.tried else found
+    return found._replace(result=judged(found.result, None))
 
 
 def first_step(system: System, scene: Scene) -> float:

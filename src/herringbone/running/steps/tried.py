@@ -2,20 +2,22 @@
 
 import math
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from statistics import fmean
 
 from herringbone.analysis.accuracy.apart import Apart, apart
 from herringbone.analysis.accuracy.step_power import left_of, step_power
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.running.coupled import Coupled
-from herringbone.running.reporting.run_result import with_coupling_row
 from herringbone.running.steps.verification import scaled
 
 _RUNS, _FAILURES = 20, 2
 """Runs in all; runs in which a part or the coupling fails, for whatever reason."""
-_AT_ONCE = 8
+_AT_ONCE = 4
 """A step is divided by this whole number at the most, so that the next run has all its points."""
-_AIM = 0.5
+_FEW, _CLOSEST = (1, 2, 4), Fraction(3, 2)
+"""Of so many steps of a run the next one makes more: half as many again at the least."""
+_AIM = 0.7
 """Share of the tolerance that the next step is to err."""
 _LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
 """Powers that count: least; most of two runs that are far apart, and near; of three near ones."""
@@ -83,11 +85,12 @@ class Search:
         self.tried: list[_Tried] = []
         self.failed: list[float] = []
         self.why = ""
-        self._seconds = 0.0
+        self._seconds, self._steps = 0.0, 1
 
     def take(self, found: Coupled) -> None:
         """Add a run."""
         outcome = found.result.outcome
+        self._steps = round(found.result.info.t_end / found.recording.step)
         self._seconds += found.recording.wall_seconds
         if outcome.completed:
             self.tried.append(self._judged(found))
@@ -95,9 +98,20 @@ class Search:
             self.failed.append(found.recording.step)
         self.why = self._over(outcome, found)
 
-    def pieces(self) -> int:
-        """In how many the last step is to be divided to err half the tolerance."""
-        return int(min(max(math.ceil(self._shorter()), 2), _AT_ONCE))
+    def pieces(self) -> Fraction:
+        """By what to divide the last step so that it errs the share of the tolerance aimed at.
+
+        A whole number of the new steps makes a few of the last ones, so that both runs have points
+        in common, and the whole run.
+        """
+        wanted, count = self._shorter(), self._steps
+        found = (
+            Fraction(many, few)
+            for few in _FEW
+            for many in range(few, _AT_ONCE * few + 1)
+            if count % few == 0 and _CLOSEST * few <= many and wanted * few <= many
+        )
+        return min(found, default=Fraction(_AT_ONCE))
 
     def _shorter(self) -> float:
         if not self.tried or self.tried[-1].apart > _FAR:
@@ -162,7 +176,7 @@ class Search:
         result = replace(result, info=replace(result.info, notes=notes))
         if found:
             verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
-            result = with_coupling_row(replace(result, verification=verification))
+            result = replace(result, verification=verification)
         return last.found._replace(result=result)
 
     def _limit(self) -> str:

@@ -145,8 +145,9 @@ def _with_step(
 ) -> Coupled:
     """The run again, with another macro step and records at the same times."""
     wanted = replace(
-        asked, algorithm=found.algorithm, step=step, all_points=False, notes=(), warn=False
-    )
+        asked, algorithm=found.algorithm, step=step, all_points=False, notes=(), warn=False,
+        judge=False,
+    )  # fmt: skip
     return coupled(
         system, replace(scene, record_step=found.recording.record_step), wanted, progress
     )

@@ -123,7 +123,9 @@ class SurrogatePart:
         """Values of real variables."""
         return [float(self._memory[self.variables[name].reference]) for name in names]
 
-    def enter_initialization(self, start_time: float, stop_time: float) -> None:
+    def enter_initialization(
+        self, start_time: float, stop_time: float, tolerance: float | None = None
+    ) -> None:
         """Nothing: it is at its operating point."""
 
     def exit_initialization(self) -> None:

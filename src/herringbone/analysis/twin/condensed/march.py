@@ -13,6 +13,7 @@ from herringbone.kernels.condensed.collocation import (
     correct,
     less_tangents,
     residuals,
+    spread,
     turned,
 )
 from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
@@ -61,14 +62,20 @@ def call_sources(calls: Calls, t: float) -> None:
 
 
 @inlined
-def _signals(calls: Calls, fixed: Fixed, t: float, h: float, u: np.ndarray) -> None:
+def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np.ndarray) -> None:
     """Write the signals at the nodes of a step from t [s] on, and the last channel."""
     count, signals = fixed.nodes.size, calls.signal.size
     first = u.size - count * (signals + 1)
     for i in range(count):
-        call_sources(calls, t + h * fixed.nodes[i])
+        now = t + h * fixed.nodes[i]
+        if calls.source.size > 0:
+            call_sources(calls, now)
         for k in range(signals):
-            u[first + k * count + i] = calls.blocks[calls.signal[k]]
+            if calls.source.size > 0:
+                u[first + k * count + i] = calls.blocks[calls.signal[k]]
+            else:
+                since, start, slope, bend = state.curve[k]
+                u[first + k * count + i] = start + (now - since) * (slope + (now - since) * bend)
         u[u.size - count + i] = fixed.one
 
 
@@ -79,25 +86,25 @@ def _predict(
     """Write the laws' inputs of the next step: those of the last one, continued or (-1) held."""
     count = fixed.nodes.size
     for value in range(values):
-        at = value * count
-        end = u[at + count - 1]
-        ahead[at] = end
-        for i in range(1, count):
-            if last < 0:
-                ahead[at + i] = end
-                continue
-            total = 0.0
-            row = fixed.ahead[rung - last + len(fixed.ahead) // 2, i]
+        own, to = u[value * count : (value + 1) * count], ahead[value * count : (value + 1) * count]
+        end = own[count - 1]
+        for i in range(count):
+            to[i] = end
+        if last >= 0:
+            on = fixed.ahead[rung - last + len(fixed.ahead) // 2]
             for n in range(count):
-                total += row[n] * u[at + n]
-            ahead[at + i] = total
+                change = own[n] - end
+                if change != 0.0:
+                    row = on[n]
+                    for i in range(1, count):
+                        to[i] += row[i] * change
 
 
 @inlined
-def _differences(
+def _inputs(
     u: np.ndarray, nodes: int, first: int, end: int, v: np.ndarray, chosen: np.ndarray
 ) -> int:
-    """Write inputs as first values and differences from them, see `Rungs`, of some channels.
+    """Write the inputs of some channels, see `Rungs`, from the values at the nodes.
 
     Returns:
         How many are not zero; these are `chosen`.
@@ -129,6 +136,7 @@ def _solve_step(
     h: float,
     u: np.ndarray,
     free: np.ndarray,
+    rows: np.ndarray,
     room: Room,
     v: np.ndarray,
     chosen: np.ndarray,
@@ -140,14 +148,18 @@ def _solve_step(
         of_inputs, along: of the rung.
         t, h: start and length of the step [s].
         u: inputs of the step.
-        free: arguments at all nodes without the laws' inputs.
-        room, v, chosen: room for the iteration.
+        free: rows without the laws' inputs.
+        rows, room, v, chosen: room for the iteration.
     """
     inner, values = len(nodes.z), table.unknown.size
     z = nodes.z.reshape(nodes.z.size)
     for _ in range(MOST_ITERATIONS):
-        copy(free, z)
-        add_chosen(of_inputs, v, chosen, _differences(u, inner + 1, 0, values, v, chosen), z)
+        copy(free, rows)
+        add_chosen(of_inputs, v, chosen, _inputs(u, inner + 1, 0, values, v, chosen), rows)
+        if fixed.lean:
+            spread(fixed.sharp, nodes, rows)
+        else:
+            copy(rows[: z.size], z)
         for i in range(inner):
             _call_laws(
                 calls,
@@ -198,14 +210,18 @@ def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> 
 
 @inlined
 def _advance(
-    rungs: Rungs, rung: int, u: np.ndarray, v: np.ndarray, chosen: np.ndarray, state: State
+    fixed: Fixed,
+    rungs: Rungs,
+    rung: int,
+    u: np.ndarray,
+    v: np.ndarray,
+    chosen: np.ndarray,
+    state: State,
 ) -> None:
-    nodes = len(rungs.along[rung]) + 1
-    modes = rungs.turn.shape[2]
-    q = state.q
-    add_product(rungs.angle[rung], q[: 2 * modes], q[2 * modes :])
+    modes, rotations, q = rungs.turn.shape[2], rungs.angle.shape[2], state.q
+    add_product(rungs.angle[rung], q[: 2 * modes], q[2 * modes : 2 * modes + rotations])
     turn(rungs.turn[rung, 0], rungs.turn[rung, 1], q)
-    count = _differences(u, nodes, 0, u.size // nodes, v, chosen)
+    count = _inputs(u, fixed.nodes.size, 0, u.size // fixed.nodes.size, v, chosen)
     add_chosen(rungs.push[rung], v, chosen, count, q)
     copy(u, state.u)
 
@@ -241,8 +257,9 @@ def march(
     """
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
-    u, v, free = np.zeros_like(state.u), np.zeros_like(state.u), np.zeros(nodes.z.size)
-    chosen = np.empty(u.size, dtype=np.int64)
+    u, v = np.zeros_like(state.u), np.zeros_like(state.u)
+    free, rows = np.zeros(fixed.offset.size), np.zeros(fixed.offset.size)
+    chosen = np.empty(v.size, dtype=np.int64)
     count, values = len(nodes.e), table.unknown.size
     place = state.place
     while place[BASE] < steps:
@@ -250,15 +267,15 @@ def march(
         if not rungs.made[rung]:
             return RUNG_WANTED
         t, h = t0 + (place[BASE] * per_step + place[INSIDE]) * shortest, rungs.lengths[rung]
-        _signals(calls, fixed, t, h, u)
+        _signals(calls, fixed, state, t, h, u)
         _predict(fixed, values, rung, place[LAST], state.u, u)
         copy(fixed.offset, free)
-        add_product(rungs.rows[rung], state.q, free)
-        given = _differences(u, count, values, u.size // count, v, chosen)
+        add_product(rungs.rows[rung], state.q[: rungs.rows.shape[1]], free)
+        given = _inputs(u, count, values, u.size // count, v, chosen)
         add_chosen(rungs.of_inputs[rung], v, chosen, given, free)
         solved = _solve_step(
             calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, t, h,
-            u, free, room, v, chosen,
+            u, free, rows, room, v, chosen,
         )  # fmt: skip
         bent = solved and turned(nodes)
         if rung < last and (bent or not solved):
@@ -276,10 +293,11 @@ def march(
         place[KEPT] = _keep(samples, place[KEPT], state, u, t, h, end)
         if place[KEPT] == samples.times.size:  # the next one may lie in this step, too
             return DONE
-        _advance(rungs, rung, u, v, chosen, state)
+        _advance(fixed, rungs, rung, u, v, chosen, state)
         if not np.isfinite(state.q[0]):
             return NOT_FINITE
         copy(nodes.e[count - 1], nodes.e[0])
+        copy(nodes.z[count - 2], nodes.start)
         place[LAST] = -1 if bent else rung
         place[INSIDE] += size
         if place[INSIDE] == per_step:

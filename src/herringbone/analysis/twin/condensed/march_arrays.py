@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.kernels.condensed.collocation import Sharp
+
 
 class Calls(NamedTuple):
     """Laws and sources by address; offsets by part, totals at the end.
@@ -14,7 +16,8 @@ class Calls(NamedTuple):
         block: (parts,) where their blocks begin.
         clock: (parts,) places in all blocks where they expect the time, or -1.
         argument, value, tangent, indicator: (parts + 1,) offsets.
-        source: (sources,) addresses of functions that write a source's signals.
+        source: (sources,) addresses of functions that write a source's signals, which are called
+            at every node; none if all signals are known curves.
         source_block: (sources,) where their blocks begin.
         signal: (signals,) places of the signals.
     """
@@ -36,12 +39,15 @@ class Fixed(NamedTuple):
     """What depends on the system and the degree alone.
 
     Attributes:
-        offset: (rows,) arguments at the nodes, of the angles at the start.
-        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, continued;
-            the middle one is of equal steps, later ones of shorter ones.
+        offset: (rows,) of `Rungs`, of the angles at the start.
+        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, by its values,
+            continued; the middle one is of equal steps, later ones of shorter ones.
         nodes: (nodes,) places in a step.
         one: value of the last channel, 0 if nothing depends on it.
         close: residual of the laws' values, over their size, whose correction solves a step.
+        lean: arguments are taken along sharp directions alone at the nodes inside of a step, and
+            are linear over the step along others.
+        sharp: these directions.
     """
 
     offset: np.ndarray
@@ -49,6 +55,8 @@ class Fixed(NamedTuple):
     nodes: np.ndarray
     one: float
     close: float
+    lean: bool
+    sharp: Sharp
 
 
 class State(NamedTuple):
@@ -56,8 +64,9 @@ class State(NamedTuple):
 
     Attributes:
         q: (2 modes + rotations,) real parts of the coordinates, imaginary parts, and angles since
-            the start [rad]: a sum of small steps keeps its digits.
-        u: (inputs,) of the step that was taken last.
+            the start [rad]: a sum of small steps keeps its digits; then zeros, see `Rungs`.
+        u: (channels x nodes,) values of the step that was taken last.
+        curve: (signals, 4) since when [s], and coefficients of powers of the time since then.
         place: base step, place in it in shortest steps, rung, rung of the last step (-1: none, or
             the laws bent in it), times that are kept.
         counted: see `STEPS`.
@@ -65,6 +74,7 @@ class State(NamedTuple):
 
     q: np.ndarray
     u: np.ndarray
+    curve: np.ndarray
     place: np.ndarray
     counted: np.ndarray
 
@@ -74,7 +84,7 @@ class Samples(NamedTuple):
 
     Attributes:
         times: ascending [s].
-        held: (times, 2 modes + rotations + inputs): q and u of `State`, at the start of the step.
+        held: (times, q + inputs): q and u of `State`, at the start of the step.
         since: [s] since the start of the step.
         length: of the step [s].
     """

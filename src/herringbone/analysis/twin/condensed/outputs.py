@@ -13,7 +13,7 @@ from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.condensed.modes import Modes
 from herringbone.analysis.twin.condensed.observing import call_parts
-from herringbone.analysis.twin.condensed.rungs import coefficients, parts, powers, twice
+from herringbone.analysis.twin.condensed.rungs import coefficients, padded, parts, powers, twice
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
@@ -154,30 +154,41 @@ class _Rows:
 
     def values(self, run: Solution, samples: Samples) -> np.ndarray:
         """Values (times, rows)."""
-        found = np.empty((samples.times.size, self._still.size))
         share = np.round(samples.since / (_GRID * samples.length)).astype(np.int64)
-        at = np.column_stack([samples.length, share])
-        keys, place = np.unique(at, axis=0, return_inverse=True)
+        if not share.any():  # all at starts of steps
+            return self._product(samples.held, self._rows(1.0, 0), at_start=True)
+        keys, place = np.unique(
+            np.column_stack([samples.length, share]), axis=0, return_inverse=True
+        )
         if len(keys) + len(self._kept) > _MOST_PLACES:
             return self._one_by_one(run, samples)
+        found = np.empty((samples.times.size, self._still.size))
         for k, (length, own) in enumerate(keys):
-            key = (float(length) if own else 0.0, int(own))
-            if key not in self._kept:
-                self._kept[key] = self._at(float(length), _GRID * float(own)).T
-            if len(keys) == 1:
-                np.matmul(samples.held, self._kept[key], out=found)
-            else:
-                rows = np.flatnonzero(place.ravel() == k)
-                found[rows] = samples.held[rows] @ self._kept[key]
-        found += self._still
+            here = np.flatnonzero(place.ravel() == k)
+            rows = self._rows(float(length), int(own))
+            found[here] = self._product(samples.held[here], rows, at_start=not own)
         return found
+
+    def _rows(self, length: float, share: int) -> np.ndarray:
+        """Rows (held, rows) at a share, in units of the grid, of a step [s]."""
+        key = (length if share else 0.0, share)
+        if key not in self._kept:
+            self._kept[key] = np.asfortranarray(self._at(length, _GRID * share).T)
+        return self._kept[key]
+
+    def _product(self, held: np.ndarray, rows: np.ndarray, *, at_start: bool) -> np.ndarray:
+        """What is held times the rows; at the start of steps only the first nodes count."""
+        if not at_start:
+            return held @ rows + self._still
+        size, nodes = held.shape[1] - self._channels.shape[1] * (self._degree + 1), self._degree + 1
+        return held[:, :size] @ rows[:size] + held[:, size::nodes] @ rows[size::nodes] + self._still
 
     def _one_by_one(self, run: Solution, samples: Samples) -> np.ndarray:
         """Values (times, rows), from the coordinates at the times themselves."""
         q, degree = run.coordinates(samples), self._degree
         share = samples.since / samples.length
         fit = np.vander(share, degree + 1, increasing=True) @ coefficients(degree)
-        nodes = samples.held[:, q.shape[1] :].reshape(len(q), -1, degree + 1)
+        nodes = samples.held[:, run.state.q.size :].reshape(len(q), -1, degree + 1)
         now = np.einsum("tkn,tn->tk", nodes, fit)
         together = np.hstack([parts(self._modal.T).T, self._turned, self._channels])
         return np.hstack([q, now]) @ together.T + self._still
@@ -189,9 +200,7 @@ class _Rows:
         now = (c ** np.arange(degree + 1)) @ fit if c > 0.0 else np.eye(degree + 1)[0]
         inputs = self._channels[:, :, None] * now
         if not t:
-            return np.hstack([
-                parts(self._modal.T).T, self._turned, inputs.reshape(len(inputs), -1)
-            ])  # fmt: skip
+            return self._held(self._modal, inputs)
         once = powers(modes.rates, t, degree + 1)
         share = c ** np.arange(degree + 1)
         driven = (fit.T @ (once[:-1] * share[:, None]))[:, None] * modes.inputs.T
@@ -200,7 +209,14 @@ class _Rows:
         inputs = inputs + (driven @ self._modal.T).real.transpose(2, 1, 0)
         inputs += (angle @ self._turned.T).transpose(2, 1, 0)
         modal = self._modal * np.exp(modes.rates * t) + self._turned @ (modes.turns * once[0])
-        return np.hstack([parts(modal.T).T, self._turned, inputs.reshape(len(inputs), -1)])
+        return self._held(modal, inputs)
+
+    def _held(self, modal: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+        """Rows over what is held, from those over modes (rows, modes) and channels' nodes."""
+        turned, count = self._turned, len(inputs)
+        size = 2 * modal.shape[1] + turned.shape[1]
+        rest = np.zeros((count, padded(size) - size))
+        return np.hstack([parts(modal.T).T, turned, rest, inputs.reshape(count, -1)])
 
 
 def _affine(system: Condensed, rows: dict[int, int]) -> np.ndarray:

@@ -21,20 +21,62 @@ LOBATTO = {
     5: (0.0, *(0.5 - 0.5 * x for x in _INNER), *(0.5 + 0.5 * x for x in reversed(_INNER)), 1.0),
 }
 """Nodes of a step by the degree of the polynomials through them."""
+_LINE = 8  # reals
 _SERIES = 18  # terms, for arguments up to 1
 
 
+class Shape(NamedTuple):
+    """What the matrices of a march are over.
+
+    Attributes:
+        degree: of the polynomials.
+        lean: see `Fixed.lean`.
+        directions: (tangents, arguments) of all laws.
+        sharp: (n, arguments) directions of what is taken at all nodes, if lean.
+        stiff: the laws' values that are unknowns.
+    """
+
+    degree: int
+    lean: bool
+    directions: np.ndarray
+    sharp: np.ndarray
+    stiff: tuple[int, ...]
+
+    def rows(self, full: np.ndarray) -> np.ndarray:
+        """What is wanted of arguments at all nodes, (..., nodes - 1, arguments)."""
+        *over, nodes, arguments = full.shape
+        if not self.lean:
+            return full.reshape(*over, nodes * arguments)
+        inner = (full[..., :-1, :] @ self.sharp.T).reshape(*over, (nodes - 1) * len(self.sharp))
+        return np.concatenate([inner, full[..., -1, :]], axis=-1)
+
+
+def padded(count: int) -> int:
+    """A count of reals that fills whole lines of the cache."""
+    return -(-count // _LINE) * _LINE
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros that begin with a line of the cache."""
+    size = math.prod(shape)
+    room = np.zeros(size + _LINE)
+    first = (-room.ctypes.data // room.itemsize) % _LINE
+    return room[first : first + size].reshape(shape)
+
+
 class Rungs(NamedTuple):
-    """By rung; inputs: channels x nodes, rows: (nodes - 1) x arguments, q: as of `State`.
+    """By rung; rows: (nodes - 1) x arguments, or see `Fixed.lean`; q: as of `State`.
+
+    Both are padded with zeros where sums are formed over many of them at once.
 
     Of each channel, the first input stands for a value at all nodes, the others for differences
-    from it.
+    from it at the other nodes.
 
     Attributes:
         made: (rungs,) 1 where there are matrices, which are made when they are asked for.
         turn: (rungs, 2, modes) factors of the coordinates, real and imaginary.
-        rows: (rungs, q, rows) arguments at the nodes of the state at the start.
-        of_inputs: (rungs, inputs, rows) arguments at the nodes of the inputs.
+        rows: (rungs, q, rows) what is wanted at the nodes, of the state at the start.
+        of_inputs: (rungs, inputs, rows) the same of the inputs.
         angle: (rungs, 2 modes, rotations) angles' growth of the coordinates at the start.
         push: (rungs, inputs, q) state at the end of the inputs.
         along: (rungs, nodes - 1, tangents, unknowns x (nodes - 1)), see `collocation`.
@@ -99,51 +141,42 @@ def parts(values: np.ndarray) -> np.ndarray:
     return np.concatenate([values.real, -values.imag])
 
 
-def differences(inputs: np.ndarray) -> np.ndarray:
-    """Matrices (channels, nodes, ...) over values, as over first values and differences."""
-    found = inputs.copy()
-    found[:, 0] = inputs.sum(axis=1)
-    return found
+def _differences(matrix: np.ndarray) -> np.ndarray:
+    """Matrix over inputs, from one over values (channels, nodes, n)."""
+    found = matrix.copy()
+    found[:, 0] = matrix.sum(axis=1)
+    return found.reshape(matrix.shape[0] * matrix.shape[1], matrix.shape[2])
 
 
-def empty_rungs(
-    modes: Modes, lengths: Sequence[float], degree: int, tangents: int, unknowns: int
-) -> Rungs:
+def empty_rungs(modes: Modes, lengths: Sequence[float], shape: Shape) -> Rungs:
     """Room for matrices of steps of some lengths [s]; see `make_rung`."""
-    m, k = modes.rates.size, len(modes.turns)
+    m, k, degree = modes.rates.size, len(modes.turns), shape.degree
     rungs, size = len(lengths), 2 * m + k
-    inputs, rows = modes.inputs.shape[1] * (degree + 1), len(modes.arguments) * degree
+    inputs = modes.inputs.shape[1] * (degree + 1)
+    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size)
+    unknowns = len(shape.stiff) * degree
     return Rungs(
         np.zeros(rungs, dtype=np.int64),
         np.zeros((rungs, 2, m)),
-        np.zeros((rungs, size, rows)),
-        np.zeros((rungs, inputs, rows)),
+        aligned(rungs, size, rows),
+        aligned(rungs, inputs, rows),
         np.zeros((rungs, 2 * m, k)),
-        np.zeros((rungs, inputs, size)),
-        np.zeros((rungs, degree, tangents, unknowns * degree)),
+        aligned(rungs, inputs, padded(size)),
+        np.zeros((rungs, degree, len(shape.directions), unknowns)),
         np.array(lengths, dtype=float),
     )
 
 
-def make_rung(
-    rungs: Rungs,
-    rung: int,
-    modes: Modes,
-    degree: int,
-    directions: np.ndarray,
-    stiff: Sequence[int],
-) -> None:
+def make_rung(rungs: Rungs, rung: int, modes: Modes, shape: Shape) -> None:
     """Fill in the matrices of one rung.
 
     Args:
         rungs: as `empty_rungs` gives them.
         rung: that is wanted.
         modes: of the system.
-        degree: of the polynomials, see LOBATTO.
-        directions: (tangents, arguments) of all laws.
-        stiff: the laws' values that are unknowns.
+        shape: of the march.
     """
-    h, m = float(rungs.lengths[rung]), modes.rates.size
+    h, m, degree = float(rungs.lengths[rung]), modes.rates.size, shape.degree
     nodes, fit = LOBATTO[degree], coefficients(degree)
     channels, arguments = modes.inputs.shape[1], len(modes.arguments)
     rows, inputs = [], np.zeros((channels, degree + 1, degree, arguments))
@@ -151,8 +184,8 @@ def make_rung(
         t, share = c * h, c ** np.arange(degree + 1)
         once = powers(modes.rates, t, degree + 1)
         growth = once[0]
-        rows.append(modes.arguments * np.exp(modes.rates * t))
-        rows[-1] += modes.of_angles @ (modes.turns * growth)
+        rows.append((modes.arguments * np.exp(modes.rates * t)).T)
+        rows[-1] += (modes.of_angles @ (modes.turns * growth)).T
         of_nodes = fit.T @ (once[:-1] * share[:, None])
         turned = fit.T @ (twice(once, t) * share[:, None])
         driven = of_nodes[:, None] * modes.inputs.T
@@ -162,11 +195,14 @@ def make_rung(
         inputs[:, i + 1, i] += modes.of_channels.T
     ends = np.concatenate([driven.real, driven.imag, angle], axis=2).transpose(1, 0, 2)
     rungs.turn[rung] = np.exp(modes.rates * h).real, np.exp(modes.rates * h).imag
-    rungs.rows[rung, : 2 * m] = parts(np.concatenate(rows).T)
-    rungs.rows[rung, 2 * m :] = np.tile(modes.of_angles.T, degree)
-    rungs.of_inputs[rung] = differences(inputs).reshape(channels * (degree + 1), -1)
+    at_nodes = shape.rows(parts(np.stack(rows, axis=1)))
+    count, size = at_nodes.shape[1], ends.shape[2]
+    rungs.rows[rung, : 2 * m, :count] = at_nodes
+    of_angles = np.broadcast_to(modes.of_angles.T[:, None], (len(modes.turns), degree, arguments))
+    rungs.rows[rung, 2 * m :, :count] = shape.rows(of_angles)
+    rungs.of_inputs[rung, :, :count] = _differences(shape.rows(inputs))
     rungs.angle[rung] = parts((modes.turns * growth).T)
-    rungs.push[rung] = differences(ends).reshape(channels * (degree + 1), -1)
-    along = np.einsum("ta,snia->itsn", directions, inputs[list(stiff), 1:])
-    rungs.along[rung] = along.reshape(*along.shape[:2], len(stiff) * degree)
+    rungs.push[rung, :, :size] = _differences(ends)
+    along = np.einsum("ta,snia->itsn", shape.directions, inputs[list(shape.stiff), 1:])
+    rungs.along[rung] = along.reshape(*along.shape[:2], len(shape.stiff) * degree)
     rungs.made[rung] = 1

@@ -11,22 +11,24 @@ from herringbone.analysis.twin.condensed.march import (
     RUNG,
     RUNG_WANTED,
     begin,
-    call_sources,
     march,
 )
 from herringbone.analysis.twin.condensed.march_arrays import Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
+    Shape,
+    aligned,
     coefficients,
     empty_rungs,
     make_rung,
+    padded,
     powers,
     twice,
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
-from herringbone.kernels.condensed.collocation import Nodes, make_room
+from herringbone.kernels.condensed.collocation import Nodes, Sharp, make_room
 
 HALVINGS = 7
 """Rungs below the base step."""
@@ -34,6 +36,8 @@ CLOSE = 1e-8
 """Residual of the laws' values, over their size, whose correction solves a step.
 
 Every correction makes it a thousand times smaller, or more, wherever no law bends."""
+_LEAN_AHEAD = 2
+"""Degree of the prediction over long steps, where a higher one goes farther off."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
 
@@ -57,12 +61,15 @@ class Solution:
         system: to be solved.
         degree: of the polynomials, see `rungs.LOBATTO`.
         close: see CLOSE.
+        lean: see `march_arrays.Fixed`.
 
     Attributes:
         state: where it stands.
     """
 
-    def __init__(self, system: Condensed, degree: int, close: float = CLOSE) -> None:
+    def __init__(
+        self, system: Condensed, degree: int, close: float = CLOSE, *, lean: bool = False
+    ) -> None:
         self._system, self.degree = system, degree
         self._modes = modes = system.modes
         self._calls = calls = system.calls()
@@ -72,39 +79,71 @@ class Solution:
             np.zeros((degree, calls.value[-1])),
             np.zeros((degree, calls.tangent[-1])),
             np.ones((degree + 1, calls.indicator[-1])),
+            np.zeros(calls.argument[-1]),
         )
         self._corrections = make_room(len(system.stiff), degree)
-        nodes = np.array(LOBATTO[degree])
-        offset = float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1]))
-        turned = np.tile(modes.of_angles @ modes.angles, degree)
-        self._fixed = Fixed(turned, _ahead(degree), nodes, offset, close)
+        channels = system.equations.channels
+        self._size = 2 * modes.rates.size + modes.angles.size
+        self._shape = Shape(degree, lean, system.directions, system.sharp, system.stiff)
+        turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
+        self._fixed = Fixed(
+            _filled(self._shape.rows(turned)),
+            _ahead(degree, _LEAN_AHEAD if lean else degree),
+            np.array(LOBATTO[degree]),
+            float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
+            close,
+            lean,
+            Sharp(
+                np.array(LOBATTO[degree]),
+                *_not_zero(system.sharp),
+                np.ascontiguousarray(np.linalg.pinv(system.sharp).T),
+            ),
+        )
         start = modes.start
         self.state = State(
-            np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)]),
-            np.zeros(system.equations.channels * (degree + 1)),
+            _filled(np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)])),
+            np.zeros(channels * (degree + 1)),
+            np.zeros((len(system.equations.signals), 4)),
             np.array([0, 0, 0, -1, 0]),
             np.zeros(4, dtype=np.int64),
         )
+        self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
         self._rungs: dict[float, Rungs] = {}
 
     def saved(self) -> dict[str, np.ndarray]:
         """What is needed to go on with the same bits; copies."""
-        more = {"scale": self._table.scale, "indicators": self._nodes.e[0]}
-        return {name: a.copy() for name, a in {**self.state._asdict(), **more}.items()}
+        return {name: array.copy() for name, array in self._remembered().items()}
 
     def put(self, saved: Mapping[str, np.ndarray]) -> None:
         """Go on from there."""
-        more = {"scale": self._table.scale, "indicators": self._nodes.e[0]}
-        for name, array in {**self.state._asdict(), **more}.items():
+        for name, array in self._remembered().items():
             array[...] = saved[name]
 
-    def enter(self, t0: float) -> None:
-        """Begin a piece at a time [s]: what came before says nothing about the laws' inputs."""
+    def _remembered(self) -> dict[str, np.ndarray]:
+        nodes = self._nodes
+        more = {"scale": self._table.scale, "indicators": nodes.e[0], "arguments": nodes.start}
+        return {**self.state._asdict(), **more}
+
+    def enter(self, t0: float, t1: float) -> None:
+        """Begin a piece [s]: what came before says nothing about the laws' inputs."""
         self.state.place[:] = 0, 0, 0, -1, 0
+        self._find_curves(t0, t1)
         self._begin(t0)
 
+    def _find_curves(self, t0: float, t1: float) -> None:
+        """Signals of a piece as parabolas over time, exact where they are curves."""
+        half = 0.25 * (t1 - t0)
+        since = t0 + 2.0 * half
+        before, now, after = (self._system.signals(since + k * half) for k in (-1, 0, 1))
+        curve = self.state.curve
+        curve[:, 0], curve[:, 1] = since, now
+        curve[:, 2:] = 0.0
+        if half > 0.0:
+            curve[:, 2] = 0.5 * ((after - now) - (before - now)) / half
+            curve[:, 3] = 0.5 * ((after - now) + (before - now)) / half**2
+
     def piece(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Iterator[Samples]:
-        """The steps around the wanted times of a piece [s], some thousand at once.
+        """The steps around the wanted times of a piece [s], some thousand at once; see `part`.
 
         Args:
             t0, t1: its ends.
@@ -114,7 +153,7 @@ class Solution:
         Raises:
             CoreStopped: the laws have no solution in the shortest step, or it diverges.
         """
-        self.enter(t0)
+        self.enter(t0, t1)
         for first in range(0, max(wanted.size, 1), _AT_ONCE):
             chunk = wanted[first : first + _AT_ONCE]
             whole = first + _AT_ONCE < wanted.size
@@ -123,7 +162,8 @@ class Solution:
     def part(self, t0: float, t1: float, h: float, wanted: np.ndarray) -> Samples:
         """The steps around some wanted times of a piece that was entered, after the last ones.
 
-        A time that never comes, infinity, leads to the end of the piece; it is left out.
+        A time that never comes, infinity, leads to the end of the piece; it is left out. They are
+        good until the next call.
 
         Raises:
             CoreStopped: see `piece`.
@@ -148,29 +188,27 @@ class Solution:
     def _rungs_of(self, h: float) -> Rungs:
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            tangents = len(self._system.directions)
-            self._rungs[h] = empty_rungs(
-                self._modes, lengths, self.degree, tangents, len(self._system.stiff)
-            )
+            self._rungs[h] = empty_rungs(self._modes, lengths, self._shape)
         return self._rungs[h]
 
     def _make(self, rungs: Rungs, rung: int) -> None:
         if not rungs.made[rung]:
-            system = self._system
-            make_rung(rungs, rung, self._modes, self.degree, system.directions, system.stiff)
+            make_rung(rungs, rung, self._modes, self._shape)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""
         calls, modes, state = self._calls, self._modes, self.state
-        call_sources(calls, t)
         channels = np.zeros(self._system.equations.channels)
-        channels[calls.value[-1] : -1] = calls.blocks[calls.signal]
+        channels[calls.value[-1] : -1] = self._system.signals(t)
         channels[-1] = 1.0
         m = modes.rates.size
         z = (modes.arguments @ (state.q[:m] + 1j * state.q[m : 2 * m])).real
         self._nodes.z[0] = (
-            z + modes.of_angles @ (modes.angles + state.q[2 * m :]) + modes.of_channels @ channels
+            z
+            + modes.of_angles @ (modes.angles + state.q[2 * m : self._size])
+            + modes.of_channels @ channels
         )
+        self._nodes.start[:] = self._nodes.z[0]
         begin(calls, self._table, self._nodes, t, state.u)
 
     @property
@@ -180,8 +218,12 @@ class Solution:
         return np.repeat(ends, self.degree + 1)
 
     def _room(self, times: np.ndarray) -> Samples:
+        """Room for samples, used again and again: fresh memory costs more than filling it."""
         n, size = times.size, self.state.q.size + self.state.u.size
-        return Samples(times, np.zeros((n, size)), np.zeros(n), np.ones(n))
+        if len(self._held) < n:
+            self._held, self._lengths = np.zeros((n, size)), np.zeros((2, n))
+        self._lengths[0, :n], self._lengths[1, :n] = 0.0, 1.0
+        return Samples(times, self._held[:n], self._lengths[0, :n], self._lengths[1, :n])
 
     def states(self, samples: Samples) -> np.ndarray:
         """States (n, times) at the times of samples."""
@@ -189,7 +231,7 @@ class Solution:
 
     def coordinates(self, samples: Samples) -> np.ndarray:
         """What `State.q` is at the times of samples, (times, 2 modes + rotations)."""
-        q = samples.held[:, : self.state.q.size].copy()
+        q = samples.held[:, : self._size].copy()
         inside = np.flatnonzero(samples.since > _GRID * samples.length)
         if inside.size:
             m = self._modes.rates.size
@@ -200,11 +242,11 @@ class Solution:
     def _later(self, samples: Samples, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and angles (times, ...) at times inside of steps."""
         modes, degree = self._modes, self.degree
-        m, size = modes.rates.size, self.state.q.size
+        m, size = modes.rates.size, self._size
         held = samples.held[rows]
         q = (held[:, :m] + 1j * held[:, m : 2 * m]).T
         t, length = samples.since[rows], samples.length[rows]
-        nodes = held[:, size:].reshape(rows.size, -1, degree + 1)
+        nodes = held[:, self.state.q.size :].reshape(rows.size, -1, degree + 1)
         driven = np.einsum("jn,tkn->jkt", coefficients(degree), nodes)
         of_powers = modes.inputs @ driven  # powers, modes, times
         of_powers *= ((t / length) ** np.arange(degree + 1)[:, None])[:, None]
@@ -225,8 +267,33 @@ class Solution:
         )
 
 
-def _ahead(degree: int) -> np.ndarray:
-    """Polynomials of a step, continued over one of 2^-d of its length, d from -HALVINGS on."""
-    fit, nodes = coefficients(degree), np.array(LOBATTO[degree])
-    shares = 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1)
-    return np.array([np.vander(1.0 + s * nodes, degree + 1, increasing=True) @ fit for s in shares])
+def _not_zero(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where each row begins, then columns and values of what is not zero."""
+    rows, columns = np.nonzero(matrix)
+    first = np.searchsorted(rows, np.arange(len(matrix) + 1))
+    return first.astype(np.int64), columns.astype(np.int64), matrix[rows, columns]
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """Values, then zeros; see `Rungs`."""
+    found = aligned(padded(values.size))
+    found[: values.size] = values
+    return found
+
+
+def _ahead(degree: int, of: int) -> np.ndarray:
+    """Values of a step, continued over one of 2^-d of its length, d from -HALVINGS on.
+
+    Along the polynomial of a degree that goes through the end and fits the other nodes best.
+    """
+    nodes = np.array(LOBATTO[degree])
+    since_end = np.vander(nodes - 1.0, of + 1, increasing=True)[:, 1:]
+    from_end = np.eye(degree + 1)
+    from_end[:, -1] -= 1.0
+    fit = np.linalg.pinv(since_end) @ from_end
+    found = []
+    for share in 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1):
+        on = np.vander(share * nodes, of + 1, increasing=True)[:, 1:] @ fit
+        on[:, -1] += 1.0
+        found.append(on.T)
+    return np.array(found)

@@ -1,7 +1,8 @@
 """What a march needs to know of a condensed system: addresses, offsets, tangents."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import accumulate
 
 import numpy as np
@@ -29,23 +30,45 @@ class Condensed:
             if laws := laws_of(instance):
                 yield instance, laws
 
-    @property
+    @cached_property
     def directions(self) -> np.ndarray:
         """(tangents, arguments) of all laws."""
-        rows = [np.zeros((0, len(self.equations.c)))]
-        at = 0
+        return self._rows(lambda laws, block: laws.directions(block))
+
+    @cached_property
+    def sharp(self) -> np.ndarray:
+        """(n, arguments): directions along which the laws change fast."""
+        return self._rows(lambda laws, block: (laws.sharp or laws.directions)(block))
+
+    def _rows(self, given: Callable[[Laws, np.ndarray], np.ndarray]) -> np.ndarray:
+        """Rows over the arguments of all laws, from those over their own."""
+        rows, at = [np.zeros((0, len(self.equations.c)))], 0
         for instance, laws in self._parts():
-            own = laws.directions(instance.block)
+            own = given(laws, instance.block)
             rows.append(np.zeros((len(own), len(self.equations.c))))
             rows[-1][:, at : at + own.shape[1]] = own
-            at += own.shape[1]
+            at += len(laws.arguments)
         return np.concatenate(rows)
 
-    @property
-    def stiff(self) -> list[int]:
+    @cached_property
+    def stiff(self) -> tuple[int, ...]:
         """Which of all laws' values are unknowns of a step."""
         every = [i in laws.stiff for _, laws in self._parts() for i in range(len(laws.values))]
-        return [i for i, stiff in enumerate(every) if stiff]
+        return tuple(i for i, stiff in enumerate(every) if stiff)
+
+    @property
+    def curved(self) -> bool:
+        """True if all signals of sources are known curves between breakpoints."""
+        twin = self.twin
+        return all(twin.instances[p].component.curve is not None for p, _ in self.equations.signals)
+
+    def signals(self, t: float) -> np.ndarray:
+        """Signals of the sources (signals,) at a time [s]."""
+        blocks, first = self.twin.block.copy(), self.twin.layout.block_first
+        for p in {p for p, _ in self.equations.signals}:
+            own = blocks[first[p] : first[p + 1]]
+            self.twin.instances[p].component.kernels.out(own, t)
+        return blocks[[place for _, place in self.equations.signals]]
 
     def calls(self) -> Calls:
         """Addresses, and fresh blocks for them to work on."""
@@ -53,7 +76,8 @@ class Condensed:
         blocks = twin.block.copy()
         for p, (_, laws) in zip(self.equations.laws, self._parts(), strict=True):
             laws.prepare(blocks[first[p] : first[p + 1]])
-        sources = sorted({p for p, _ in self.equations.signals})
+        called = () if self.curved else self.equations.signals
+        sources = sorted({p for p, _ in called})
         parts = list(self._parts())
 
         def integers(values: object) -> np.ndarray:
@@ -82,7 +106,7 @@ class Condensed:
     def table(self, calls: Calls) -> Table:
         """Where values and tangents lie."""
         unknown = np.full(calls.value[-1], -1)
-        unknown[self.stiff] = np.arange(len(self.stiff))
+        unknown[list(self.stiff)] = np.arange(len(self.stiff))
         value: list[int] = []
         mean: list[float] = []
         for first, (instance, laws) in zip(calls.value, self._parts(), strict=False):

@@ -29,11 +29,13 @@ class Steps(NamedTuple):
         length: longest base step [s].
         degree: of the polynomials.
         close: see `solution.CLOSE`.
+        lean: see `march_arrays.Fixed`.
     """
 
     length: float
     degree: int
     close: float = CLOSE
+    lean: bool = True
 
 
 def closeness(tolerance: float) -> float:
@@ -115,7 +117,7 @@ class Core:
 
     def solution(self, steps: Steps) -> Solution:
         """A march from the start values on."""
-        return Solution(self._system, steps.degree, steps.close)
+        return Solution(self._system, steps.degree, steps.close, lean=steps.lean)
 
     def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
         """Values of some outputs; see `Outputs`."""

@@ -80,7 +80,7 @@ class Course:
         """
         piece = self.pieces[self._piece]
         if not self._entered:
-            self._run.enter(piece.begin)
+            self._run.enter(piece.begin, piece.end)
             self._entered = True
         end = min(self.row + self._rows, piece.last)
         wanted = self._times[self.row : end]

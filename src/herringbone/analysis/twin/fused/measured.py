@@ -16,7 +16,7 @@ WINDOW = 0.02
 LONGEST, SHORTEST = 1e-4, 0.4e-6
 """Base steps that are tried, halved from one to the next [s]."""
 DEGREES = (4, 5)
-_SAFE = 0.9
+_SAFE = 0.95
 """Share of the tolerance that is used: the window is not the run."""
 _FEWEST = 16
 """Points of a window, at least."""
@@ -60,7 +60,7 @@ def suited(core: Core, tolerance: float, t_end: float) -> Measured:
         CoreStopped: the system has no solution.
     """
     found = None
-    for steps in _candidates(closeness(tolerance), min(t_end, WINDOW)):
+    for steps in _candidates(tolerance, min(t_end, WINDOW)):
         try:
             found = measured(core, steps, t_end)
         except HerringboneError:
@@ -76,11 +76,11 @@ def suited(core: Core, tolerance: float, t_end: float) -> Measured:
     )
 
 
-def _candidates(close: float, window: float) -> Iterator[Steps]:
+def _candidates(tolerance: float, window: float) -> Iterator[Steps]:
     length = min(LONGEST, window / _FEWEST)
     while length >= SHORTEST:
         for degree in DEGREES:
-            yield Steps(length, degree, close)
+            yield Steps(length, degree, closeness(tolerance))
         length *= 0.5
 
 

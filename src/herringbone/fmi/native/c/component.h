@@ -132,9 +132,9 @@ typedef struct {
     /* What was loaded against the parameters, at the end of initialisation: as `load`. */
     int32_t (*verify)(double *b, double *report);
     /* The states at the start, from parameters and inputs, in place of `start`; not 0: in vain, and
-       `not_settled` is logged. */
+       that line of `not_settled` is logged, counted from 1. */
     int32_t (*settle)(double *b, double t);
-    const char *not_settled;
+    const char *const *not_settled;
     uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
     uint32_t runs_on_count;
     const HbRunsOn *runs_on;

@@ -173,7 +173,8 @@ Status instance_exit_initialisation(Instance *instance) {
         return status;
     if (instance->not_settled) {
         Message message;
-        message_write(&message, "%s: %s", instance->name, hb_component.not_settled);
+        message_write(&message, "%s: %s", instance->name, 
+                      hb_component.not_settled[instance->not_settled - 1]);
         log_write(&instance->log, STATUS_WARNING, &message);
     }
     double *signal = instance->block + hb_component.first_output;
@@ -190,8 +191,7 @@ Status instance_refresh(Instance *instance) {
         if (status != STATUS_OK)
             return status;
         if (hb_component.settle)
-            instance->not_settled =
-                hb_component.settle(instance->block, instance->now.time) != 0;
+            instance->not_settled = hb_component.settle(instance->block, instance->now.time);
         else if (hb_component.start)
             hb_component.start(instance->block);
         instance->rates_outdated = true;

@@ -70,7 +70,7 @@ static bool start(Instance *instance) {
     instance->now = (Moment){.phase = PHASE_INSTANTIATED};
     instance->outdated = false;
     instance->rates_outdated = true;
-    instance->not_settled = false;
+    instance->not_settled = 0;
     return true;
 }
 

@@ -44,7 +44,7 @@ typedef struct {
     bool model_exchange;
     bool outdated;       /* outputs must be computed before they are read */
     bool rates_outdated; /* derivatives of the states, too */
-    bool not_settled;    /* no start was found as it was asked for */
+    int32_t not_settled; /* line that says what start was not found; 0: none */
     Moment now;
     Texts *texts;
     FmuState *states; /* those that the host has not freed */

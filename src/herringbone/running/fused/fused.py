@@ -1,30 +1,22 @@
 """A run of a system whose parts are fused: condensed into one core, without any coupling."""
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.accuracy.apart import apart
-from herringbone.analysis.twin.condensed.solution import CoreStopped
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness, endings_of
-from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
-from herringbone.core import Outcome, OutcomeKind, ParameterError, StructureError
+from herringbone.core import ParameterError, StructureError
 from herringbone.core.activity import activity
-from herringbone.core.declaring.table import KeptRows, TableColumns
 from herringbone.core.names import matches_any
 from herringbone.core.places.files import same_folder
-from herringbone.cosim.interrupt import InterruptFlag
-from herringbone.cosim.rows.record import Grid, UniformRecord
-from herringbone.cosim.rows.recording import CoreStatistics, Recording
-from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
+from herringbone.running.fused.loop import FusedRun
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -39,10 +31,6 @@ TOLERANCE = 1e-3
 """Error of a run for which nothing else is asked."""
 KIND = "fused"
 """What stands in place of the kind of FMUs."""
-_SELDOM = 1.0
-"""Wall time [s] after which rows are handed on, however few they are."""
-_CHECKPOINT = 5.0
-"""Wall time [s] between two checkpoints."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +100,7 @@ def fused(
             start = start_of(system, scene, KIND, KIND, grid, lines)
             streaming = output.stream(start)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
-            recording = _FusedRun(core, trial, columns, grid, streaming).go(tell)
+            recording = FusedRun(core, trial.steps, columns, grid, streaming).go(tell)
     every = make_result(system, scene, KIND, KIND, recording, lines)
     every = replace(every, verification=_verification(trial))
     every = judged(every, None)
@@ -158,7 +146,8 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     tolerance = asked.tolerance or TOLERANCE
     if asked.step is None:
         return suited(core, tolerance, t_end)
-    return measured(core, Steps(asked.step, asked.degree, closeness(tolerance)), t_end)
+    steps = Steps(asked.step, asked.degree, closeness(tolerance))
+    return measured(core, steps, t_end)
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
@@ -182,125 +171,6 @@ def _verification(trial: Measured) -> Verification | None:
     how = f"by half the step, over the first {1e3 * trial.window:.3g} ms"
     half = 0.5 * trial.steps.length
     return Verification(trial.groups, trial.worst, trial.worst_error, half, how)
-
-
-class _FusedRun:
-    """One run: portions of steps, how it ends, and the record."""
-
-    def __init__(
-        self,
-        core: Core,
-        trial: Measured,
-        columns: Sequence[str],
-        grid: Grid,
-        streaming: Streaming | None,
-    ) -> None:
-        self._core, self._trial, self._columns, self._grid = core, trial, columns, grid
-        self._times = np.arange(grid.count + 1) * grid.step
-        self._course = Course(core, self._times, trial.steps, columns)
-        self._streaming = streaming
-        self._units = tuple(core.unit(name) for name in columns)
-        self._waiting: list[tuple[np.ndarray, np.ndarray]] = []
-        if streaming is None:
-            self._values = UniformRecord(grid, len(columns)).values
-        else:
-            table = TableColumns(tuple(columns), self._units, {}, {})
-            streaming.sink.begin(table, grid.count + 1)
-        self._done, self._wall = 0, 0.0
-
-    def go(self, progress: Progress | None) -> Recording:
-        """Portion after portion."""
-        course, stopped = self._course, None
-        if self._streaming and self._streaming.checkpoint is not None:
-            saved = self._streaming.checkpoint
-            course.put(saved)
-            self._done, self._wall = int(saved["rows"]), float(saved["wall"])
-        begin = taken = flushed = time.perf_counter()
-        before = self._wall
-        with InterruptFlag() as flag:
-            while not course.ended and not flag.raised and stopped is None:
-                try:
-                    self._take(*course.advance())
-                except CoreStopped as error:
-                    stopped = error
-                now = time.perf_counter()
-                self._wall = before + now - begin
-                if now - flushed > _SELDOM:
-                    self._flush()
-                    flushed = now
-                if now - taken > _CHECKPOINT and stopped is None:
-                    self._checkpoint()
-                    taken = now
-                if progress:
-                    progress(float(self._times[max(course.row - 1, 0)]), float(self._times[-1]))
-        self._flush()
-        if not course.ended and stopped is None:
-            self._checkpoint()
-        return self._recording(self._outcome(stopped))
-
-    def _take(self, times: np.ndarray, values: np.ndarray) -> None:
-        """Keep rows."""
-        if self._streaming is None:
-            self._values[self._done : self._done + times.size] = values
-            self._done += times.size
-        elif times.size:
-            self._waiting.append((times, values))
-
-    def _flush(self) -> None:
-        """Hand rows on; raises HerringboneError."""
-        if self._streaming is None or not self._waiting:
-            return
-        times = np.concatenate([t for t, _ in self._waiting])
-        values = np.concatenate([v for _, v in self._waiting])
-        self._waiting = []
-        self._streaming.sink.append(times, values, [() for _ in times])
-        self._done += times.size
-
-    def _checkpoint(self) -> None:
-        """Keep the state after the rows so far; raises HerringboneError."""
-        if self._streaming is None:
-            return
-        self._flush()
-        more = {
-            "rows": np.array(self._done),
-            "wall": np.array(self._wall),
-            "last": np.array(self._times[max(self._done - 1, 0)]),
-            "done": np.array(max(self._done - 1, 0)),
-        }
-        self._streaming.sink.checkpoint({**self._course.saved(), **more})
-
-    def _outcome(self, stopped: CoreStopped | None) -> Outcome:
-        reached = float(self._times[max(self._done - 1, 0)])
-        if stopped is not None:
-            message = f"{stopped}; use a smaller tolerance or step, or run without fuse"
-            return Outcome(OutcomeKind.DIVERGED, stopped.time, message=message)
-        if not self._course.ended:
-            message = f"stopped at {reached:g} s; results so far are kept"
-            return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
-        return Outcome(OutcomeKind.COMPLETED, reached)
-
-    def _recording(self, outcome: Outcome) -> Recording:
-        if self._streaming is None:
-            kept = KeptRows(self._times[: self._done], self._values[: self._done], {})
-        else:
-            kept = self._streaming.sink.kept()
-        counts, steps = self._course.counts, self._trial.steps
-        length = max((piece.step for piece in self._course.pieces), default=steps.length)
-        return Recording(
-            kept.time,
-            kept.values,
-            tuple(self._columns),
-            self._units,
-            outcome,
-            length,
-            self._grid.step,
-            counts["steps"],
-            {},
-            counts["halvings"],
-            self._wall,
-            (),
-            core=CoreStatistics(steps.degree, length, **counts),
-        )
 
 
 def check_coupling(*, algorithm: object, slow: object, fmu: bool, probe: bool) -> None:

@@ -1,0 +1,1 @@
+"""Periodic motion: harmonics of samples, and the equations that answer them."""

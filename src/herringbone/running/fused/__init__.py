@@ -1,0 +1,1 @@
+"""Runs of systems whose parts are fused into one core."""

@@ -1,0 +1,64 @@
+"""What a run does for a tolerance: algorithm, degree, macro step, and the parts' inner steps.
+
+    asked         the relative error that the user states
+    algorithm     `li` with a macro step that follows the tolerance, where all parts can repeat a
+                  step and are of this project; of degree 3, or 4 where little error is left; with
+                  foreign parts a fixed step, found by runs (see `step_search`)
+    inner steps   of own parts, see `inner_steps`; in proportion to the macro step where runs find
+                  that, so that they tell what both err; foreign FMUs are told a share of the
+                  tolerance in FMI's setup call
+    estimate      of both errors while the run goes on (`loops.step_error`), and by other runs
+
+What is given by name wins: an algorithm, a step (the largest one then), an inner step.
+"""
+
+from dataclasses import replace
+
+from herringbone.cosim.algorithms import LI, with_tolerance
+from herringbone.cosim.structure.system import System
+from herringbone.running.coupled import Asked
+from herringbone.running.steps.inner_steps import with_inner_steps
+from herringbone.scenes import Scene
+
+SHARE = 0.1
+"""Of the tolerance, for the inner errors of foreign FMUs."""
+_FINE = 3e-5
+"""Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
+teeth are in contact and where they separate."""
+
+
+def for_tolerance(
+    system: System, scene: Scene, asked: Asked, *, searched: bool
+) -> tuple[System, Asked]:
+    """A system and what is asked of its coupling, made to suit the tolerance.
+
+    Args:
+        system: with all values.
+        scene: of the run.
+        asked: of the coupling.
+        searched: the step is found by runs.
+
+    Raises:
+        ParameterError: the algorithm keeps its step, and none is searched.
+    """
+    given = asked.algorithm
+    tolerance = asked.tolerance
+    if given is not None and tolerance is None:
+        tolerance = given.tolerance if isinstance(given, LI) and given.adaptive else None
+    if tolerance is None:
+        return system, asked
+    if searched:
+        return system, replace(asked, part_tolerance=SHARE * tolerance)
+    kicked = bool(scene.start_offset)
+    algorithm = given or LI(degree=4 if tolerance < _FINE else LI().degree)
+    algorithm = with_tolerance(algorithm, tolerance)
+    degree = algorithm.degree if isinstance(algorithm, LI) else LI().degree
+    found = with_inner_steps(system, tolerance, degree, kicked=kicked)
+    why = "" if given else f"tolerance = {tolerance:g}: {algorithm}, the cheapest for it"
+    return found.system, replace(
+        asked,
+        algorithm=algorithm,
+        inner_step=found.longest,
+        part_tolerance=SHARE * tolerance,
+        notes=(*asked.notes, *filter(None, (why,)), *found.lines),
+    )

@@ -1,0 +1,210 @@
+"""Inner steps of a system's own parts for a tolerance.
+
+A part is stepped from node to node of the forces' polynomials. One inner step there errs about as
+much as `li` of degree 3 with the macro step that suits the tolerance (see `step_error.INNER`); more
+of them would cost time for nothing. So the longest inner step is the distance of two nodes at that
+macro step, which the fastest bond gives by `LI.accurate_step`; polynomials of degree 4 are for
+longer macro steps, and take shorter inner ones beside each other. It is not longer than is stable
+for what a part does by itself. Where the run begins without load, or with a kick, teeth part: there
+`separation_step` tells. An inner step that is set by name stays.
+
+Where the system's start is no load, or foreign parts take part, each gearbox is looked at by
+itself under a torque.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.stability.bonds import highest_frequency
+from herringbone.analysis.stability.linear_parts import Member, linear_network
+from herringbone.analysis.stability.recommendation import RULE_ERROR, separation_step
+from herringbone.components.registry import component
+from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.cosim.algorithms import LI
+from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.system import System
+from herringbone.running.pairs.carrying_flank import loaded_start
+from herringbone.running.pairs.open_flanges import loaded
+
+_LI = LI()
+_RULE = _LI.accurate_step or 0.0
+_BY_DEGREE = {4: 0.7}
+_OPEN, _KICKED = 0.5, 5.0
+"""Error by `separation_step` over the tolerance. Macro steps are short while teeth part: for a few
+blows they do."""
+_SHORTEST = 5e-7
+"""Where teeth part [s]: a millisecond takes two thousand of them."""
+_STABLE = 2.5
+"""Step of classical Runge-Kutta times frequency: 2.8 is the limit."""
+_TORQUE = 200.0
+"""At the pinion of a gearbox that is looked at by itself [N m]."""
+_BOX = frozenset({Role.GEAR_PAIR, Role.BEARING, Role.HOUSING})
+_CHANGE = 1e-8
+"""Of a state, in SI units; the parts are linear."""
+
+
+class InnerSteps(NamedTuple):
+    """Inner steps that were chosen.
+
+    Attributes:
+        system: with them.
+        longest: of gear pairs, or of all parts where there is none [s]; 0 if it is not known.
+        lines: what they are, and why where that is not the tolerance.
+    """
+
+    system: System
+    longest: float
+    lines: tuple[str, ...] = ()
+
+
+def with_inner_steps(
+    system: System, tolerance: float, degree: int = 3, *, kicked: bool = False
+) -> InnerSteps:
+    """The system with inner steps that suit a tolerance, where none are set by name.
+
+    Args:
+        system: with all values.
+        tolerance: relative error that the inner steps may leave [1].
+        degree: of the forces' polynomials.
+        kicked: the run does not begin in equilibrium, so that teeth may part for a while.
+    """
+    found = _linear(system)
+    bond = highest_frequency(found.network, found.members) if found else 0.0
+    if found is None or not bond:
+        return InnerSteps(system, _longest(system, {}))
+    macro = _RULE / bond * (tolerance / RULE_ERROR) ** (1.0 / _LI.convergence_order)
+    wanted = macro / _LI.degree * _BY_DEGREE.get(degree, 1.0)
+    why = ""
+    apart = separation_step((_OPEN if found.open else _KICKED) * tolerance)
+    if (found.open or kicked) and apart < wanted:
+        wanted = max(apart, _SHORTEST)
+        why = "the shortest that is taken" if wanted > apart else "because teeth part"
+    stable = _stable(system, found)
+    chosen = {path: min(wanted, longest) for path, longest in stable.items()}
+    said = []
+    for path, step in chosen.items():
+        reason = "the longest that is stable" if step == stable[path] else why
+        said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
+    lines = (f"inner steps: {', '.join(said)}",) if said else ()
+    return InnerSteps(system.with_values(chosen), _longest(system, chosen), lines)
+
+
+def stable_inner_steps(system: System) -> dict[str, float]:
+    """The longest inner step [s] that own parts may take, by path, where none is set by name."""
+    return _stable(system, _linear(system))
+
+
+def with_inner_steps_of(system: System, step: float, stable: Mapping[str, float]) -> System:
+    """The system with inner steps in proportion to a macro step, as far as they are stable.
+
+    Runs with ever shorter macro steps so tell what both err.
+
+    Args:
+        system: with all values.
+        step: macro step [s].
+        stable: see `stable_inner_steps`.
+    """
+    return system.with_values({p: min(step / _LI.degree, most) for p, most in stable.items()})
+
+
+def _paths(system: System) -> Iterator[tuple[str, str]]:
+    """Own parts with an inner step to set, and its path."""
+    known = anatomy(system)
+    for part in known.parts:
+        path = known.column(part, Quantity.MICRO_STEP)
+        if path and not system.part(part).foreign:
+            yield part, path
+
+
+def _stable(system: System, found: "_Linear | None") -> dict[str, float]:
+    """See `stable_inner_steps`; of a part that could not be made linear the declared step."""
+    members = found.members if found else []
+    own = {member.name: member for member in members if isinstance(member, Instance)}
+    steps = {}
+    for part, path in _paths(system):
+        spec, variable = system.part(part), system.split(path)[1]
+        declared = component(str(spec.component)).declaration.variable(variable)
+        if variable not in spec.values:
+            stable = _stable_step(own[part]) if part in own else float(declared.start)
+            steps[path] = min(stable, declared.maximum or stable)
+    return steps
+
+
+def _longest(system: System, chosen: dict[str, float]) -> float:
+    """The longest inner step of the gear pairs, or of all parts; 0 if there is none."""
+    known = anatomy(system)
+    paths = dict(_paths(system.with_values(chosen)))
+    gears = [paths[part] for part in known.with_role(Role.GEAR_PAIR) if part in paths]
+    return max((_value(system, path, chosen) for path in gears or paths.values()), default=0.0)
+
+
+def _value(system: System, path: str, chosen: dict[str, float]) -> float:
+    name, variable = system.split(path)
+    part = system.part(name)
+    declared = component(str(part.component)).declaration.variable(variable).start
+    return float(chosen.get(path, part.values.get(variable, declared)))
+
+
+class _Linear(NamedTuple):
+    """A system's parts under load, linear; a mesh may be open where the run begins."""
+
+    network: Network
+    members: list[Member]
+    open: bool
+
+
+def _linear(system: System) -> _Linear | None:
+    """The parts as they start, or each gearbox by itself; None where neither can be had."""
+    with_load = not system.foreign_parts
+    try:
+        if with_load:
+            return _Linear(*linear_network(system), open=False)
+    except ParameterError:  # a mesh is open
+        pass
+    except HerringboneError:
+        return None
+    boxes = _only(system, _BOX)
+    if not boxes.parts:
+        return None
+    try:
+        alone = loaded(boxes, _TORQUE)
+        return _Linear(*linear_network(alone.with_values(loaded_start(alone)[0])), open=with_load)
+    except HerringboneError:
+        return None
+
+
+def _only(system: System, roles: Iterable[Role]) -> System:
+    """The system's own parts of some roles, and what joins them."""
+    known, wanted = anatomy(system), set(roles)
+    parts = tuple(
+        part
+        for part in system.parts
+        if not part.foreign and wanted & set(known.parts[part.name].roles)
+    )
+    names = {part.name for part in parts}
+    connections = tuple(
+        pair for pair in system.connections if {system.split(path)[0] for path in pair} <= names
+    )
+    return replace(system, parts=parts, connections=connections)
+
+
+def _stable_step(part: Instance) -> float:
+    """The longest stable inner step of a linear part by itself [s]."""
+    count = part.component.declaration.state_count
+    block = part.block.copy()
+    before, after = np.empty(count), np.empty(count)
+    part.component.kernels.rhs(block, 0.0, before)
+    matrix = np.empty((count, count))
+    for k in range(count):
+        value = block[k]
+        block[k] = value + _CHANGE
+        part.component.kernels.rhs(block, 0.0, after)
+        matrix[:, k] = (after - before) / (block[k] - value)
+        block[k] = value
+    highest = float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0))
+    return _STABLE / highest if highest > 0.0 else np.inf

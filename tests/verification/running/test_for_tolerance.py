@@ -1,0 +1,103 @@
+"""What a tolerance chooses: inner steps by closed forms, and work that follows it."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+import herringbone as hb
+from herringbone.analysis.stability.limits import fastest_bond
+from herringbone.analysis.stability.recommendation import separation_step
+from herringbone.cosim.algorithms import LI
+from herringbone.running.coupled import Asked
+from herringbone.running.prepared import Wishes, prepared
+from herringbone.running.steps.for_tolerance import for_tolerance
+from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
+from herringbone.running.steps.tried import Search
+
+GEAR, MOTOR = "gearbox.gear_mesh.micro_step", "drive_motor.micro_step"
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """System and scene."""
+    return prepared("test_rig", "loaded", Wishes())
+
+
+def inner(system, path):
+    part, name = system.split(path)
+    return system.part(part).values[name]
+
+
+def test_one_inner_step_from_node_to_node(rig):
+    """H w = accurate_step at 1e-3, and its third; with the fourth root of the tolerance."""
+    wanted = LI().accurate_step / fastest_bond(rig.system) / 3.0
+    for tolerance, root in ((1e-3, 1.0), (1e-5, 10.0**-0.5), (1e-7, 0.1)):
+        found = with_inner_steps(rig.system, tolerance)
+        assert inner(found.system, MOTOR) == pytest.approx(wanted * root, rel=1e-9)
+    assert found.longest == inner(found.system, GEAR) == inner(found.system, MOTOR)
+
+
+def test_not_longer_than_is_stable(rig):
+    """13.57 kHz of the gears against each other: 2.5 / w = 29.3 us, where classical Runge-Kutta of
+    2.83 / w ends."""
+    stable = stable_inner_steps(rig.system)[GEAR]
+    assert stable == pytest.approx(29.3e-6, rel=0.01)
+    found = with_inner_steps(rig.system, 1e-2)
+    assert found.longest == stable
+    assert f"{GEAR} 29.3 us (the longest that is stable)" in found.lines[0]
+
+
+def test_what_is_set_by_name_stays(rig):
+    system = rig.system.with_values({GEAR: 1e-6})
+    found = with_inner_steps(system, 1e-2)
+    assert (inner(found.system, GEAR), found.longest) == (1e-6, 1e-6)
+
+
+def test_teeth_that_will_part_get_shorter_ones(rig):
+    """Of a start without load; the kick of `separation` asks for less."""
+    runup = prepared("test_rig", "runup", Wishes()).system
+    assert with_inner_steps(runup, 1e-4).longest == pytest.approx(separation_step(0.5e-4))
+    assert with_inner_steps(rig.system, 1e-5, 4, kicked=True).longest == separation_step(5e-5)
+
+
+def test_algorithm_and_shares(rig):
+    asked = Asked("in-process", tolerance=1e-3)
+    _, found = for_tolerance(rig.system, rig.scene, asked, searched=False)
+    assert found.algorithm == LI(degree=3, tolerance=1e-3)
+    assert (found.part_tolerance, found.inner_step > 2e-5) == (1e-4, True)
+    fine = replace(asked, tolerance=1e-6)
+    assert for_tolerance(rig.system, rig.scene, fine, searched=False)[1].algorithm.degree == 4
+    given = replace(asked, algorithm=LI(degree=2))
+    found = for_tolerance(rig.system, rig.scene, given, searched=False)[1]
+    assert found.algorithm == LI(degree=2, tolerance=1e-3)
+    untouched = replace(asked, tolerance=None)
+    assert for_tolerance(rig.system, rig.scene, untouched, searched=False) == (
+        rig.system, untouched,
+    )  # fmt: skip
+
+
+def test_work_follows_the_tolerance():
+    """Passes of the gear: three nodes each, with inner steps that shorten by the fourth root."""
+    passes = []
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        result = hb.run("test_rig", tolerance=tolerance, t_end=0.02, fmu="in-process")
+        estimate = result.info.estimate
+        assert 0.02 * tolerance < estimate["coupling"] + estimate["inner_steps"] < 2.0 * tolerance
+        passes.append(result.info.passes["gearbox.gear_mesh"])
+    assert passes == sorted(passes)
+    assert passes[2] > 1.5 * passes[0]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "steps", "found"),
+    [(1.1, 47, Fraction(2)), (1.1, 94, Fraction(3, 2)), (1.6, 94, Fraction(2)),
+     (1.6, 188, Fraction(7, 4)), (2.6, 47, Fraction(3)), (90.0, 188, Fraction(4))],
+)  # fmt: skip
+def test_a_step_is_divided_so_that_runs_have_points_in_common(monkeypatch, wanted, steps, found):
+    """By whole numbers, halves and quarters, where the steps of the last run are that many."""
+    search = Search(1e-3)
+    search._steps = steps
+    monkeypatch.setattr(search, "_shorter", lambda: wanted)
+    assert search.pieces() == found
+    assert (steps * found).denominator == 1
