@@ -68,9 +68,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--record", action="append", default=[], metavar="OUTPUTS",
         help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
     )  # fmt: skip
-    sub.add_argument("--reference", action="store_true", help="errors against the monolithic twin")
+    memory = "memory grows with the duration"
     sub.add_argument(
-        "--verify", action="store_true", help="errors against a run with half the step"
+        "--reference", action="store_true", help=f"errors against the monolithic twin; {memory}"
+    )
+    sub.add_argument(
+        "--verify", action="store_true", help=f"errors against a run with half the step; {memory}"
     )
     sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
     sub.add_argument(

@@ -15,6 +15,8 @@ ANTI_ALIAS_CORNER = 0.4
 """Corner frequency over sampling rate."""
 _EARLY = 1e-6
 """A sample this share of a period behind the end of a macro step still belongs to it."""
+_MOST_SAMPLES = 2.0**53
+"""From here on a number has no successor; 2800 years at 1e5 Hz."""
 
 
 @kernel
@@ -45,7 +47,8 @@ def sampler_stepper(
 
     Sample k lies at first + k / rate and is taken once: k is counted in the block, so that rounding
     of time neither doubles nor drops one. A sample at the end of a macro step belongs to this step.
-    Samples before the start of the first step are left out.
+    Samples before the start of the first step are left out, as are those from 2^53 on, which cannot
+    be counted.
 
     Args:
         body: made by `body_stepper`, of a component whose outputs have no nodes.
@@ -82,11 +85,12 @@ def sampler_stepper(
             w[kept + i] = b[first_input + i]
         for at in range(0, reals, STRIDE):
             monomial(b, first_input + at, degree, w, polynomial + at)
-        b[number] = max(b[number], math.ceil((t - b[first]) * b[rate] - _EARLY))
+        reached = min((t - b[first]) * b[rate] - _EARLY, _MOST_SAMPLES)
+        b[number] = max(b[number], math.ceil(reached))
         c, status, sampling = 0.0, 0, True
         while sampling and status == 0:
             due = b[first] + b[number] / b[rate] - t
-            sampling = due <= h + _EARLY / b[rate]
+            sampling = due <= h + _EARLY / b[rate] and b[number] < _MOST_SAMPLES
             end = max(c, min(due / h, 1.0)) if sampling and h > 0.0 else 1.0
             restrict_inputs(b, w, degree, c, end)
             status = body(b, w, t + c * h, (end - c) * h, micro_step, degree)

@@ -176,6 +176,13 @@ def test_a_late_start_leaves_out_earlier_samples():
     assert clipped["saturation_count"] == 7
 
 
+def test_times_whose_samples_cannot_be_counted_come_to_an_end():
+    """From 2^53 samples on their number has no successor: a step went on for ever."""
+    instance = sensor()
+    for t in (2.0**53, 1e300):
+        assert instance.step(t, 1e-5) == 0
+
+
 def test_converter_clips_and_rounds_exactly():
     """8 bits over +-0.05 m/s: digits -128 ... 127."""
     rng = np.random.default_rng(1)
