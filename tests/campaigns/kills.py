@@ -22,6 +22,10 @@ from herringbone.core import HerringboneError
 from herringbone.core.places.paths import CACHE_VARIABLE, cache_root
 
 LONGEST = 1200.0
+SWEEP = (
+    "from herringbone.core.places.temporary import temporary_folder\nwith temporary_folder(): pass"
+)
+"""Whoever makes the next temporary folder removes those of dead processes."""
 _LEAVE = 60.0
 """Seconds in which cells of a killed master end."""
 
@@ -118,6 +122,8 @@ class Field:
         """Look at what a kill has left, and go on; in a word how."""
         how = self.judge_run() if self.case.runs else self.judge_files()
         assert contents(self.output) == self.whole, f"{how}: other bits"
+        environment = {**os.environ, "TMPDIR": str(self.scratch)}
+        subprocess.run([sys.executable, "-c", SWEEP], check=True, env=environment)
         left = [f.name for f in self.scratch.glob("herringbone_*")]
         assert not left, f"{how}: {left} is left"
         return how
