@@ -11,12 +11,13 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from support.reel import python_reel
 
-_SECONDS = 300
+_SECONDS, _OFTEN = 300, 50
 SCRIPT = """
 import faulthandler, signal, sys
 from pathlib import Path
@@ -69,21 +70,36 @@ def ended(arguments: tuple[str, ...]) -> tuple[str, str]:
     return f"{close}, {end or 'by itself'}", ""
 
 
-def try_exits(count: int, seed: int, workers: int, folder: Path) -> tuple[Counter, list[str]]:
-    """End so many processes; how they ended, and what was wrong."""
+def try_exits(
+    count: int,
+    seed: int,
+    workers: int,
+    folder: Path,
+    tell: Callable[[int], None] = lambda done: None,
+) -> tuple[Counter, list[str]]:
+    """End so many processes; how they ended, and what was wrong. Told is how many have ended."""
     from herringbone.fmi import build_python_fmus
 
     chance = random.Random(seed)
     own = build_python_fmus(["drive_motor", "shaft_coupling"])
     files = [python_reel(folder), *own.values()]
+    found = []
     with ThreadPoolExecutor(workers) as pool:
-        found = list(pool.map(ended, [tried(files, chance) for _ in range(count)]))
+        for one in pool.map(ended, [tried(files, chance) for _ in range(count)]):
+            found.append(one)
+            tell(len(found))
     return Counter(how for how, _ in found), [wrong for _, wrong in found if wrong]
+
+
+def told(done: int) -> None:
+    """A line now and then."""
+    if done % _OFTEN == 0:
+        sys.stderr.write(f"{done} have ended\n")
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as scratch:
         cores = len(os.sched_getaffinity(0))
-        counted, bad = try_exits(int(sys.argv[1]), 1, cores, Path(scratch))
+        counted, bad = try_exits(int(sys.argv[1]), 1, cores, Path(scratch), told)
     sys.stdout.write("\n".join([*(f"{n:5d} {how}" for how, n in counted.items()), *bad, ""]))
     sys.exit(bool(bad))

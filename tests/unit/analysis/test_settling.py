@@ -1,0 +1,34 @@
+"""Whether a run has settled, on decaying oscillations: how much they lose in a quarter is known."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from support.result import make_foreign_result
+
+from herringbone.analysis.figures.settling import unsettled
+
+
+def decaying(rate, first=0.0):
+    """exp(-rate t) sin(2 pi 80 t) from a time on, of one second."""
+    time = first + np.linspace(0.0, 1.0, 4001)
+    values = np.exp(-rate * (time - first)) * np.sin(160.0 * np.pi * (time - first))
+    data = pd.DataFrame({"time": time, "a.f": values})
+    units = {"time": "s", "a.f": "N"}
+    return replace(make_foreign_result(), data=data, units=units, channels={"force": ("a.f",)})
+
+
+@pytest.mark.parametrize("first", [0.0, 30.0])
+def test_loss_from_the_third_to_the_last_quarter(first):
+    """1 - exp(-rate/4), whole periods in each; of a long run only the last rows may be there."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (line,) = unsettled(decaying(1.0, first))
+    assert f"force changes by {100.0 * (1.0 - np.exp(-0.25)):.2g} %" in line
+
+
+@pytest.mark.parametrize("first", [0.0, 30.0])
+def test_a_settled_motion_is_not_told(first):
+    assert unsettled(decaying(0.1, first)) == []
