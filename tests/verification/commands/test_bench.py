@@ -17,9 +17,10 @@ pytestmark = pytest.mark.skipif(
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-BEYOND = {"gear_mesh": 330_000, "gearbox": 395_000, "test_rig": 405_000}
-"""What misses it, by 6, 28 and 32 %: the law of single teeth takes 14 kB per platform, and the
-slopes of an energy what systems missed it by before."""
+BEYOND = {"gear_mesh": 330_000, "gearbox": 400_000, "test_rig": 418_000}
+"""What misses it, by 6, 33 and 38 %: the law of single teeth takes 14 kB per platform, and the
+slopes of an energy what systems missed it by before. Kernels that tell the motion alone take 3 to
+4 kB of systems per platform, and halve the time of their right-hand side."""
 
 
 def test_the_plain_loop_ends_where_the_compiled_loop_ends():
