@@ -115,10 +115,11 @@ _finalizers: dict[str, ctypes.CDLL] = {}
 
 
 def _finalize_at_exit(dll: ctypes.CDLL) -> None:
-    """Let pythonfmu release its interpreter reference once, before the process ends.
+    """Let each pythonfmu library release its interpreter reference once, before the process ends.
 
-    Otherwise it is released twice by static destructors, and the process may abort at exit.
+    Otherwise it is released twice, by the library's static destructors and by what it runs when it
+    is unloaded, and the process may abort at exit. Each file has a reference of its own.
     """
-    if hasattr(dll, _PYTHONFMU) and not _finalizers:
-        _finalizers["pythonfmu"] = ctypes.CDLL(dll._name)
-        atexit.register(_finalizers["pythonfmu"].finalizePythonInterpreter)
+    if hasattr(dll, _PYTHONFMU) and dll._name not in _finalizers:
+        _finalizers[dll._name] = ctypes.CDLL(dll._name)
+        atexit.register(_finalizers[dll._name].finalizePythonInterpreter)
