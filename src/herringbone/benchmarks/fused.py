@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
-from herringbone.analysis.twin.fused.measured import suited
+from herringbone.analysis.twin.fused.measured import suited, values_at
+from herringbone.core.part import closing_all
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
@@ -99,11 +100,8 @@ def _coupled(system: System, algorithm: LI) -> Callable[[float], float]:
     def run(t_end: float) -> float:
         parts = open_parts(system, "native")
         begin = time.thread_time()
-        try:
+        with closing_all(parts):
             simulate(system, parts, algorithm, make_grid(t_end, algorithm.start_step, RECORD_STEP))
-        finally:
-            for part in parts:
-                part.close()
         return time.thread_time() - begin
 
     return run
@@ -114,14 +112,6 @@ def _errors(core: Core, steps: Steps) -> tuple[float, float]:
     groups = core.groups()
     columns = [name for names in groups.values() for name in names]
     times = np.arange(round(_WINDOW / RECORD_STEP) + 1) * RECORD_STEP
-    course, rows = Course(core, times, steps, columns), []
-    while not course.ended:
-        rows.append(course.advance()[1])
-    found, exact = np.concatenate(rows), core.twin.solve(times, columns, _EXACT)
-    pooled = [
-        relative_error(found[:, own], exact[:, own])
-        for own in ([columns.index(n) for n in names] for names in groups.values())
-    ]
-    spread, off = np.std(exact, axis=0), np.sqrt(np.mean((found - exact) ** 2, axis=0))
-    varies = spread > 1e-9 * np.abs(exact).max(axis=0)
-    return max(pooled), float((off[varies] / spread[varies]).max())
+    found, exact = values_at(core, times, steps, columns), core.twin.solve(times, columns, _EXACT)
+    off = differences(found, exact, columns, groups)
+    return max(off.groups.values()), off.worst_difference

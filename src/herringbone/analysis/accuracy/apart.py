@@ -1,6 +1,6 @@
 """How far two runs of the same system with different steps are apart, without a twin."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -38,20 +38,36 @@ def apart(first: Result, second: Result, exchanged: Collection[str] = ()) -> Apa
     ours, theirs = _common(first, second)
     if len(ours) < _FEWEST:
         return Apart({}, "", 0.0)
-    place = {name: number for number, name in enumerate(second.signals)}
+    return differences(ours, theirs, second.signals, groups_of(second, exchanged))
+
+
+def differences(
+    ours: np.ndarray,
+    theirs: np.ndarray,
+    names: Sequence[str],
+    groups: Mapping[str, Sequence[str]],
+) -> Apart:
+    """Compare signals at the same times.
+
+    Args:
+        ours, theirs: (times, names); the second are the better ones.
+        names: of the columns.
+        groups: names by group.
+    """
+    place = {name: number for number, name in enumerate(names)}
     spread = np.std(theirs, axis=0)
     varies = spread > _CONSTANT * np.abs(theirs).max(axis=0, initial=0.0)
-    groups = {}
-    for name, columns in groups_of(second, exchanged).items():
+    found = {}
+    for name, columns in groups.items():
         own = [place[column] for column in columns]
         if varies[own].any():
-            groups[name] = relative_error(ours[:, own], theirs[:, own])
+            found[name] = relative_error(ours[:, own], theirs[:, own])
     off = np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
     single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)
     if not single.any():
-        return Apart(groups, "", 0.0)
+        return Apart(found, "", 0.0)
     worst = int(single.argmax())
-    return Apart(groups, second.signals[worst], float(single[worst]))
+    return Apart(found, names[worst], float(single[worst]))
 
 
 def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list[str]]:

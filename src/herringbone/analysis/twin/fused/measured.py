@@ -1,12 +1,12 @@
 """Steps of a fused run for a tolerance, by trial: what halving them changes over a short time."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from herringbone.analysis.accuracy.error import relative_error
+from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import HerringboneError, ParameterError
@@ -20,8 +20,6 @@ _SAFE = 0.95
 """Share of the tolerance that is used: the window is not the run."""
 _FEWEST = 16
 """Points of a window, at least."""
-_CONSTANT = 1e-9
-"""Alternating part over the size of an output below which it is rounding."""
 
 
 class Measured(NamedTuple):
@@ -100,28 +98,23 @@ def measured(core: Core, steps: Steps, t_end: float) -> Measured:
     columns = list(dict.fromkeys(name for names in groups.values() for name in names))
     times = np.linspace(0.0, window, max(_FEWEST, round(window / steps.length)) + 1)
     half = steps._replace(length=0.5 * steps.length)
-    ours, theirs = (_values(core, times, own, columns) for own in (steps, half))
-    place = {name: k for k, name in enumerate(columns)}
-    spread, off = np.std(theirs, axis=0), np.sqrt(np.mean((ours - theirs) ** 2, axis=0))
-    varies = spread > _CONSTANT * np.abs(theirs).max(axis=0, initial=0.0)
-    errors = {}
-    for group, names in groups.items():
-        own = [place[name] for name in names]
-        if varies[own].any():
-            errors[group] = relative_error(ours[:, own], theirs[:, own])
-    single = np.where(varies, off / np.where(varies, spread, 1.0), 0.0)
-    worst = int(single.argmax()) if single.size else 0
-    found = bool(single.size and single[worst])
-    return Measured(
-        steps,
-        errors,
-        columns[worst] if found else "",
-        float(single[worst]) if found else 0.0,
-        window,
-    )
+    ours, theirs = (values_at(core, times, own, columns) for own in (steps, half))
+    found = differences(ours, theirs, columns, groups)
+    return Measured(steps, found.groups, found.worst, found.worst_difference, window)
 
 
-def _values(core: Core, times: np.ndarray, steps: Steps, columns: list[str]) -> np.ndarray:
+def values_at(core: Core, times: np.ndarray, steps: Steps, columns: Sequence[str]) -> np.ndarray:
+    """Outputs (times, columns) of a march from the start values on.
+
+    Args:
+        core: of the system.
+        times: equidistant from 0 [s].
+        steps: how it is marched.
+        columns: outputs.
+
+    Raises:
+        CoreStopped: the system has no solution with these steps.
+    """
     course = Course(core, times, steps, columns)
     rows = []
     with threadpool_limits(limits=1, user_api="blas"):
