@@ -152,7 +152,7 @@ def swept(most: int, kinds: list[str]) -> int:
 
 def write_soon() -> None:
     """Rows and checkpoints are written after every chunk of the loop; pictures are left out."""
-    checkpoints.SECONDS = stream._SELDOM = 0.0
+    checkpoints.SECONDS = stream.SELDOM = 0.0
     plotting.write_pictures = lambda result, folder: []
 
 

@@ -21,7 +21,7 @@ class Killed(BaseException):
 def write_often(monkeypatch):
     """Rows leave the memory, and checkpoints are taken, after every chunk of the loop."""
     monkeypatch.setattr(checkpoints, "SECONDS", 0.0)
-    monkeypatch.setattr("herringbone.cosim.rows.stream._SELDOM", 0.0)
+    monkeypatch.setattr("herringbone.cosim.rows.stream.SELDOM", 0.0)
     monkeypatch.setattr(os, "fsync", lambda descriptor: None)  # no machine loses its power here
     monkeypatch.setattr("herringbone.plotting.write_pictures", lambda result, folder: [])
 

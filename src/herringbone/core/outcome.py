@@ -50,6 +50,12 @@ class Outcome:
     culprit: str = ""
     message: str = ""
 
+    @classmethod
+    def interrupted(cls, reached: float) -> "Outcome":
+        """Of a run that was stopped by its user, at a time [s]."""
+        message = f"stopped at {reached:g} s; results so far are kept"
+        return cls(OutcomeKind.INTERRUPTED, reached, message=message)
+
     @property
     def completed(self) -> bool:
         """True if the run reached its end, and its coupling was not seen to be unstable."""

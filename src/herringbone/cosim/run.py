@@ -172,8 +172,7 @@ class Run:
         if status == DONE:
             if done == self.grid.count:
                 return self._outcome_at_end(reached)
-            message = f"stopped at {reached:g} s; results so far are kept"
-            return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
+            return Outcome.interrupted(reached)
         if status == _REFUSED:
             message = f"{self._refusal}, at {reached:g} s"
             return Outcome(OutcomeKind.PART_FAILED, reached, self.others.asked, message)

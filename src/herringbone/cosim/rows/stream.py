@@ -13,7 +13,7 @@ from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Record, window_rows
 from herringbone.cosim.units import in_own_units, own_unit
 
-_SELDOM = 1.0
+SELDOM = 1.0
 """Wall time [s] after which rows are handed on, however few they are."""
 
 
@@ -76,7 +76,7 @@ class Stream:
         """Hand rows on, if there are many, or it was long ago; see `flush`."""
         waiting = self._record.complete(done) - self.rows
         full = 2 * waiting >= len(self._record.values)
-        if full or time.perf_counter() - self._flushed > _SELDOM:
+        if full or time.perf_counter() - self._flushed > SELDOM:
             self.flush(done)
 
     def flush(self, done: int) -> None:

@@ -10,16 +10,13 @@ from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.declaring.table import KeptRows, TableColumns
+from herringbone.cosim.checkpoint import checkpoints
 from herringbone.cosim.interrupt import InterruptFlag
+from herringbone.cosim.rows import stream
 from herringbone.cosim.rows.record import Grid, UniformRecord
 from herringbone.cosim.rows.recording import CoreStatistics, Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.running.reporting.progress import Progress
-
-_SELDOM = 1.0
-"""Wall time [s] after which rows are handed on, however few they are."""
-_CHECKPOINT = 5.0
-"""Wall time [s] between two checkpoints."""
 
 
 class FusedRun:
@@ -71,10 +68,10 @@ class FusedRun:
                     stopped = error
                 now = time.perf_counter()
                 self._wall = before + now - begin
-                if now - flushed > _SELDOM:
+                if now - flushed > stream.SELDOM:
                     self._flush()
                     flushed = now
-                if now - taken > _CHECKPOINT and stopped is None:
+                if now - taken > checkpoints.SECONDS and stopped is None:
                     self._checkpoint()
                     taken = now
                 if progress:
@@ -121,8 +118,7 @@ class FusedRun:
             message = f"{stopped}; use a smaller tolerance or step, or run without fuse"
             return Outcome(OutcomeKind.DIVERGED, stopped.time, message=message)
         if not self._course.ended:
-            message = f"stopped at {reached:g} s; results so far are kept"
-            return Outcome(OutcomeKind.INTERRUPTED, reached, message=message)
+            return Outcome.interrupted(reached)
         return Outcome(OutcomeKind.COMPLETED, reached)
 
     def _recording(self, outcome: Outcome) -> Recording:
