@@ -12,6 +12,9 @@ from herringbone.core import ParameterError, StructureError
 from herringbone.core.activity import activity
 from herringbone.core.names import matches_any
 from herringbone.core.places.files import same_folder
+from herringbone.cosim.rows.record import Grid
+from herringbone.cosim.rows.recording import Recording
+from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
@@ -40,7 +43,6 @@ class FusedAsked:
     Attributes:
         step: base step [s].
         tolerance: for which the step is chosen.
-        degree: of the polynomials, with a step.
         record: patterns of outputs, or groups of channels, that are recorded; all if empty.
         notes: lines that the user should read.
     """
@@ -48,7 +50,6 @@ class FusedAsked:
     step: float | None = None
     tolerance: float | None = None
     record: tuple[str, ...] = ()
-    degree: int = DEGREES[0]
     notes: tuple[str, ...] = ()
 
 
@@ -93,14 +94,12 @@ def fused(
             columns = core.chosen(asked.record)
             trial = _trial(core, asked, scene.t_end)
         system = _with_channels(system, columns)
-        grid = make_grid(scene.t_end, scene.record_step, scene.record_step)
         lines = [*asked.notes, *_lines(core, asked, trial)]
         streaming = None
         if output is not None:
-            start = start_of(system, scene, KIND, KIND, grid, lines)
+            start = start_of(system, scene, KIND, KIND, _grid(scene), lines)
             streaming = output.stream(start)
-        with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
-            recording = FusedRun(core, trial.steps, columns, grid, streaming).go(tell)
+        recording = _marched(core, trial.steps, columns, system, scene, progress, streaming)
     every = make_result(system, scene, KIND, KIND, recording, lines)
     every = replace(every, verification=_verification(trial))
     every = judged(every, None)
@@ -108,6 +107,23 @@ def fused(
     if recorded:
         recorded(result)
     return result
+
+
+def _marched(
+    core: Core,
+    steps: Steps,
+    columns: Sequence[str],
+    system: System,
+    scene: Scene,
+    progress: bool | Progress,
+    streaming: Streaming | None = None,
+) -> Recording:
+    with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
+        return FusedRun(core, steps, columns, _grid(scene), streaming).go(tell)
+
+
+def _grid(scene: Scene) -> Grid:
+    return make_grid(scene.t_end, scene.record_step, scene.record_step)
 
 
 def _with_channels(system: System, columns: Sequence[str]) -> System:
@@ -132,10 +148,15 @@ def verified_by_half(
     Raises:
         HerringboneError: see `fused`.
     """
-    core = result.info.core or {}
-    step = 0.5 * core["step"]
-    finer = fused(system, scene, replace(asked, step=step, degree=int(core["degree"])), progress)
-    found = apart(result, finer)
+    taken = result.info.core or {}
+    step = 0.5 * taken["step"]
+    steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or TOLERANCE))
+    with same_folder(), threadpool_limits(limits=1, user_api="blas"):
+        core = Core(system)
+        columns = core.chosen(asked.record)
+        system = _with_channels(system, columns)
+        recording = _marched(core, steps, columns, system, scene, progress)
+    found = apart(result, make_result(system, scene, KIND, KIND, recording, ()))
     how = "by half the step, over the whole run"
     verification = Verification(found.groups, found.worst, found.worst_difference, step, how)
     return with_coupling_row(replace(result, verification=verification))
@@ -146,8 +167,7 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     tolerance = asked.tolerance or TOLERANCE
     if asked.step is None:
         return suited(core, tolerance, t_end)
-    steps = Steps(asked.step, asked.degree, closeness(tolerance))
-    return measured(core, steps, t_end)
+    return measured(core, Steps(asked.step, DEGREES[0], closeness(tolerance)), t_end)
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
