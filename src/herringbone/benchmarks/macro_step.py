@@ -17,7 +17,6 @@ from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.benchmarks.other_masters import PACKAGES, macro_step
 from herringbone.core.part import Part
 from herringbone.core.places.part_path import flat_name
-from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
 from herringbone.cosim.layouts.layout import connected_outputs, record_names
 from herringbone.cosim.simulation import make_grid, simulate
@@ -25,6 +24,7 @@ from herringbone.cosim.ssp.write import write_ssp
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.fmi.native import build_native_fmus
+from herringbone.running.exporting.parallel_step import PARALLEL
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.prepared import Wishes, prepared
@@ -33,7 +33,6 @@ STEP = 2.5e-6
 """The gear mesh's micro step [s]."""
 _SLOW = 4
 """Loops that are run through Python do this fraction of the steps."""
-PARALLEL = Jacobi(order=0, schedule="parallel")
 OURS = "this master, native FMUs"
 
 

@@ -8,6 +8,7 @@ from herringbone.benchmarks import macro_step
 from herringbone.commands.main import main
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.fmi.native import find_compiler, own_platform
+from herringbone.running.exporting.parallel_step import PARALLEL
 from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
@@ -34,7 +35,7 @@ def test_the_plain_loop_ends_where_the_compiled_loop_ends():
         simulate(
             system,
             parts,
-            macro_step.PARALLEL,
+            PARALLEL,
             make_grid(first * macro_step.STEP, macro_step.STEP, macro_step.STEP),
         )
         if plain:

@@ -10,11 +10,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+from herringbone.core.places.files import PART
 from herringbone.core.places.paths import is_trusted
 
 _LOG = logging.getLogger("herringbone")
 _SUFFIX = ".sha256"
-_PART = ".part"
 _STALE = 3600.0
 """Seconds after which a file that was not written to its end is of a dead process."""
 
@@ -27,7 +27,7 @@ def write_file(file: Path, content: bytes) -> None:
     """Write a file so that others see all of it or nothing; raises OSError."""
     file.parent.mkdir(parents=True, exist_ok=True)
     _sweep(file.parent)
-    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=_PART, delete=False) as part:
+    with tempfile.NamedTemporaryFile(dir=file.parent, suffix=PART, delete=False) as part:
         try:
             part.write(content)
             part.close()
@@ -39,7 +39,7 @@ def write_file(file: Path, content: bytes) -> None:
 
 def _sweep(folder: Path) -> None:
     """Remove what dead processes did not write to its end."""
-    for part in folder.glob(f"*{_PART}"):
+    for part in folder.glob(f"*{PART}"):
         with contextlib.suppress(OSError):
             if time.time() - part.stat().st_mtime > _STALE:
                 part.unlink()
