@@ -34,8 +34,10 @@ _d = Declaration(
     "bench_controller",
     "Set points of a test cycle, from a CSV of time, speed and torque",
     [
-        output("speed_setpoint", "rad/s", "for the drive motor", nodes=True),
-        output("torque_setpoint", "N.m", "for the load motor", nodes=True),
+        output("speed_setpoint", "rad/s", "for the drive motor", nodes=True,
+               quantity=Quantity.SPEED_SETPOINT),
+        output("torque_setpoint", "N.m", "for the load motor", nodes=True,
+               quantity=Quantity.TORQUE_SETPOINT),
         parameter(
             "gear_ratio",
             "1",
@@ -58,7 +60,7 @@ _d = Declaration(
     texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv", _COLUMNS)],
     tables=1 + 3 * ROWS,
     roles=[Role.CONTROLLER],
-)
+)  # fmt: skip
 
 _SPEED, _TORQUE = _d.indices("speed_setpoint", "torque_setpoint")
 _RATIO, _SPEED_FACTOR, _TORQUE_FACTOR, _RAMP, _DEGREE = _d.indices(
