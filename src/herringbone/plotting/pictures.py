@@ -25,6 +25,7 @@ from herringbone.plotting.panels import (
     spectrum_panel,
     time_panel,
 )
+from herringbone.plotting.sensors import sensors
 from herringbone.plotting.style import (
     MARKER_COLOUR,
     draw_line,
@@ -197,6 +198,7 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
     "spectra": spectra,
     "torques": torques,
     "radiated_power": radiated_power,
+    "sensors": sensors,
 }
 
 
