@@ -239,7 +239,7 @@ def _spectral_lines(result: Result) -> Iterator[str]:
             channel = ".".join(line.column.split(".")[-2:])
             yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
                    f" {line.amplitude * factor:>8.3g} {unit} at {channel}")  # fmt: skip
-            label = ""
+            label = f"  (up to {_HIGHEST:.0f} Hz)" if label.strip() else ""
 
 
 def _radiation(result: Result) -> Iterator[str]:
