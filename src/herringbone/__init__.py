@@ -13,6 +13,7 @@ from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from herringbone.analysis.accuracy.comparison import compare
     from herringbone.analysis.figures.radiated_power import radiated_power
     from herringbone.core import HerringboneError, OutcomeKind
     from herringbone.core.declaring.roles import Role
@@ -40,6 +41,7 @@ __all__ = [
     "Scene",
     "System",
     "build_fmus",
+    "compare",
     "connections",
     "load",
     "radiated_power",
@@ -64,6 +66,7 @@ _WHERE = {
     "Role": "herringbone.core.declaring.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
+    "compare": "herringbone.analysis.accuracy.comparison",
     "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 
