@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from herringbone.running.exporting.export import build_fmus
     from herringbone.running.own_master import connections, start_values
     from herringbone.scenes import Scene
+    from herringbone.studies.api import sweep
+    from herringbone.studies.sweep import Sweep
 
     __version__: str
 
@@ -39,6 +41,7 @@ __all__ = [
     "Result",
     "Role",
     "Scene",
+    "Sweep",
     "System",
     "build_fmus",
     "compare",
@@ -47,6 +50,7 @@ __all__ = [
     "radiated_power",
     "run",
     "start_values",
+    "sweep",
 ]
 
 _WHERE = {
@@ -55,6 +59,8 @@ _WHERE = {
     "build_fmus": "herringbone.running.exporting.export",
     "connections": "herringbone.running.own_master",
     "start_values": "herringbone.running.own_master",
+    "Sweep": "herringbone.studies.sweep",
+    "sweep": "herringbone.studies.api",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

@@ -30,6 +30,7 @@ ALLOWED: dict[str, set[str]] = {
         "result",
         "plotting",
     },
+    "studies": {"core", "components", "cosim", "analysis", "scenes", "result", "running"},
     "benchmarks": {"core", "fmi", "gears", "cosim", "analysis", "scenes", "result", "running"},
     "plotting": {"core", "components", "gears", "analysis", "result"},
 }
