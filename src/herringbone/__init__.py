@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from herringbone.analysis.accuracy.comparison import compare
     from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.analysis.steady.set_points import Point
+    from herringbone.analysis.steady.solver import SteadySolver
+    from herringbone.analysis.steady.state import SteadyState
     from herringbone.core import HerringboneError, OutcomeKind
     from herringbone.core.declaring.roles import Role
     from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from herringbone.running.api import run
     from herringbone.running.exporting.export import build_fmus
     from herringbone.running.own_master import connections, start_values
+    from herringbone.running.steady import steady
     from herringbone.scenes import Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.sweep import Sweep
@@ -37,10 +41,13 @@ __all__ = [
     "HerringboneError",
     "Jacobi",
     "OutcomeKind",
+    "Point",
     "Predict",
     "Result",
     "Role",
     "Scene",
+    "SteadySolver",
+    "SteadyState",
     "Sweep",
     "System",
     "build_fmus",
@@ -50,6 +57,7 @@ __all__ = [
     "radiated_power",
     "run",
     "start_values",
+    "steady",
     "sweep",
 ]
 
@@ -73,6 +81,10 @@ _WHERE = {
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "compare": "herringbone.analysis.accuracy.comparison",
+    "Point": "herringbone.analysis.steady.set_points",
+    "SteadySolver": "herringbone.analysis.steady.solver",
+    "SteadyState": "herringbone.analysis.steady.state",
+    "steady": "herringbone.running.steady",
     "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 

@@ -17,6 +17,7 @@ from herringbone.commands import compare as compare_command
 from herringbone.commands import export as export_command
 from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
+from herringbone.commands import steady as steady_command
 from herringbone.commands import sweep as sweep_command
 from herringbone.commands import template as template_command
 from herringbone.commands.gear import command as gear_command
@@ -100,6 +101,8 @@ def _parser() -> argparse.ArgumentParser:
     compare_command.add_options(sub)
     sub = add("sweep", sweep_command.run, "run a system at many operating points")
     sweep_command.add_options(sub)
+    sub = add("steady", steady_command.run, "the periodic steady state at an operating point")
+    steady_command.add_options(sub)
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("stability", _stability, "predict the stable steps of algorithms")
     _comparison_options(sub)
