@@ -18,7 +18,16 @@ import numpy as np
 
 from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.components.shipped_pair import SHIPPED_PAIR
-from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
+from herringbone.core import (
+    Column,
+    Component,
+    Declaration,
+    Kernels,
+    ParameterError,
+    Text,
+    output,
+    parameter,
+)
 from herringbone.core.declaring.pair_values import PairValues
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
@@ -34,8 +43,10 @@ _d = Declaration(
     "bench_controller",
     "Set points of a test cycle, from a CSV of time, speed and torque",
     [
-        output("speed_setpoint", "rad/s", "for the drive motor", nodes=True),
-        output("torque_setpoint", "N.m", "for the load motor", nodes=True),
+        output("speed_setpoint", "rad/s", "for the drive motor", nodes=True,
+               quantity=Quantity.SPEED_SETPOINT),
+        output("torque_setpoint", "N.m", "for the load motor", nodes=True,
+               quantity=Quantity.TORQUE_SETPOINT),
         parameter(
             "gear_ratio",
             "1",
@@ -58,7 +69,7 @@ _d = Declaration(
     texts=[Text("cycle", "test cycle, CSV of time, speed, torque", "loaded.csv", _COLUMNS)],
     tables=1 + 3 * ROWS,
     roles=[Role.CONTROLLER],
-)
+)  # fmt: skip
 
 _SPEED, _TORQUE = _d.indices("speed_setpoint", "torque_setpoint")
 _RATIO, _SPEED_FACTOR, _TORQUE_FACTOR, _RAMP, _DEGREE = _d.indices(
@@ -140,6 +151,23 @@ def _of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:
     return {"gear_ratio": pair.gear_ratio}
 
 
+def _commanded(block: np.ndarray, quantity: Quantity, value: float) -> dict[str, float]:
+    """The factor with which a constant cycle has a value; see `Component.commanded`."""
+    first, factor = {
+        Quantity.SPEED_SETPOINT: (_SPEEDS, "speed_factor"),
+        Quantity.TORQUE_SETPOINT: (_TORQUES, "torque_factor"),
+    }[quantity]
+    column = block[first : first + int(block[_COUNT])]
+    lowest, highest = float(column.min()), float(column.max())
+    if lowest != highest or lowest == 0.0:
+        unit = _d.variable(factor.replace("factor", "setpoint")).unit
+        raise ParameterError(
+            f"the {quantity} of its cycle goes from {lowest:.6g} to {highest:.6g} {unit}; take a "
+            "cycle whose values are constant and not zero"
+        )
+    return {factor: value / lowest}
+
+
 BENCH_CONTROLLER = Component(
     _d,
     Kernels(_step, _rhs, _out),
@@ -148,4 +176,5 @@ BENCH_CONTROLLER = Component(
     breakpoints=_breakpoints,
     curve=2,  # a linear cycle times a linear ramp
     of_pair=_of_pair,
+    commanded=_commanded,
 )

@@ -60,7 +60,7 @@ def start_values(
     structure = system if isinstance(system, System) else load_system(system)[0]
     wanted = dict(values or {})
     if speed is not None or torque is not None:
-        wanted = {**_at_pinion(structure, speed, torque), **wanted}
+        wanted = {**at_pinion(structure, speed, torque), **wanted}
     found = prepared(system, scene, Wishes(values=wanted, gear=gear, housing=housing)).system
     return {str(part.name): dict(part.values) for part in found.parts}
 
@@ -86,7 +86,9 @@ def connections(system: str | Path | System) -> tuple[Link, ...]:
             part.close()
 
 
-def _at_pinion(system: System, speed: float | None, torque: float | None) -> dict[str, float]:
+def at_pinion(
+    system: System, speed: float | None = None, torque: float | None = None
+) -> dict[str, float]:
     """Speed and torque of the only gear pair, by path.
 
     Raises:

@@ -64,6 +64,8 @@ class Quantity(StrEnum):
 
     SPEED = "speed"
     TORQUE = "torque"
+    SPEED_SETPOINT = "speed set point"
+    TORQUE_SETPOINT = "torque set point"
     CARRYING_FLANK = "carrying flank"
     NUMBER_OF_TEETH = "number of teeth"
     GEAR_RATIO = "gear ratio"
