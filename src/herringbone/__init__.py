@@ -13,6 +13,7 @@ from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from herringbone.analysis.accuracy.comparison import compare
     from herringbone.analysis.figures.radiated_power import radiated_power
     from herringbone.analysis.steady.set_points import Point
     from herringbone.analysis.steady.solver import SteadySolver
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from herringbone.running.own_master import connections, start_values
     from herringbone.running.steady import steady
     from herringbone.scenes import Scene
+    from herringbone.studies.api import sweep
+    from herringbone.studies.sweep import Sweep
 
     __version__: str
 
@@ -45,14 +48,17 @@ __all__ = [
     "Scene",
     "SteadySolver",
     "SteadyState",
+    "Sweep",
     "System",
     "build_fmus",
+    "compare",
     "connections",
     "load",
     "radiated_power",
     "run",
     "start_values",
     "steady",
+    "sweep",
 ]
 
 _WHERE = {
@@ -61,6 +67,8 @@ _WHERE = {
     "build_fmus": "herringbone.running.exporting.export",
     "connections": "herringbone.running.own_master",
     "start_values": "herringbone.running.own_master",
+    "Sweep": "herringbone.studies.sweep",
+    "sweep": "herringbone.studies.api",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",
@@ -72,6 +80,7 @@ _WHERE = {
     "Role": "herringbone.core.declaring.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
+    "compare": "herringbone.analysis.accuracy.comparison",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",
     "SteadyState": "herringbone.analysis.steady.state",

@@ -64,8 +64,13 @@ def add_cells(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def add_start_values(sub: argparse.ArgumentParser) -> None:
-    """Declare start values, gears and housings; see `start_values`, `files_of_parts`."""
+def add_start_values(sub: argparse.ArgumentParser, varied: str = "") -> None:
+    """Declare start values, gears and housings; see `start_values`, `files_of_parts`.
+
+    Args:
+        sub: of the command.
+        varied: what the command takes besides single values, for its help.
+    """
     sub.add_argument(
         "--gear", action="append", default=[], metavar="[PATH=]FILE",
         help="gear file (.toml; .rexs, of several stages as FILE#STAGE) of the gear pair, or of "
@@ -80,8 +85,8 @@ def add_start_values(sub: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar=_SET,
-        help="start value in SI units, of an FMU in its own, instead of the scene's; may be "
-        "repeated",
+        help=f"start value in SI units, of an FMU in its own, instead of the scene's; {varied}may "
+        "be repeated",
     )
 
 

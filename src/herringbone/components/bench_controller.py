@@ -18,7 +18,16 @@ import numpy as np
 
 from herringbone.components.resources.loader import Refusal, ResourceLoader
 from herringbone.components.shipped_pair import SHIPPED_PAIR
-from herringbone.core import Column, Component, Declaration, Kernels, Text, output, parameter
+from herringbone.core import (
+    Column,
+    Component,
+    Declaration,
+    Kernels,
+    ParameterError,
+    Text,
+    output,
+    parameter,
+)
 from herringbone.core.declaring.pair_values import PairValues
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
@@ -142,6 +151,23 @@ def _of_pair(pair: PairValues, own: Mapping[str, float]) -> dict[str, float]:
     return {"gear_ratio": pair.gear_ratio}
 
 
+def _commanded(block: np.ndarray, quantity: Quantity, value: float) -> dict[str, float]:
+    """The factor with which a constant cycle has a value; see `Component.commanded`."""
+    first, factor = {
+        Quantity.SPEED_SETPOINT: (_SPEEDS, "speed_factor"),
+        Quantity.TORQUE_SETPOINT: (_TORQUES, "torque_factor"),
+    }[quantity]
+    column = block[first : first + int(block[_COUNT])]
+    lowest, highest = float(column.min()), float(column.max())
+    if lowest != highest or lowest == 0.0:
+        unit = _d.variable(factor.replace("factor", "setpoint")).unit
+        raise ParameterError(
+            f"the {quantity} of its cycle goes from {lowest:.6g} to {highest:.6g} {unit}; take a "
+            "cycle whose values are constant and not zero"
+        )
+    return {factor: value / lowest}
+
+
 BENCH_CONTROLLER = Component(
     _d,
     Kernels(_step, _rhs, _out),
@@ -150,4 +176,5 @@ BENCH_CONTROLLER = Component(
     breakpoints=_breakpoints,
     curve=2,  # a linear cycle times a linear ramp
     of_pair=_of_pair,
+    commanded=_commanded,
 )

@@ -28,7 +28,7 @@ _d = Declaration(
         state("integral", "rad", "integral of the speed error", nominal=0.1),
         state("speed_reference", "rad/s", "set point behind the ramp", nominal=100.0),
         *flange_body("flange"),
-        input_("speed_setpoint", "rad/s", "speed set point"),
+        input_("speed_setpoint", "rad/s", "speed set point", quantity=Quantity.SPEED_SETPOINT),
         output("torque", "N.m", "air-gap torque", quantity=Quantity.TORQUE),
         output("electrical_power", "W", "power from the supply, negative when braking",
                quantity=Quantity.ELECTRICAL_POWER),

@@ -86,7 +86,9 @@ def connections(system: str | Path | System) -> tuple[Link, ...]:
             part.close()
 
 
-def at_pinion(system: System, speed: float | None, torque: float | None) -> dict[str, float]:
+def at_pinion(
+    system: System, speed: float | None = None, torque: float | None = None
+) -> dict[str, float]:
     """Speed and torque of the only gear pair, by path.
 
     Raises:

@@ -25,7 +25,7 @@ _d = Declaration(
         state("angle", "rad", "angle of rotation", steady="rotating"),
         state("speed", "rad/s", "angular velocity", nominal=100.0),
         input_("flange.tau", "N.m", "torque on the source at the flange"),
-        input_("speed_setpoint", "rad/s", "speed set point"),
+        input_("speed_setpoint", "rad/s", "speed set point", quantity=Quantity.SPEED_SETPOINT),
         output("flange.phi", "rad", "angle of the flange, positive in driving direction",
                nodes=True, rate="flange.w"),
         output("flange.w", "rad/s", "angular velocity of the flange", nodes=True, rate="flange.a",

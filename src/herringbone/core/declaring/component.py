@@ -11,6 +11,7 @@ import numpy as np
 from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.hosting import Hosting
 from herringbone.core.declaring.pair_values import PairValues
+from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.paths import component_folder
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class Kernels(NamedTuple):
 
 
 OfPair = Callable[[PairValues, Mapping[str, float]], dict[str, float]]
+Commanded = Callable[[np.ndarray, Quantity, float], dict[str, float]]
 Freeze = Callable[["Instance", Callable[[np.ndarray], float]], None]
 
 
@@ -89,6 +91,9 @@ class Component:
             it, or none can.
         of_pair: parameters that follow from the gear pair that a part belongs to, by name; it is
             given the pair and the part's parameters, as they are without the pair. None: none do.
+        commanded: parameters by which an output that is a set point has a value for a whole run,
+            from a block with its tables; a torque is that at the pinion. It raises ParameterError
+            if none do. None: it has no such outputs.
         hosting: what it asks of its native FMU besides; None: nothing.
         curve: degree of the polynomials of time that the outputs of a source are between
             breakpoints, at most 2; None: they are not, or it is no source.
@@ -114,6 +119,7 @@ class Component:
     longest_step: Callable[[np.ndarray], float] = unbounded
     freeze: Freeze | None = None
     of_pair: OfPair | None = None
+    commanded: Commanded | None = None
     hosting: Hosting | None = None
     curve: int | None = None
     laws: "Laws | None" = None

@@ -142,10 +142,24 @@ class Text:
     header_count: int = 0
 
 
-def input_(name: str, unit: str, description: str, start: float = 0.0) -> Variable:
+def input_(
+    name: str,
+    unit: str,
+    description: str,
+    start: float = 0.0,
+    *,
+    quantity: Quantity | None = None,
+) -> Variable:
     """A continuous input; every input is a polynomial signal."""
     return Variable(
-        name, unit, Causality.INPUT, Variability.CONTINUOUS, description, start, nodes=True
+        name,
+        unit,
+        Causality.INPUT,
+        Variability.CONTINUOUS,
+        description,
+        start,
+        nodes=True,
+        quantity=quantity,
     )
 
 

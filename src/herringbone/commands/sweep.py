@@ -1,0 +1,155 @@
+"""The command `sweep`: a system at many operating points, from its options to the table."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tqdm import tqdm
+
+from herringbone.commands.options import (
+    add_cells,
+    add_replacements,
+    add_scene,
+    add_start_values,
+    assignments,
+    files_of_parts,
+    replacements,
+    start_values,
+)
+from herringbone.commands.output import check_writable, show
+from herringbone.core import ParameterError
+
+if TYPE_CHECKING:
+    from herringbone.studies.evaluators.transient import Transient
+    from herringbone.studies.sweep import Sweep
+
+_AXES = "START:STOP:COUNT or A,B,..."
+_SET = "INSTANCE.VARIABLE=VALUES"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    add_scene(sub)
+    sub.add_argument(
+        "--speed", metavar="VALUES", help=f"speed set point in r/min: {_AXES}, ends included"
+    )
+    sub.add_argument("--torque", metavar="VALUES", help=f"torque set point in N m: {_AXES}")
+    sub.add_argument(
+        "--study", type=Path, metavar="FILE",
+        help="grid, points or sample (TOML) in place of these; see 'herringbone template study'",
+    )  # fmt: skip
+    add_start_values(sub, varied=f"{_AXES} is varied; ")
+    sub.add_argument("--t-end", type=float, help="duration of each run in s")
+    sub.add_argument("--record-step", type=float, help="time between records in s")
+    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
+    sub.add_argument("--step", type=float, help="step size in s, of the coupling or the core")
+    sub.add_argument("--tolerance", type=float, help="relative error of each run")
+    sub.add_argument("--algorithm", help="run coupled with this algorithm, not fused")
+    add_replacements(sub)
+    add_cells(sub)
+    sub.add_argument(
+        "--column", action="append", default=[], metavar="OUTPUTS",
+        help="output or pattern with levels of its own, besides the groups; may be repeated",
+    )  # fmt: skip
+    sub.add_argument("--workers", type=int, help="processes; as many as are worth it if not given")
+    sub.add_argument("--series", action="store_true", help="keep rows over time of each point")
+    sub.add_argument("--parquet", action="store_true", help="also write table.parquet")
+    sub.add_argument(
+        "-o", "--output", type=Path,
+        help="folder; results/sweep-SYSTEM if not given. What it has of the study is kept",
+    )  # fmt: skip
+    sub.add_argument(
+        "--overwrite", action="store_true", help="replace the table of another study in the folder"
+    )
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compute what is missing, write the table, and say what came out.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or files cannot be written.
+    """
+    from herringbone.studies.api import sweep  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.studies.study_file import read_study_file  # noqa: PLC0415
+
+    folder = options.output or Path("results") / f"sweep-{Path(options.system).stem}"
+    check_writable(folder)
+    fixed, points = _points(options)
+    if options.study is not None:
+        if points:
+            raise ParameterError(f"--study has its points; drop --{next(iter(points))}")
+        points = {"study": read_study_file(options.study)}
+    files = files_of_parts(options)
+    with tqdm(unit=" points", disable=None) as bar:
+        found = sweep(
+            options.system,
+            **points,
+            scene=options.scene,
+            values=fixed,
+            gear=files.gear,
+            housing=files.housing,
+            replace_parts=replacements(options),
+            t_end=options.t_end,
+            record_step=options.record_step,
+            start=options.start,
+            evaluator=_evaluator(options),
+            workers=options.workers,
+            series=options.series,
+            parquet=options.parquet,
+            output=folder,
+            overwrite=options.overwrite,
+            told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
+            progress=bar.update,
+        )
+    files_told = [str(folder / file.name) for file in found.files]
+    show(_summary(found, files_told, as_json=options.json))
+    return 0
+
+
+def _points(options: argparse.Namespace) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Values that all points have, and those that are varied."""
+    from herringbone.studies.axes import axis  # noqa: PLC0415
+
+    fixed, varied = [], {}
+    for item in options.set:
+        ((name, text),) = assignments([item], "--set", _SET).items()
+        if len(found := axis(name, text)) > 1:
+            varied[name] = found
+        else:
+            fixed.append(item)
+    points: dict[str, Any] = {
+        name: axis(name, text)
+        for name in ("speed", "torque")
+        if (text := getattr(options, name)) is not None
+    }
+    if varied:
+        points["vary"] = varied
+    return start_values(fixed), points
+
+
+def _evaluator(options: argparse.Namespace) -> "Transient":
+    from herringbone.studies.evaluators.transient import Transient  # noqa: PLC0415
+
+    return Transient(
+        step=options.step,
+        tolerance=options.tolerance,
+        algorithm=options.algorithm,
+        columns=tuple(options.column),
+    )
+
+
+def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
+    outcomes = found.table["outcome"].value_counts().to_dict()
+    if as_json:
+        return json.dumps({"points": len(found.table), "outcomes": outcomes, "results": files})
+    told = ", ".join(f"{count} {kind}" for kind, count in outcomes.items())
+    lines = [f"{len(found.table)} points: {told}"]
+    bad = found.table[~found.table["outcome"].str.startswith("completed")]
+    for row in bad.head(3).itertuples(index=False):
+        lines.append(f"point {row.point}: {row.outcome}: {row.message}")
+    if len(bad) > 3:
+        lines.append(f"... and {len(bad) - 3} more; see the table")
+    return "\n".join([*lines, "Files: " + ", ".join(files)])

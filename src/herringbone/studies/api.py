@@ -1,0 +1,128 @@
+"""Sweeps: a system at many operating points."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+
+from herringbone.components.registry import component
+from herringbone.core import ParameterError
+from herringbone.core.places.files import as_texts, is_file
+from herringbone.cosim.structure.system import System
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.output.settings import key_of
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named, Wishes
+from herringbone.studies.axes import numbers
+from herringbone.studies.evaluators.evaluator import Base, Evaluator
+from herringbone.studies.evaluators.transient import Transient, with_known_values
+from herringbone.studies.keys import base_settings
+from herringbone.studies.set_points import addressed, commanded
+from herringbone.studies.study import SET_POINTS, SPEED, TORQUE, Study, Value, grid
+from herringbone.studies.sweep import Asked, Progress, Sweep, Told, computed
+from herringbone.studies.working.executors import Workers
+
+
+def sweep(
+    system: str | Path,
+    *,
+    speed: Sequence[float] = (),
+    torque: Sequence[float] = (),
+    vary: Mapping[str, Sequence[Value]] | None = None,
+    study: Study | None = None,
+    scene: str | Path | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    replace_parts: Mapping[str, str | Path] | None = None,
+    t_end: float | None = None,
+    record_step: float | None = None,
+    start: str | None = None,
+    evaluator: Evaluator | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    series: bool = False,
+    parquet: bool = False,
+    output: str | Path | None = None,
+    overwrite: bool = False,
+    told: Told = lambda ahead: None,
+    progress: Progress = lambda points: None,
+) -> Sweep:
+    """Evaluate a system at many operating points; see `docs/sweeps.md`.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, or .ssp file.
+        speed: values of the speed set point that the system declares [r/min].
+        torque: of the torque set point [N m].
+        vary: values by `instance.variable`, in SI units; all combinations are computed.
+        study: points, in place of `speed`, `torque` and `vary`.
+        scene, values, gear, housing, replace_parts, t_end, record_step, start: of all points, as in
+            `herringbone.run`.
+        evaluator: what computes a point; runs if not given.
+        executor: any of `concurrent.futures`, or such as that of `dask.distributed`; processes of
+            our own if not given.
+        workers: number of these; as many as there are cores, and as are worth it, if not given.
+        series: keep rows over time of each point; needs `output`.
+        parquet: write the table as Parquet as well.
+        output: folder; what it has of the study is not computed again. None: nothing is kept.
+        overwrite: the table of another study in the folder may be replaced.
+        told: called with a line on what is ahead.
+        progress: called with the number of points that were done since.
+
+    Returns:
+        The table, in memory. A point that failed is a row with its outcome.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    if study is None:
+        axes = {SPEED: numbers(SPEED, speed), TORQUE: numbers(TORQUE, torque)}
+        study = grid({**{n: v for n, v in axes.items() if v}, **(vary or {})})
+    elif len(speed) or len(torque) or vary:
+        raise ParameterError("study: it has its points; give no speed, torque or vary besides")
+    if series and output is None:
+        raise ParameterError("series: rows over time are kept in a folder; give output")
+    wishes = Wishes(t_end, record_step, start, as_texts(values), gear, housing, replace_parts or {})
+    named = str(scene) if scene is not None else None
+    base = Base(_found(system), named, wishes, str(Path.cwd()))
+    chosen = evaluator or Transient()
+    structure, folder = load_system(base.system)
+    known = with_known_values(structure, load_scene(folder, named), wishes)
+    units = {name: _unit(known, name) for name in study.names}
+    first = study.point(0)
+    commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
+    settings = base_settings(base, chosen)
+    asked = Asked(
+        key_of(settings),
+        settings,
+        units,
+        structure.name,
+        None if output is None else Path(output).absolute(),
+        series,
+        parquet,
+        overwrite,
+    )
+    cells = len(known.foreign_parts)
+    return computed(
+        study, base, chosen, asked, Workers(executor, workers, 1 + cells), told, progress
+    )
+
+
+def _found(system: str | Path) -> str:
+    """A system as processes in other folders find it."""
+    there = Path(system)
+    return str(there.absolute()) if there.is_dir() or is_file(there) else str(system)
+
+
+def _unit(system: System, name: str) -> str:
+    """Unit of a parameter; raises HerringboneError if there is none of that name."""
+    if name in SET_POINTS:
+        addressed(system, name)
+        return SET_POINTS[name]
+    part, variable = system.split(name)
+    declared = system.part(part).component
+    if declared is None:
+        return ""
+    declaration = component(declared).declaration
+    if any(text.name == variable for text in declaration.texts):
+        return ""
+    return declaration.variable(variable).unit

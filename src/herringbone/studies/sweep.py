@@ -1,0 +1,178 @@
+"""A study from its points to its table."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from herringbone.core.caching.keys import digest_of
+from herringbone.core.places.temporary import temporary_folder
+from herringbone.studies.evaluators.evaluator import Base, Evaluator
+from herringbone.studies.expected import Expected, check_room, expected
+from herringbone.studies.keys import Chain, chains_of
+from herringbone.studies.store import StudyFolder
+from herringbone.studies.study import Study
+from herringbone.studies.table import study_table
+from herringbone.studies.working.chain import Done, Job, run_chain
+from herringbone.studies.working.executors import Workers, Working, working
+
+_KNOWN = 16
+"""Chains that are there, from which the cost of the others is told."""
+_TRIED = 2
+"""Points of a chain that are computed to tell what the others cost."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a study besides its points.
+
+    Attributes:
+        output: folder; None: a temporary one, gone in the end.
+        series: keep rows over time of each point.
+        parquet: write the table as Parquet as well.
+        overwrite: the table of another study in the folder may be replaced.
+        given: units of the parameters.
+        name: what is computed, for people.
+        settings: digests of what all points have in common, by name.
+        key: of these.
+    """
+
+    key: str
+    settings: Mapping[str, str]
+    given: Mapping[str, str]
+    name: str
+    output: Path | None = None
+    series: bool = False
+    parquet: bool = False
+    overwrite: bool = False
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A study that was computed.
+
+    Attributes:
+        table: a row per point.
+        units: by column.
+        expected: what was expected of it before.
+        files: that were written.
+    """
+
+    table: pd.DataFrame
+    units: Mapping[str, str]
+    expected: Expected
+    files: tuple[Path, ...]
+
+
+Told = Callable[[str], None]
+"""Called before points are computed, with what is ahead."""
+Progress = Callable[[int], None]
+"""Called with the number of points that were done since."""
+
+
+def computed(
+    study: Study,
+    base: Base,
+    evaluator: Evaluator,
+    asked: Asked,
+    workers: Workers,
+    told: Told = lambda ahead: None,
+    progress: Progress = lambda points: None,
+) -> Sweep:
+    """Compute what is missing of a study, and make its table.
+
+    Args:
+        study, base, evaluator: what is computed.
+        asked: besides.
+        workers: where.
+        told: see `Told`.
+        progress: see `Progress`.
+
+    Raises:
+        HerringboneError: the folder holds another study, or cannot be written, or processes die.
+    """
+    with ExitStack() as stack:
+        place = asked.output or stack.enter_context(temporary_folder()) / "study"
+        store = stack.enter_context(closing(StudyFolder(place)))
+        store.claim(
+            {
+                "name": asked.name,
+                "settings": dict(asked.settings),
+                "parameters": list(study.names),
+                "points": len(study.points),
+                "values": digest_of(repr(study)),
+                "key": asked.key,
+            },
+            overwrite=asked.overwrite,
+        )
+        chains = chains_of(study, base, evaluator, asked.key)
+        missing = [chain for chain in chains if not store.has(chain, series=asked.series)]
+        progress(sum(len(c.keys) for c in chains) - sum(len(c.keys) for c in missing))
+
+        def job(numbers: Sequence[int]) -> Job:
+            points = tuple(study.point(number) for number in numbers)
+            return Job(asked.key, base, evaluator, points, asked.series)
+
+        known = [store.read(c) for c in chains if c not in set(missing)][:_KNOWN]
+        if not known:
+            missing, known = _measured(missing, job, store, progress)
+        ahead = expected(len(study.points), len(chains), sum(len(c.keys) for c in missing), known)
+        check_room(ahead, place)
+        where = stack.enter_context(working(workers, ahead.cpu, len(missing)))
+        told(f"{ahead} {where.told}")
+        _compute(missing, job, store, where, progress)
+        table = study_table(study, chains, store, asked.given)
+        files = table.write(place, parquet=asked.parquet) if asked.output else []
+        return Sweep(table.whole(), table.units, ahead, tuple(files))
+
+
+def _measured(
+    missing: list[Chain],
+    job: Callable[[Sequence[int]], Job],
+    store: StudyFolder,
+    progress: Progress,
+) -> tuple[list[Chain], list[Done]]:
+    """What points cost, from the second one on: the first one also loads what all need.
+
+    Returns:
+        What is still missing, and what was measured.
+    """
+    for _ in range(2):
+        numbers = missing[0].numbers
+        done = run_chain(job(numbers[:_TRIED]))
+        if len(numbers) <= _TRIED:
+            store.write(missing[0], done)
+            progress(len(numbers))
+            missing = missing[1:]
+        if not missing:
+            break
+    return missing, [done]
+
+
+def _compute(
+    missing: Sequence[Chain],
+    job: Callable[[Sequence[int]], Job],
+    store: StudyFolder,
+    where: Working,
+    progress: Progress,
+) -> None:
+    """Compute chains; a bounded number of them is under way at a time."""
+    waiting: dict[Future[Done], Chain] = {}
+    left = iter(missing)
+    try:
+        while True:
+            while len(waiting) < where.window and (chain := next(left, None)) is not None:
+                waiting[where.executor.submit(run_chain, job(chain.numbers))] = chain
+            if not waiting:
+                return
+            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                chain = waiting.pop(future)
+                store.write(chain, future.result())
+                progress(len(chain.keys))
+    except BaseException:
+        for future in waiting:
+            future.cancel()
+        raise

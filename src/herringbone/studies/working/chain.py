@@ -1,0 +1,113 @@
+"""What a worker does: a chain of points, each from the one before, and what they cost."""
+
+import os
+from collections import OrderedDict
+from contextlib import AbstractContextManager, chdir, nullcontext
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from herringbone.core import HerringboneError
+from herringbone.core.one_thread import one_blas_thread
+from herringbone.result.result import Result
+from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Evaluator
+from herringbone.studies.study import Point
+
+FAILED = "failed"
+"""Outcome of a point that could not begin."""
+_KEPT = 2
+"""Studies whose systems stay loaded in a process."""
+_opened: OrderedDict[str, Evaluation] = OrderedDict()
+
+
+@dataclass(frozen=True)
+class Job:
+    """A chain to be computed.
+
+    Attributes:
+        common: key of what its study has in common.
+        base, evaluator: of the study.
+        points: of the chain.
+        series: hand on rows over time.
+    """
+
+    common: str
+    base: Base
+    evaluator: Evaluator
+    points: tuple[Point, ...]
+    series: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the table tells of a point besides its parameters."""
+
+    outcome: str
+    message: str
+    figures: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Done:
+    """A chain that was computed.
+
+    Attributes:
+        rows: of its points.
+        units: of the figures.
+        cpu: time that it took, of this process and of those that it started [s].
+        series: by place in the chain.
+    """
+
+    rows: tuple[Row, ...]
+    units: dict[str, str]
+    cpu: float
+    series: dict[int, Result] = field(default_factory=dict)
+
+
+def run_chain(job: Job) -> Done:
+    """Compute a chain.
+
+    Raises:
+        HerringboneError: the system itself cannot be loaded.
+    """
+    before = cpu_seconds()
+    rows, series = [], {}
+    units: dict[str, str] = {}
+    near: Any = None
+    with one_blas_thread(), _in_folder(job.base.folder):
+        evaluate = _evaluation(job)
+        for place, point in enumerate(job.points):
+            found = _evaluated(evaluate, point, near, series=job.series)
+            near = near if found.state is None else found.state
+            figures = {name: float(figure.value) for name, figure in found.figures.items()}
+            rows.append(Row(found.outcome, found.message, figures))
+            units |= {name: figure.unit for name, figure in found.figures.items()}
+            if found.series is not None:
+                series[place] = found.series
+    return Done(tuple(rows), units, cpu_seconds() - before, series)
+
+
+def _evaluated(evaluate: Evaluation, point: Point, near: Any, *, series: bool) -> Evaluated:  # noqa: ANN401
+    try:
+        return evaluate(point, near, series=series)
+    except HerringboneError as error:
+        return Evaluated(FAILED, str(error))
+
+
+def _evaluation(job: Job) -> Evaluation:
+    """The evaluator, loaded once in a process."""
+    found = _opened.pop(job.common, None) or job.evaluator.opened(job.base)
+    _opened[job.common] = found
+    while len(_opened) > _KEPT:
+        _opened.popitem(last=False)
+    return found
+
+
+def _in_folder(folder: str) -> AbstractContextManager[None]:
+    """The folder of relative names; a change concerns all threads, so that none is made in vain."""
+    return nullcontext() if Path.cwd() == Path(folder) else chdir(folder)
+
+
+def cpu_seconds() -> float:
+    """CPU time of this process and of its children that have ended [s]."""
+    return sum(os.times()[:4])

@@ -1,0 +1,106 @@
+"""A study is computed once, in chains that survive whatever is killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.studies import Cheap
+
+import herringbone as hb
+from herringbone.core import HerringboneError
+from herringbone.studies.working import processes
+
+SPEEDS = [100.0 * k for k in range(1, 9)]
+TORQUES = [1.0, 2.0, 3.0]
+
+
+def swept(folder: Path | None = None, **options) -> hb.Sweep:
+    wanted = {"speed": SPEEDS, "torque": TORQUES, "workers": 1, "evaluator": Cheap(), **options}
+    return hb.sweep("gearbox", output=folder, **wanted)
+
+
+@pytest.fixture(scope="module")
+def serial():
+    return swept().table
+
+
+def test_chains_follow_from_the_study(serial):
+    x = serial["x"].to_numpy().reshape(3, 8)
+    assert np.array_equal(x[0], x[1])  # torque does nothing; each speed line begins anew
+    alone = swept(evaluator=Cheap(longest=1)).table["x"]
+    assert alone[0] == serial["x"][0]
+    assert alone[7] != serial["x"][7]  # from its neighbour it comes elsewhere
+
+
+def test_workers_do_not_change_a_bit_even_if_one_dies(tmp_path, serial):
+    swept(tmp_path / "one")
+    evaluator = Cheap(deadly=500.0, mark=str(tmp_path / "mark"))
+    assert swept(tmp_path / "two", workers=2, evaluator=evaluator).table.equals(serial)
+    assert (tmp_path / "mark").exists()
+    with ThreadPoolExecutor(2) as executor:
+        swept(tmp_path / "threads", executor=executor)
+    one = (tmp_path / "one" / "table.csv").read_bytes()
+    for other in ("two", "threads"):
+        assert (tmp_path / other / "table.csv").read_bytes() == one
+
+
+def test_only_what_is_missing_is_computed(tmp_path):
+    log = tmp_path / "log"
+    first = swept(tmp_path / "study", evaluator=Cheap(log=str(log)))
+    done = log.read_text()
+    file = next((tmp_path / "study" / "chains").iterdir())
+    file.write_text(file.read_text().replace("completed", "compleTed"))
+    second = swept(tmp_path / "study", evaluator=Cheap(log=str(log)))
+    assert second.table.equals(first.table)
+    again = log.read_text().removeprefix(done).split()
+    assert len(again) == 8  # a damaged chain
+    with pytest.raises(HerringboneError, match="another study"):
+        swept(tmp_path / "study", torque=[1.0], evaluator=Cheap(log=str(log)))
+    before = log.read_text()
+    swept(tmp_path / "study", torque=[1.0], evaluator=Cheap(log=str(log)), overwrite=True)
+    assert log.read_text() == before  # the same chain
+
+
+def test_a_failed_point_is_a_row():
+    table = swept(torque=[1.0], evaluator=Cheap(refused=300.0)).table
+    assert table["outcome"].tolist() == ["completed"] * 2 + ["failed"] + ["completed"] * 5
+    assert table["message"][2] == "300 is refused"
+    assert np.isnan(table["x"][2])
+    assert np.isfinite(table["x"][3])
+
+
+def test_a_chain_that_kills_all_workers_is_said(monkeypatch):
+    monkeypatch.setattr(processes, "_ATTEMPTS", 1)
+    with pytest.raises(HerringboneError, match="died of the same chain"):
+        swept(workers=2, evaluator=Cheap(deadly=500.0))
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from support.studies import Cheap
+import herringbone as hb
+hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0, 2.0, 3.0], workers=2,
+         evaluator=Cheap(seconds=0.05), output=Path(sys.argv[1]))
+"""
+
+
+def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    process = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT, str(tmp_path)], env=environment, start_new_session=True
+    )
+    while not list(tmp_path.glob("chains/*.json")):
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (tmp_path / "table.csv").exists()
+    found = swept(tmp_path, evaluator=Cheap(seconds=0.05))
+    assert found.table.equals(serial)
