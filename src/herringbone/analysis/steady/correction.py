@@ -51,7 +51,13 @@ def sloped(problem: Problem, samples: Samples) -> Bent:
 
 
 def correct_at_once(
-    problem: Problem, answer: Response, samples: Samples, off: np.ndarray, order: int
+    problem: Problem,
+    answer: Response,
+    samples: Samples,
+    off: np.ndarray,
+    order: int,
+    *,
+    whole: bool = False,
 ) -> np.ndarray:
     """Changes of the values (values, harmonics).
 
@@ -61,8 +67,10 @@ def correct_at_once(
         samples: of the laws.
         off: (values, harmonics) what the laws give and the motion lacks.
         order: highest harmonic that is solved for; others change by what is off.
+        whole: take the slopes of the laws over all arguments, not their tangents: many times the
+            cost, for laws whose tangents leave out too much.
     """
-    found = bent(problem, samples)
+    found = sloped(problem, samples) if whole else bent(problem, samples)
     step = off.copy()
     if not found.unknown.size:
         return step

@@ -1,13 +1,21 @@
 """Steady states of one system at many operating points."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.marched import marched
+from herringbone.analysis.steady.guess import (
+    SETTLING,
+    Guess,
+    begun,
+    settling,
+    several,
+    standing,
+)
 from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
@@ -20,12 +28,25 @@ AS_IT_IS = Point()
 _BLAS = ThreadpoolController()
 _PLACES, _MOST_PLACES = 64, 2048
 """Points in time of a mesh period: at first, and at most."""
-_SLOW, _SLOW_THIN, _SAME = 6, 1e-3, 1e-2
-"""Of a first guess: points in time for each mesh, alternation that is not in use, last change."""
 _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3
+_MOST_TIMES, _TRIED, _REPEATS = 4, 2, 0.1
+"""Of a march: most periods after which it may repeat, how many of these are tried, and a change
+over the alternation that is none."""
+
+
+class Found(NamedTuple):
+    """A motion, what is given of it, and its errors."""
+
+    motion: Motion
+    orbit: Orbit
+    errors: Accuracy
+
+    def good(self, tolerance: float) -> bool:
+        """True if it is a motion, with all harmonics that a tolerance needs."""
+        return self.orbit.converged and self.errors.worst <= tolerance
 
 
 class SteadySolver:
@@ -65,11 +86,10 @@ class SteadySolver:
         Raises:
             ParameterError: the system declares no such set point.
         """
-        with _BLAS.limit(limits=1, user_api="blas"):
+        with _BLAS.limit(limits=1, user_api="blas"), np.errstate(all="ignore"):
             structure = self._at(point)
-            motion = _motion(structure, point)
-            orbit, errors = self._resolved(structure, motion, near)
-        return SteadyState(structure, point, motion, orbit, errors, self.tolerance)
+            (motion, orbit, errors), notes = self._found(structure, _motion(structure, point), near)
+        return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -79,24 +99,52 @@ class SteadySolver:
             self._values = values
         return self._structure
 
-    def _resolved(
+    def _found(
         self, structure: Structure, motion: Motion, near: SteadyState | None
-    ) -> tuple[Orbit, Accuracy]:
-        """A motion with as many harmonics as the tolerance needs."""
-        meshes, problem = structure.meshes, structure.problem
-        per_mesh = _PLACES
-        if near is not None and near.meshes == meshes:
-            start, known = near.orbit.channels[: problem.values], near.orbit.response.orders
-            per_mesh = near.orbit.places // meshes
-        else:
-            start, known = _begun(structure, motion, per_mesh)
-        thin = _THIN * self.tolerance
+    ) -> tuple[Found, tuple[str, ...]]:
+        """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
+        if near is not None and near.meshes % structure.meshes == 0:
+            times = near.meshes // structure.meshes
+            values = near.orbit.channels[: structure.problem.values]
+            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+            found = self._resolved(structure, several(motion, times), times, guess)
+            if found.good(self.tolerance):
+                return found, _told(times)
+        still = standing(structure, motion)
+        guess = begun(structure, motion, still, _PLACES)
+        found = self._resolved(structure, motion, 1, guess)
+        if found.good(self.tolerance):
+            return found, ()
+        march = settling(structure, motion, still, _PLACES)
+        if march is None:
+            return found, ("a march from equilibrium fails, too",)
+        changes = [march.change(times) for times in range(1, _MOST_TIMES + 1)]
+        likely = sorted(range(1, _MOST_TIMES + 1), key=lambda m: (changes[m - 1] > _REPEATS, m))
+        for times in likely[:_TRIED]:
+            values = march.harmonics(times)
+            guess = Guess(values, np.arange(values.shape[1]), _PLACES)
+            tried = self._resolved(structure, several(motion, times), times, guess)
+            if tried.good(self.tolerance):
+                return tried, _told(times)
+        least = min(changes)
+        return found, (
+            f"no periodic motion was found: after {SETTLING:g} s from equilibrium a march still "
+            f"changes by {100.0 * least:.2g} % from one period to the next ones",
+        )
+
+    def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
+        """A motion over some periods with as many harmonics as the tolerance needs."""
+        meshes, problem = times * structure.meshes, structure.problem
+        per_mesh, thin = guess.per_mesh, _THIN * self.tolerance
+        start, known = guess.values, guess.orders
         while True:
             period = Period(per_mesh // 4, meshes * per_mesh, meshes, thin)
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
+            if not orbit.converged:
+                return Found(motion, orbit, Accuracy({}, {}, {}))
             errors = accuracy(structure, period, motion, orbit)
-            if not orbit.converged or errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
-                return orbit, errors
+            if errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
+                return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
             if errors.by_thinning:
                 thin *= _THINNER * self.tolerance / errors.worst
@@ -104,23 +152,8 @@ class SteadySolver:
                 per_mesh *= 2
 
 
-def _begun(structure: Structure, motion: Motion, per_mesh: int) -> tuple[np.ndarray, np.ndarray]:
-    """A first guess of the values' harmonics, and their orders."""
-    meshes, problem = structure.meshes, structure.problem
-    still = Balance(problem, Period(0, 1), motion)
-    found = still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
-    if meshes == 1:
-        return found.channels[: problem.values], found.response.orders
-    places = _slow_places(meshes)
-    values = marched(structure, motion, found, 1, places)
-    slow = Balance(problem, Period(0, places, meshes, _SLOW_THIN), motion)
-    found = slow.solve(values, np.arange(values.shape[1]), _SAME)
-    return found.channels[: problem.values], found.response.orders
-
-
-def _slow_places(meshes: int) -> int:
-    """Points in time of a period that meet the mesh at ever new phases."""
-    return 1 << int(np.ceil(np.log2(_SLOW * meshes)))
+def _told(times: int) -> tuple[str, ...]:
+    return (f"subharmonic: it repeats after {times} periods",) if times > 1 else ()
 
 
 def _motion(structure: Structure, point: Point) -> Motion:

@@ -73,13 +73,18 @@ class SteadyState(Facts):
     @property
     def meshes(self) -> int:
         """Mesh periods of the first gear pair in the period."""
-        return self.structure.meshes
+        return round(self.motion.turn / self.structure.turn) * self.structure.meshes
 
     @property
     def speed(self) -> float:
         """Mean speed of the first pinion [rad/s]."""
-        turned = 2.0 * np.pi * self.structure.turns_of_pinion / self.period
+        turned = 2.0 * np.pi * self._turns / self.period
         return float(np.copysign(turned, self.orbit.response.speed))
+
+    @property
+    def _turns(self) -> float:
+        """Turns of the first pinion in the period."""
+        return self.structure.turns_of_pinion * self.meshes / self.structure.meshes
 
     @property
     def drift(self) -> float:
@@ -119,7 +124,7 @@ class SteadyState(Facts):
     @property
     def orders(self) -> np.ndarray:
         """Periods per turn of the first pinion, of all harmonics."""
-        return self.orbit.response.orders / self.structure.turns_of_pinion
+        return self.orbit.response.orders / self._turns
 
     @property
     def mesh_orders(self) -> np.ndarray:
