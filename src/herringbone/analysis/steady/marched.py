@@ -116,7 +116,8 @@ def marched(
     step = gap / np.ceil(gap / _LONGEST)
     times = structure.late + (np.arange(kept * places) + (periods - kept) * places) * gap
     end = structure.late + periods * places * gap
-    found, angle = [], 0.0
+    found: list[np.ndarray] = []
+    angle = 0.0
     for part in run.piece(structure.late, end, step, times):
         if not found:
             angle = float(part.held[0, 2 * condensed.modes.rates.size])
