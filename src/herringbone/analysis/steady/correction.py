@@ -40,12 +40,21 @@ def bent(problem: Problem, samples: Samples) -> Bent:
     return Bent(unknown, place[problem.owner], bends, problem.along, problem.along_angle)
 
 
-def sloped(problem: Problem, samples: Samples) -> Bent:
-    """All stiff values, with their whole slopes over all arguments, by differences."""
-    stiff, found = problem.stiff, slopes(problem, samples.z)[:, problem.stiff]
+def sloped(problem: Problem, samples: Samples, *, every: bool = False) -> Bent:
+    """Stiff values, with their whole slopes over all arguments, by differences.
+
+    Args:
+        problem: linear part and laws.
+        samples: of the laws.
+        every: all values that have slopes, stiff or not.
+    """
+    found = slopes(problem, samples.z)
+    changing = np.flatnonzero(np.abs(found).max(axis=(0, 2)))
+    unknown = changing if every else problem.stiff
+    found = found[:, unknown]
     value, argument = np.nonzero(np.abs(found).max(axis=0))
     return Bent(
-        stiff, value, found[:, value, argument], problem.arguments[argument],
+        unknown, value, found[:, value, argument], problem.arguments[argument],
         problem.of_angle[argument],
     )  # fmt: skip
 

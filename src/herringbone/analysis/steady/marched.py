@@ -19,6 +19,8 @@ from herringbone.analysis.twin.condensed.system import Condensed
 _DEGREE, _CLOSE = 3, 1e-3
 _LONGEST = 100e-6
 """Longest base step [s]."""
+_MOST_TIMES = 4
+"""Most periods after which a march may repeat."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,20 @@ class March(NamedTuple):
         earlier = self.values[:, size - self.places - shift : size - shift]
         spread = np.linalg.norm(last - last.mean(axis=1, keepdims=True))
         return float(np.linalg.norm(last - earlier) / spread) if spread else 0.0
+
+    def likely(self, least: float) -> list[int]:
+        """Numbers of periods after which it may repeat, the likeliest first.
+
+        Args:
+            least: change that counts as none.
+        """
+        changes = {times: self.change(times) for times in range(1, _MOST_TIMES + 1)}
+        return sorted(changes, key=lambda times: (changes[times] > least, times))
+
+    @property
+    def least(self) -> float:
+        """The smallest change from one period to a later one."""
+        return min(self.change(times) for times in range(1, _MOST_TIMES + 1))
 
 
 def marched(

@@ -1,6 +1,6 @@
 """Steady states of one system at many operating points."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +8,8 @@ from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.floquet import multipliers
 from herringbone.analysis.steady.guess import (
     SETTLING,
     Guess,
@@ -32,9 +34,11 @@ _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3
-_MOST_TIMES, _TRIED, _REPEATS = 4, 2, 0.1
-"""Of a march: most periods after which it may repeat, how many of these are tried, and a change
-over the alternation that is none."""
+_TRIED, _REPEATS = 2, 0.1
+"""Of a march: how many periods of repetition are tried; a change over the alternation that is none.
+"""
+_STEPS, _NEUTRAL = 64, 1e-3
+"""Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
 
 
 class Found(NamedTuple):
@@ -47,6 +51,14 @@ class Found(NamedTuple):
     def good(self, tolerance: float) -> bool:
         """True if it is a motion, with all harmonics that a tolerance needs."""
         return self.orbit.converged and self.errors.worst <= tolerance
+
+    def grows(self, structure: Structure, times: int) -> bool:
+        """True if small deviations grow; of many meshes that is not asked for."""
+        if structure.meshes > 1:
+            return False
+        steps = max(_STEPS, self.orbit.places // (2 * times)) * times
+        largest = multipliers(structure.problem, self.motion, self.orbit, steps).largest
+        return largest > 1.0 + _NEUTRAL
 
 
 class SteadySolver:
@@ -103,34 +115,39 @@ class SteadySolver:
         self, structure: Structure, motion: Motion, near: SteadyState | None
     ) -> tuple[Found, tuple[str, ...]]:
         """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
-        if near is not None and near.meshes % structure.meshes == 0:
-            times = near.meshes // structure.meshes
-            values = near.orbit.channels[: structure.problem.values]
-            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+        unstable = None
+        for times, guess in self._guesses(structure, motion, near):
             found = self._resolved(structure, several(motion, times), times, guess)
             if found.good(self.tolerance):
-                return found, _told(times)
+                if not (bending_parts(structure, found.orbit) and found.grows(structure, times)):
+                    return found, _told(times)
+                unstable = unstable or found
         still = standing(structure, motion)
-        guess = begun(structure, motion, still, _PLACES)
-        found = self._resolved(structure, motion, 1, guess)
-        if found.good(self.tolerance):
-            return found, ()
         march = settling(structure, motion, still, _PLACES)
         if march is None:
-            return found, ("a march from equilibrium fails, too",)
-        changes = [march.change(times) for times in range(1, _MOST_TIMES + 1)]
-        likely = sorted(range(1, _MOST_TIMES + 1), key=lambda m: (changes[m - 1] > _REPEATS, m))
-        for times in likely[:_TRIED]:
+            return unstable or found, (*_grows(unstable), "a march from equilibrium fails, too")
+        for times in march.likely(_REPEATS)[:_TRIED]:
             values = march.harmonics(times)
             guess = Guess(values, np.arange(values.shape[1]), _PLACES)
             tried = self._resolved(structure, several(motion, times), times, guess)
-            if tried.good(self.tolerance):
+            if tried.good(self.tolerance) and not tried.grows(structure, times):
                 return tried, _told(times)
-        least = min(changes)
-        return found, (
-            f"no periodic motion was found: after {SETTLING:g} s from equilibrium a march still "
-            f"changes by {100.0 * least:.2g} % from one period to the next ones",
+        return unstable or found, (
+            *_grows(unstable),
+            f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
+            f"changes by {100.0 * march.least:.2g} % from one period to later ones",
         )
+
+    @staticmethod
+    def _guesses(
+        structure: Structure, motion: Motion, near: SteadyState | None
+    ) -> Iterator[tuple[int, Guess]]:
+        """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
+        if near is not None and near.meshes % structure.meshes == 0:
+            values = near.orbit.channels[: structure.problem.values]
+            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+            yield near.meshes // structure.meshes, guess
+        yield 1, begun(structure, motion, standing(structure, motion), _PLACES)
 
     def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
         """A motion over some periods with as many harmonics as the tolerance needs."""
@@ -150,6 +167,11 @@ class SteadySolver:
                 thin *= _THINNER * self.tolerance / errors.worst
             else:
                 per_mesh *= 2
+
+
+def _grows(unstable: Found | None) -> tuple[str, ...]:
+    """What is said of a motion that is not stable."""
+    return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
 
 
 def _told(times: int) -> tuple[str, ...]:
