@@ -37,7 +37,7 @@ _THINNER = 0.3
 _TRIED, _REPEATS = 2, 0.1
 """Of a march: how many periods of repetition are tried; a change over the alternation that is none.
 """
-_STEPS, _NEUTRAL = 64, 1e-3
+_STEPS, _NEUTRAL = 256, 1e-3
 """Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
 
 

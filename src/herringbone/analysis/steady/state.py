@@ -22,8 +22,8 @@ from herringbone.core.names import matches_any
 
 _R_MIN = 30.0 / np.pi
 _BLAS = ThreadpoolController()
-_STEPS = 32
-"""Of a mesh period, at least, in which deviations are followed."""
+_STEPS, _BENT_STEPS = 32, 256
+"""Of a mesh period, at least, in which deviations are followed; where laws bend."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -112,7 +112,8 @@ class SteadyState(Facts):
 
         Takes some ten milliseconds for each mesh of the period.
         """
-        steps = max(_STEPS, self.orbit.places // self.meshes // 2) * self.meshes
+        per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
+        steps = max(per_mesh, self.orbit.places // self.meshes // 2) * self.meshes
         with _BLAS.limit(limits=1, user_api="blas"):
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 
