@@ -13,7 +13,11 @@ from logging import NullHandler, getLogger
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from herringbone.analysis.accuracy.comparison import compare
     from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.analysis.steady.set_points import Point
+    from herringbone.analysis.steady.solver import SteadySolver
+    from herringbone.analysis.steady.state import SteadyState
     from herringbone.core import HerringboneError, OutcomeKind
     from herringbone.core.declaring.roles import Role
     from herringbone.cosim.algorithms import LI, FixedPoint, GaussSeidel, Jacobi, Predict
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
     from herringbone.running.api import run
     from herringbone.running.exporting.export import build_fmus
     from herringbone.running.own_master import connections, start_values
+    from herringbone.running.steady import steady
     from herringbone.scenes import Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.sweep import Sweep
@@ -36,18 +41,23 @@ __all__ = [
     "HerringboneError",
     "Jacobi",
     "OutcomeKind",
+    "Point",
     "Predict",
     "Result",
     "Role",
     "Scene",
+    "SteadySolver",
+    "SteadyState",
     "Sweep",
     "System",
     "build_fmus",
+    "compare",
     "connections",
     "load",
     "radiated_power",
     "run",
     "start_values",
+    "steady",
     "sweep",
 ]
 
@@ -70,6 +80,11 @@ _WHERE = {
     "Role": "herringbone.core.declaring.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
+    "compare": "herringbone.analysis.accuracy.comparison",
+    "Point": "herringbone.analysis.steady.set_points",
+    "SteadySolver": "herringbone.analysis.steady.solver",
+    "SteadyState": "herringbone.analysis.steady.state",
+    "steady": "herringbone.running.steady",
     "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 

@@ -22,6 +22,7 @@ SCRIPT = """
 import faulthandler, signal, sys
 from pathlib import Path
 faulthandler.enable()
+signal.signal(signal.SIGINT, signal.default_int_handler)  # shells let background jobs ignore it
 from herringbone.cosim.fmu.instance import new_part
 files, close, steps, end = sys.argv[1].split(","), sys.argv[2], int(sys.argv[3]), sys.argv[4]
 parts = [new_part(f"part{k}", Path(file)) for k, file in enumerate(files)]

@@ -111,6 +111,7 @@ def make_result(
         "wall_s": 0.5,
         "anatomy": anatomy(structure),
         "parameters": {f"{gear}.pinion.number_of_teeth": 27.0},
+        "sensors": structure.sensors,
         "resources": {f"{housing}.{name}": f"{name}.csv" for name in ("modes", "shapes")},
     } | info
     outcome = Outcome(OutcomeKind.COMPLETED, t_end)

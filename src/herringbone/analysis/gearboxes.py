@@ -48,6 +48,7 @@ def _without(result: Result, dropped: Iterable[str], scope: str) -> Result:
         result.info,
         system=".".join(filter(None, (result.info.system, scope))),
         anatomy=result.info.anatomy.without(dropped),
+        sensors={k: v for k, v in result.info.sensors.items() if v.part not in set(dropped)},
     )
     shown = {name: columns for name, columns in channels.items() if columns}
     return replace(result, info=info, channels=shown)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from herringbone.analysis.asked import by_half, shaft_side
 from herringbone.analysis.figures.radiated_power import power_inputs
+from herringbone.analysis.figures.sensors import sensor_figures
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, SIDES, Quantity, Role
 from herringbone.result.result import Result
@@ -57,6 +58,8 @@ def _missing(result: Result) -> Iterator[tuple[str, str]]:
                 f"{', '.join(parts)}: recorded nothing of that" if parts else _nobody(result, role)
             )
             yield what, why
+    for name, why in sensor_figures(result)[1].items() if result.info.sensors else ():
+        yield f"sensor {name}", why
     for part in result.parts_with(Role.HOUSING) or ("",):
         try:
             power_inputs(result, part=part)

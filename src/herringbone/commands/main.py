@@ -13,9 +13,11 @@ import herringbone
 from herringbone.commands import bench as bench_command
 from herringbone.commands import build as build_command
 from herringbone.commands import check as check_command
+from herringbone.commands import compare as compare_command
 from herringbone.commands import export as export_command
 from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
+from herringbone.commands import steady as steady_command
 from herringbone.commands import sweep as sweep_command
 from herringbone.commands import template as template_command
 from herringbone.commands.gear import command as gear_command
@@ -95,8 +97,12 @@ def _parser() -> argparse.ArgumentParser:
     sub = add("check", check_command.run, "check an FMU: is it sound, and what is it")
     check_command.add_options(sub)
     run_command.add_options(add("run", _run, "run a system"))
+    sub = add("compare", compare_command.run, "compare two results folders")
+    compare_command.add_options(sub)
     sub = add("sweep", sweep_command.run, "run a system at many operating points")
     sweep_command.add_options(sub)
+    sub = add("steady", steady_command.run, "the periodic steady state at an operating point")
+    steady_command.add_options(sub)
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("stability", _stability, "predict the stable steps of algorithms")
     _comparison_options(sub)

@@ -3,7 +3,7 @@
 from herringbone.core.declaring.component import Component, Kernels
 from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.hosting import Experiment, Hosting, RunsOn
-from herringbone.core.declaring.laws import Laws
+from herringbone.core.declaring.laws import Laws, common_period
 from herringbone.core.declaring.variable import (
     Column,
     StateVector,
@@ -50,6 +50,7 @@ __all__ = [
     "StructureError",
     "Text",
     "Variable",
+    "common_period",
     "input_",
     "local",
     "one_line",

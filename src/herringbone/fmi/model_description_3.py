@@ -37,6 +37,7 @@ _CAPABILITIES: Final[dict[str, Any]] = {
 _STEPS: Final[dict[str, Any]] = {
     "canHandleVariableCommunicationStepSize": "true",
     "maxOutputDerivativeOrder": "1",
+    "providesIntermediateUpdate": "true",
 }
 
 
@@ -127,6 +128,8 @@ def _float64(reference: int, variable: Variable, extent: int, *, settled: bool =
         unit=variable.unit,
         **sizes(variable),
     )
+    if extent == 1 and variable.causality in {Causality.INPUT, Causality.OUTPUT}:
+        element.set("intermediateUpdate", "true")
     if variable.causality is not Causality.INPUT:
         element.set("initial", initial(variable, settled=settled))
     if element.get("initial") != "calculated":

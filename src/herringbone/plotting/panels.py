@@ -17,7 +17,7 @@ from herringbone.result.result import TIME, Result
 SHOWN_PERIODS = 6
 """Mesh periods that a close-up shows."""
 HIGHEST = 3000.0
-"""End of the spectra [Hz]."""
+"""End of the spectra if nothing else is asked for [Hz]."""
 DECADES = 3.5
 """Range of amplitudes in a spectrum."""
 _CLOSE_UP_SHARE, _CLOSE_UP_ROWS = 0.05, 100
@@ -26,6 +26,9 @@ _PADDING = 2
 _FEW_BINS = 60
 """A spectrum of fewer independent frequencies shows them as points."""
 _LARGE = 1e6
+_WIDE = 2.2
+_SAME = 0.01
+"""Difference of spectra, over their largest line, that cannot be seen."""
 
 
 def headline(result: Result, what: str) -> str:
@@ -147,11 +150,13 @@ def spectrum_panel(
     *,
     factor: float = 1.0,
     unit: str = "",
+    highest: float = HIGHEST,
 ) -> None:
-    """Amplitude spectra of the steady part, 0 to 3 kHz, with the mesh orders marked.
+    """Amplitude spectra of the steady part, with the mesh orders marked.
 
-    The label of the abscissa tells the resolution; if it is coarse, points tell it, too: what lies
-    between them is interpolated.
+    The label of the abscissa tells the resolution, and where the spectrum is cut; if the resolution
+    is coarse, points tell it, too: what lies between them is interpolated. Left halves are drawn
+    wider than right ones, which would cover them; where both coincide, a line says so.
 
     Args:
         axes: to draw in.
@@ -160,6 +165,7 @@ def spectrum_panel(
         label: of the ordinate, without unit.
         factor: multiplies the SI value.
         unit: of the ordinate.
+        highest: end of the spectra [Hz].
     """
     part = steady_part(result)
     axes.set_xlabel("frequency [Hz]")
@@ -171,17 +177,23 @@ def spectrum_panel(
         return
     signals = result.data[list(columns.values())].to_numpy()[part.rows] * factor
     spectrum = amplitude_spectrum(signals, part.sample_step, padding=_PADDING)
-    highest = min(HIGHEST, float(spectrum.frequency[-1]))
+    recorded = float(spectrum.frequency[-1])
+    highest = min(highest, recorded)
     shown = spectrum.frequency <= highest
     frequency, amplitude = spectrum.frequency[shown], spectrum.amplitude[shown]
-    axes.set_xlabel(f"frequency (resolution {spectrum.resolution:.3g} Hz) [Hz]")
+    cut = f", cut at {highest:.0f} of {recorded:.0f} Hz" if highest < recorded else ""
+    axes.set_xlabel(f"frequency (resolution {spectrum.resolution:.3g} Hz{cut}) [Hz]")
     coarse = highest / spectrum.resolution < _FEW_BINS
     marks = {"marker": "o", "markersize": 3.0, "markevery": _PADDING} if coarse else {}
     top = float(amplitude.max())
     for i, name in enumerate(columns):
         height = np.maximum(amplitude[:, i], top * 10.0 ** -(DECADES + 1.0))
-        style = {**HALF_STYLE.get(name, {}), **marks}
+        wide = {"linewidth": _WIDE} if name.endswith("_left") else {}
+        style = {**HALF_STYLE.get(name, {}), **marks, **wide}
         draw_line(axes, frequency, height, label=half_name(name), **style)
+    if same := _coinciding(list(columns), amplitude):
+        axes.text(0.99, 0.97, f"left and right coincide: {', '.join(same)}", ha="right", va="top",
+                  transform=axes.transAxes, fontsize=7.5, color=MARKER_COLOUR)  # fmt: skip
     if top > 0.0:
         axes.set_yscale("log")
         axes.set_ylim(top * 10.0**-DECADES, top * 1.6)
@@ -190,6 +202,20 @@ def spectrum_panel(
         axes.text(1.0, 1.0, "speed not steady: no mesh orders", ha="right", va="bottom",
                   transform=axes.transAxes, fontsize=8, color=MARKER_COLOUR)  # fmt: skip
     mark_orders(axes, run_mesh_frequency(result), highest)
+
+
+def _coinciding(names: Sequence[str], amplitude: np.ndarray) -> list[str]:
+    """Gears or meshes whose left and right spectra, columns of (k, m), differ by less than 1 %."""
+    place = {name: i for i, name in enumerate(names)}
+    found = []
+    for name, i in place.items():
+        other = place.get(f"{name.removesuffix('_left')}_right")
+        if not name.endswith("_left") or other is None:
+            continue
+        left, right = amplitude[:, i], amplitude[:, other]
+        if np.abs(left - right).max() <= _SAME * max(left.max(), right.max()):
+            found.append(half_name(name).removesuffix(" left").removesuffix("_left"))
+    return found
 
 
 def mark_orders(axes: Axes, frequency: float | None, highest: float) -> None:

@@ -18,6 +18,7 @@ from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.plotting.overview import overview
 from herringbone.plotting.panels import (
     DECADES,
+    HIGHEST,
     close_up,
     headline,
     mark_orders,
@@ -25,6 +26,8 @@ from herringbone.plotting.panels import (
     spectrum_panel,
     time_panel,
 )
+from herringbone.plotting.runup import run_up
+from herringbone.plotting.sensors import sensors
 from herringbone.plotting.style import (
     MARKER_COLOUR,
     draw_line,
@@ -88,10 +91,14 @@ def seat_velocities(result: Result) -> Figure:
 
 
 @styled
-def spectra(result: Result) -> Figure:
-    """Amplitude spectra 0 to 3 kHz of bearing forces [N] and seat velocities [mm/s].
+def spectra(result: Result, highest: float = HIGHEST) -> Figure:
+    """Amplitude spectra of bearing forces [N] and seat velocities [mm/s].
 
     Mesh orders are marked when the speed is steady.
+
+    Args:
+        result: of a run.
+        highest: end of the spectra [Hz].
 
     Raises:
         ParameterError: the system records neither.
@@ -119,7 +126,7 @@ def spectra(result: Result) -> Figure:
         for axes in axes_row[len(row) :]:
             axes.set_visible(False)
         for axes, (label, columns, factor, unit) in zip(axes_row, row, strict=False):
-            spectrum_panel(axes, result, columns, label, factor=factor, unit=unit)
+            spectrum_panel(axes, result, columns, label, factor=factor, unit=unit, highest=highest)
     figure_legend(figure, *panels.flat)
     return figure
 
@@ -197,7 +204,12 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
     "spectra": spectra,
     "torques": torques,
     "radiated_power": radiated_power,
+    "sensors": sensors,
 }
+
+
+_OF_SOME: dict[str, Callable[[Result], Figure]] = {"run_up": run_up}
+"""Pictures of runs of a kind: those whose speed changes."""
 
 
 def write_pictures(result: Result, folder: str | Path) -> list[Path]:
@@ -217,7 +229,7 @@ def write_pictures(result: Result, folder: str | Path) -> list[Path]:
     if len(result.data) < 2:
         return files
     for box, seen in by_gearbox(result).items():
-        for name, draw in {"overview": overview, **PICTURES}.items():
+        for name, draw in {"overview": overview, **PICTURES, **_OF_SOME}.items():
             try:
                 figure = draw(seen)
             except ParameterError:

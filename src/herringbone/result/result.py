@@ -19,6 +19,7 @@ from herringbone.core.energy_report import Diagnosis, EnergyReport
 from herringbone.core.names import matches_any, shown
 from herringbone.core.places.files import replacing
 from herringbone.core.places.part_path import PartPath, endings
+from herringbone.core.sensor_spec import SensorSpec
 from herringbone.result.budget import BudgetRow
 from herringbone.result.tables import pieces_of, write_csv, write_parquet
 from herringbone.result.verification import Verification
@@ -55,6 +56,7 @@ class RunInfo:
         parameters: all real parameters by `instance.variable`, SI units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
         anatomy: what the parts are for, and what is joined to what; not in the summary.
+        sensors: those of the system, by name; not in the summary.
     """
 
     system: str
@@ -80,6 +82,7 @@ class RunInfo:
     parameters: Mapping[str, float] = field(default_factory=dict, repr=False)
     resources: Mapping[str, str] = field(default_factory=dict, repr=False)
     anatomy: Anatomy = field(default_factory=Anatomy, repr=False)
+    sensors: Mapping[str, SensorSpec] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True, repr=False)
@@ -227,7 +230,7 @@ class Result(Facts):
     def summary(self) -> dict[str, Any]:
         """The JSON summary of the run."""
         info = asdict(replace(self.info, anatomy=Anatomy()))
-        del info["parameters"], info["resources"], info["anatomy"]
+        del info["parameters"], info["resources"], info["anatomy"], info["sensors"]
         for name in ("steps", "slow", "core"):
             if not info[name]:
                 del info[name]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from herringbone.analysis.figures.sensors import check_sensors
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
@@ -91,6 +92,7 @@ def prepared(
     data, fmus = split_housings(housings)
     structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
     structure = with_housing_data(structure, data).with_values(chosen.values)
+    check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)
     structure = balanced(structure)
     lines = unbalanced(structure)

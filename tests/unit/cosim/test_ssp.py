@@ -411,8 +411,8 @@ def test_nested_systems_stay_so_and_are_wired_alike(system, fmus, tmp_path):
             )
             came[end, c.get("endConnector")] = start, c.get("startConnector")
         places = [corners(e.find("{*}ElementGeometry")) for e in box.find("{*}Elements")]
-        x1, y1, x2, y2 = corners(box.find("{*}SystemGeometry"))
-        assert all(x1 < a < c < x2 and y1 < b < d < y2 for a, b, c, d in places)
+        assert box.find("{*}SystemGeometry") is None  # OMSimulator 3.0 refuses the file for it
+        assert all(0.0 < a < c and 0.0 < b < d for a, b, c, d in places)
         for one, other in combinations(places, 2):
             assert (
                 one[0] >= other[2] or other[0] >= one[2] or one[1] >= other[3] or other[1] >= one[3]

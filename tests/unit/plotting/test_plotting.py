@@ -67,9 +67,11 @@ def test_seat_velocities_are_in_millimetres_per_second(rig):
 
 def test_spectra_mark_the_mesh_orders(rig):
     axes = panels(spectra(rig))[0]
-    marks = [text.get_text() for text in axes.texts]
+    same, *texts = axes.texts  # synthetic halves differ by their phases
+    assert same.get_text() == "left and right coincide: pinion, wheel"
+    marks = [text.get_text() for text in texts]
     assert marks == ["$f_m$", *(f"${k} f_m$" for k in range(2, 7))]
-    places = [text.get_position()[0] for text in axes.texts]
+    places = [text.get_position()[0] for text in texts]
     assert places == pytest.approx([450.0 * k for k in range(1, 7)], rel=1e-4)
     assert axes.lines[0].get_ydata().max() == pytest.approx(12.0, rel=0.05)
 
@@ -90,12 +92,27 @@ def test_spectra_tell_their_resolution(rig):
     """160 ms make lines; the 8 ms of a short run make a point every 125 Hz."""
     for result, resolution, step in ((rig, 6.25, None), (make_result(t_end=0.01), 124.7, 2)):
         for axes in panels(spectra(result)):
-            assert axes.get_xlabel() == f"frequency (resolution {resolution:.3g} Hz) [Hz]"
+            told = f"frequency (resolution {resolution:.3g} Hz, cut at 3000 of 25000 Hz) [Hz]"
+            assert axes.get_xlabel() == told
             (line, *_) = axes.lines
             assert line.get_markevery() == step
             assert line.get_marker() == ("o" if step else "None")
             if step:
                 assert line.get_xdata()[step] == pytest.approx(resolution, abs=0.1)
+
+
+def test_spectra_go_to_the_highest_line_asked(rig):
+    for highest, label in ((8000.0, ", cut at 8000 of 25000 Hz"), (1e9, "")):
+        axes = panels(spectra(rig, highest))[0]
+        assert axes.get_xlabel() == f"frequency (resolution 6.25 Hz{label}) [Hz]"
+        assert axes.get_xlim()[1] == pytest.approx(min(highest, 25000.0))
+
+
+def test_spectra_say_which_halves_coincide(rig):
+    column = "gearbox.bearing_supports.shaft.wheel_left.f_y"
+    data = rig.data.assign(**{column: 1.02 * rig.data[column]})
+    text = panels(spectra(replace(rig, data=data)))[0].texts[0].get_text()
+    assert text == "left and right coincide: pinion"
 
 
 @pytest.mark.parametrize("system", ["test_rig", "gearbox"])
@@ -112,7 +129,7 @@ def test_every_panel_of_the_overview_has_a_legend_beside_its_title(system):
 
 def test_spectra_of_a_run_up_have_no_orders(rig):
     data = rig.data.assign(**{"gearbox.gear_mesh.pinion.w": rig.data["time"] * 500.0})
-    (text,) = panels(spectra(replace(rig, data=data)))[0].texts
+    *_, text = panels(spectra(replace(rig, data=data)))[0].texts
     assert text.get_text() == "speed not steady: no mesh orders"
 
 
@@ -185,7 +202,9 @@ def test_written_pictures_are_those_that_the_system_has(rig, tmp_path):
 @pytest.mark.parametrize("rows", [0, 1, 2, 9])
 def test_short_runs_can_be_drawn(rig, rows, tmp_path):
     short = replace(rig, data=rig.data.iloc[:rows])
-    assert len(write_pictures(short, tmp_path)) == (5 if rows >= 2 else 0)
+    assert (
+        len(write_pictures(short, tmp_path)) == {0: 0, 1: 0, 2: 5, 9: 6}[rows]
+    )  # sensors need a spline
     overview(short)
     plot_columns(short, "*.torque")
 

@@ -42,7 +42,7 @@ def test_headline_and_cost(rig):
     assert text.startswith("test_rig, scene loaded: completed, 0.2 of 0.2 s\n")
     assert "0.4 times real time" in line(text, "Cost")
     assert "50 us per macro step; 10000 steps" in text
-    assert len(text.splitlines()) <= 36
+    assert len(text.splitlines()) <= 41
     assert max(map(len, text.splitlines())) <= 100
 
 
@@ -167,7 +167,7 @@ def test_report_writes_files_that_exist(tmp_path):
     assert names[:3] == ["results.csv", "summary.txt", "summary.json"]
     assert all(Path(file).stat().st_size > 0 for file in result.files)
     assert names[3:6] == ["run.json", "results.npy", "units.csv"]
-    assert len(names) == 12
+    assert len(names) == 13
     summary = json.loads(Path(result.files[2]).read_text(encoding="utf-8"))
     assert summary["results"] == list(result.files)
     assert summary["complete"]

@@ -95,9 +95,9 @@ def test_five_hours_later():
     fused, times, steps = core("test_rig", "loaded"), np.arange(101) * 1e-4, Steps(5e-5, 4)
     columns = [name for names in fused.groups().values() for name in names]
     own = rows(fused, times, steps, columns)
-    modes = replace(fused._system.modes, angles=fused._system.modes.angles + 2.0 * np.pi * 3e5)
+    modes = replace(fused.condensed.modes, angles=fused.condensed.modes.angles + 2.0 * np.pi * 3e5)
     later = copy(fused)
-    later._system = replace(fused._system, modes=modes)
+    later.condensed = replace(fused.condensed, modes=modes)
     assert 0.0 < relative_error(rows(later, times, steps, columns), own) < 1e-6
 
 

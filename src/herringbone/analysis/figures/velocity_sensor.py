@@ -97,17 +97,28 @@ class VelocitySensor:
         digits = np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
         return SensorRecord(np.arange(len(sampled)) * every * step, digits, saturated)
 
-    def _every(self, step: float) -> int:
-        """Input rows per sample."""
+    def check_input(self, step: float) -> None:
+        """Refuse an input that is too coarse for the sensor.
+
+        Args:
+            step: between rows [s].
+
+        Raises:
+            ParameterError: it is, or the step is not positive.
+        """
         if not 0.0 < step < np.inf:
             raise ParameterError(f"step = {step:g} s must be positive")
-        ratio = 1.0 / (self.sampling_hz * step)
         needed = max(self.sampling_hz, 2.0 * self.low_pass_hz) * _FINEST
         if 1.0 / step < needed * (1.0 - _WHOLE):
             raise ParameterError(
                 f"records every {step:g} s are too coarse for the sensor; it takes "
                 f"{1.0 / needed:g} s or less (--record-step)"
             )
+
+    def _every(self, step: float) -> int:
+        """Input rows per sample."""
+        self.check_input(step)
+        ratio = 1.0 / (self.sampling_hz * step)
         if abs(ratio - round(ratio)) > _WHOLE * ratio:
             raise ParameterError(
                 f"records every {step:g} s do not fit samples every {1.0 / self.sampling_hz:g} s; "

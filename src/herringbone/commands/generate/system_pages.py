@@ -79,6 +79,8 @@ def _parts(system: System, folder: Path) -> list[str]:
     joined = [f"| `{one}` | `{other}` |" for one, other in data.get("connections", [])]
     ports = [f"`{port}` is `{path}`" for port, path in data.get("ports", {}).items()]
     offered = [f"Ports for an outer system: {', '.join(ports)}.", ""] if ports else []
+    felt = [f"`{name}` feels `{spec.path}`" for name, spec in system.sensors.items()]
+    sensors = [f"Sensors, evaluated from the rows of a run: {', '.join(felt)}.", ""] if felt else []
     gear = [f"Gear pair: `{data['gear']}`.", ""] if "gear" in data else []
     return [
         "## Parts",
@@ -88,6 +90,7 @@ def _parts(system: System, folder: Path) -> list[str]:
         *rows,
         "",
         *gear,
+        *sensors,
         "| joined | to |",
         "| --- | --- |",
         *joined,

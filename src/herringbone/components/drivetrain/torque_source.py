@@ -22,11 +22,21 @@ QuadraticSpeedDependentTorque (names and signs).
 """
 
 import math
+from fractions import Fraction
 
 import numpy as np
 
 from herringbone.components.ports import flange
-from herringbone.core import Component, Declaration, Kernels, Laws, input_, output, parameter
+from herringbone.core import (
+    Component,
+    Declaration,
+    Kernels,
+    Laws,
+    common_period,
+    input_,
+    output,
+    parameter,
+)
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import kernel
@@ -91,6 +101,8 @@ _TIME = _d.first_table
 """Where the time of the law stands [s]."""
 _FIRST, _ROW = _d.index["order_1.order"], 3
 _TWO_PI = 2.0 * math.pi
+_FINEST = 1000
+"""Largest denominator of an order."""
 
 
 @kernel
@@ -192,6 +204,18 @@ def _bends(block: np.ndarray) -> bool:
     return bool(block[_QUADRATIC] != 0.0 or block[_DRY] != 0.0 or any(amplitudes))
 
 
+def _periods(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
+    """Orders are rational numbers, of small denominators."""
+    rows = range(_FIRST, _FIRST + _ROW * ORDERS, _ROW)
+    orders = [block[row] for row in rows if block[row] > 0.0 and block[row + 1] > 0.0]
+    turns = [1 / Fraction(float(order)).limit_denominator(_FINEST) for order in orders]
+    return ((0, common_period(turns)),) if turns else ()
+
+
+def _settle(block: np.ndarray) -> None:
+    block[_RAMP] = 0.0
+
+
 _LAWS = Laws(
     arguments=("angle", "angular velocity"),
     values=("torque by speed and angle",),
@@ -204,6 +228,8 @@ _LAWS = Laws(
     mean=_mean,
     needed=_bends,
     clock=_TIME,
+    periods=_periods,
+    settle=_settle,
 )
 
 TORQUE_SOURCE = Component(

@@ -5,12 +5,14 @@ follows from the relative motions of the halves and from the angles alone: these
 """
 
 import math
+from fractions import Fraction
 
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.contact import derive, meshes
+from herringbone.components.gear_mesh.period import period, settle
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Laws
 from herringbone.core.declaring.roles import GEARS
@@ -145,6 +147,10 @@ def _mean(block: np.ndarray) -> np.ndarray:
     return np.concatenate([stiffness, damping])
 
 
+def _periods(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
+    return ((_TURN, period(block)),)
+
+
 def _refusal(block: np.ndarray) -> str:
     for gear, name in enumerate(GEARS):
         unbalance = block[at.UNBALANCE[0] + gear * at.GEAR]
@@ -174,4 +180,6 @@ LAWS = Laws(
     prepare=derive,
     refusal=_refusal,
     sharp=_sharp,
+    periods=_periods,
+    settle=settle,
 )  # fmt: skip

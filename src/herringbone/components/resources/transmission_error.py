@@ -98,6 +98,12 @@ def error(b: np.ndarray, at: int, pinion: float, wheel: float) -> tuple[float, f
     return value, per_pinion, per_wheel
 
 
+def harmonics(b: np.ndarray, at: int, side: int, flank: int) -> np.ndarray:
+    """Gear, order, amplitude [m] and phase [rad] of a side's flank, (n, 4); see `error`."""
+    first = group(at, side, flank)
+    return b[first + 1 : first + 1 + _ROW * int(b[first])].reshape(-1, _ROW)
+
+
 def largest(b: np.ndarray, at: int) -> float:
     """Bound of e [m] on all flanks: the largest sum of amplitudes."""
     sums = []

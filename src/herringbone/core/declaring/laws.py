@@ -1,7 +1,9 @@
 """The laws of a component: what is not linear in its equations, declared apart from the rest."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
@@ -20,6 +22,18 @@ def _always(block: np.ndarray) -> bool:
 def _nothing(block: np.ndarray) -> str:
     del block
     return ""
+
+
+def _evenly(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
+    del block
+    return ()
+
+
+def common_period(periods: Iterable[Fraction]) -> Fraction:
+    """The smallest turn that all of the periods, at least one, divide; they are positive."""
+    found = list(periods)
+    whole = math.lcm(*(period.numerator for period in found))
+    return Fraction(whole, math.gcd(*(period.denominator for period in found)))
 
 
 @dataclass(frozen=True)
@@ -51,6 +65,9 @@ class Laws:
             if not given.
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
+        periods: arguments that are angles, and the turn after which the values repeat, in whole
+            turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
+        settle: ends in a block what comes in over a time or an angle, as ramps do.
     """
 
     arguments: tuple[str, ...]
@@ -67,3 +84,5 @@ class Laws:
     sharp: Callable[[np.ndarray], np.ndarray] | None = None
     clock: int | None = None
     refusal: Callable[[np.ndarray], str] = _nothing
+    periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly
+    settle: Callable[[np.ndarray], None] = unchanged

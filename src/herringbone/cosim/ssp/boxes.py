@@ -39,7 +39,6 @@ class Box:
         wires: its connections.
         places: corners of its elements by name, in its own coordinates.
         corners: its own, in those of the system around it; none of the outermost one.
-        extent: of its own coordinates.
     """
 
     parts: dict[int, str] = field(default_factory=dict)
@@ -48,7 +47,6 @@ class Box:
     wires: dict[Wire, None] = field(default_factory=dict)
     places: dict[str, Corners] = field(default_factory=dict)
     corners: Corners | None = None
-    extent: Corners = (0.0, 0.0, _WIDE, _HIGH)
 
 
 def boxes(
@@ -182,5 +180,3 @@ def _place(box: Box) -> None:
         x = _GAP + column * (_WIDE + _GAP)
         y = _GAP + (lowest - row) * (_HIGH + _GAP)
         box.places[name] = x, y, x + _WIDE, y + _HIGH
-    right, top = (max((c[k] for c in box.places.values()), default=0.0) for k in (2, 3))
-    box.extent = 0.0, 0.0, right + _GAP, top + _GAP

@@ -101,7 +101,6 @@ def _fill_system(
         for wire in box.wires:
             ends = zip(_ENDS, wire, strict=True)
             SubElement(connections, "ssd:Connection", {key: name for key, name in ends if name})
-    SubElement(system, "ssd:SystemGeometry", coordinates(box.extent))
 
 
 def _connectors(network: Network) -> list[list[str]]:

@@ -9,6 +9,8 @@ from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import check_name, shown
 from herringbone.core.places.files import as_texts
 from herringbone.core.places.part_path import PartPath, find_part, split_variable
+from herringbone.core.sensor_spec import SensorSpec
+from herringbone.cosim.structure.sensors import placed, with_value
 
 Values = Mapping[str, float | str]
 
@@ -68,6 +70,7 @@ class System(Facts):
         notes: lines to read about how the system was read, such as names that were changed.
         gears: gear file by path of a gear pair's part, or of a system around it; "": the only one.
         housings: the same of housings: data, dimensions or FMU.
+        sensors: what is evaluated from the rows of a run, by name; no parts.
 
     Raises:
         StructureError: a name is no identifier, or stands twice.
@@ -82,10 +85,12 @@ class System(Facts):
     notes: tuple[str, ...] = ()
     gears: Mapping[str, Path] = field(default_factory=dict)
     housings: Mapping[str, Path] = field(default_factory=dict)
+    sensors: Mapping[str, SensorSpec] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_name(self.name, "system")
-        for kind, keys in (("port", tuple(self.ports)), ("channel", tuple(self.channels))):
+        named = (("port", self.ports), ("channel", self.channels))
+        for kind, keys in named:
             for name in keys:
                 check_name(name, f"system '{self.name}': {kind}")
         if bad := next((c for c in self.description if not (c.isprintable() or c.isspace())), ""):
@@ -98,6 +103,8 @@ class System(Facts):
             raise StructureError(
                 f"system '{self.name}': instance name {', '.join(twice)} is used twice; rename one"
             )
+        sensors = placed(self.sensors, self.paths, f"system '{self.name}'") if self.sensors else {}
+        object.__setattr__(self, "sensors", sensors)
 
     def part(self, name: str) -> PartSpec:
         """The part of that path, or the only one whose path ends so.
@@ -136,22 +143,29 @@ class System(Facts):
             channels={name: tuple(map(inside, p)) for name, p in self.channels.items()},
             gears={inside(p).removesuffix("."): file for p, file in self.gears.items()},
             housings={inside(p).removesuffix("."): file for p, file in self.housings.items()},
+            sensors={
+                inside(name): replace(spec, part=inside(spec.part))
+                for name, spec in self.sensors.items()
+            },
         )
 
     def with_values(self, values: Mapping[str, float | str | Path]) -> "System":
-        """The same system with values set, by `instance.variable`.
+        """The same system with values set, by `instance.variable` or `sensor.parameter`.
 
         Raises:
             ParameterError: a name is not `instance.variable`.
             StructureError: there is no such instance.
         """
-        parts = {part.name: dict(part.values) for part in self.parts}
+        parts, sensors = {part.name: dict(part.values) for part in self.parts}, self.sensors
         for path, value in as_texts(values).items():
+            sensor, _, parameter = path.rpartition(".")
+            if sensor in sensors:
+                sensors = with_value(sensors, sensor, parameter, value)
+                continue
             instance, variable = self.split(path)
             parts[instance][variable] = value
-        return replace(
-            self, parts=tuple(replace(part, values=parts[part.name]) for part in self.parts)
-        )
+        specs = tuple(replace(part, values=parts[part.name]) for part in self.parts)
+        return replace(self, parts=specs, sensors=sensors)
 
     def with_fmu(self, instance: str, fmu: str | Path) -> "System":
         """The same system with one part replaced by an FMU file; its own start values hold.
@@ -193,6 +207,7 @@ class System(Facts):
             parts=parts,
             connections=tuple(c for c in self.connections if all(map(kept, c))),
             ports={name: path for name, path in self.ports.items() if kept(path)},
+            sensors={k: spec for k, spec in self.sensors.items() if spec.part not in dropped},
         )
 
     @property
@@ -208,5 +223,6 @@ class System(Facts):
             "connections": str(len(self.connections)),
             "ports": ", ".join(self.ports),
             "channels": ", ".join(self.channels),
+            "sensors": ", ".join(self.sensors),
             "notes": str(len(self.notes) or ""),
         }

@@ -16,6 +16,9 @@ pinion = "gear_mesh.pinion"
 
 [channels]                       # result columns on which errors are measured
 bearing_force = ["bearing_supports.shaft.*.f_?"]
+
+[sensors.A]                      # see `cosim.structure.sensors`
+of = "modal_housing.A.v_z"
 """
 
 from collections.abc import Mapping
@@ -28,13 +31,14 @@ from herringbone.core.places.files import beside, is_file
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
+from herringbone.cosim.structure.sensors import read_sensors
 from herringbone.cosim.structure.system import PartSpec, System
 
 FILE_NAME = "system.toml"
 _LONGEST_PATH = 300
 _KEYS: dict[str, type] = {
     "name": str, "description": str, "connections": list, "parts": dict, "ports": dict,
-    "channels": dict,
+    "channels": dict, "sensors": dict,
 }  # fmt: skip
 _TYPE_NAMES: dict[type, str] = {str: "a text", list: "a list", dict: "a table"}
 _KINDS = ("component", "fmu", "system")
@@ -110,7 +114,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
 def _check_names(data: Mapping[str, Any], file: Path) -> None:
     for name in (data["name"],) if "name" in data else ():
         check_name(name, f"{file}: name")
-    for key in ("parts", "ports", "channels"):
+    for key in ("parts", "ports", "channels", "sensors"):
         for name in data.get(key, {}):
             check_name(name, f"{file}: {key.removesuffix('s')}")
 
@@ -206,6 +210,7 @@ def _assemble(
     own_name = data.get("name", file.parent.name)
     name = identifier_for(own_name)
     renamed = (f"{file}: the system is called {name} here",) if name != own_name else ()
+    sensors = {k: v for inner in nested.values() for k, v in inner.sensors.items()}
     inner_notes = tuple(note for inner in nested.values() for note in inner.notes)
     return System(
         name,
@@ -217,4 +222,5 @@ def _assemble(
         (*inner_notes, *renamed),
         gears,
         housings,
+        {**sensors, **read_sensors(data.get("sensors", {}), file)},
     )

@@ -98,6 +98,11 @@ def ready(
     )
     for note in notes:
         _log.warning(note)
+    if structure.sensors:
+        _log.warning(
+            "sensors %s are not exported: they act on nothing; 'herringbone run' evaluates them",
+            ", ".join(structure.sensors),
+        )
     return structure, chosen
 
 

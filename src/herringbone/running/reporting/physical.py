@@ -20,6 +20,7 @@ from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import Result
+from herringbone.running.reporting.of_sensors import sensor_values
 
 _R_MIN = 30.0 / math.pi
 _HIGHEST = 3000.0
@@ -40,6 +41,8 @@ def physical_results(result: Result) -> dict[str, Any]:
     found["steady"] = part.steady
     if power is not None:
         found["power_W"] = vars(power)
+    if sensors := sensor_values(result):
+        found["sensors"] = sensors
     boxes = by_gearbox(result)
     return found | {"gearboxes": {name: dict(_gearbox(box)) for name, box in boxes.items()}}
 

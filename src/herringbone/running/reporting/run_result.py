@@ -80,6 +80,7 @@ def make_result(
         parameters=parameters,
         resources=_resources(system),
         anatomy=known,
+        sensors=system.sensors,
     )
     units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
     units |= recording.other_units

@@ -23,6 +23,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.energy_report import EnergyReport
 from herringbone.result.result import Result, RunInfo
+from herringbone.running.reporting.of_sensors import sensor_lines
 
 _R_MIN = 30.0 / math.pi
 _MM = 1e3
@@ -146,7 +147,8 @@ def _figures(result: Result) -> Iterator[Iterable[str]]:
             title = f"Gearbox {name}".rstrip()
             yield [title, "-" * len(title), *_gear_pairs(box)]
             yield from (section(box) for section in (_seats, _spectral_lines, _radiation))
-    yield from (section(result) for section in (_unknown, _signals, _errors, _budget))
+    sections = (sensor_lines, _unknown, _signals, _errors, _budget)
+    yield from (section(result) for section in sections)
 
 
 def _steady(result: Result) -> Iterator[str]:
@@ -237,7 +239,7 @@ def _spectral_lines(result: Result) -> Iterator[str]:
             channel = ".".join(line.column.split(".")[-2:])
             yield (f"{label:<{_LABEL}}{line.frequency:>7.1f} Hz{order:<12}"
                    f" {line.amplitude * factor:>8.3g} {unit} at {channel}")  # fmt: skip
-            label = ""
+            label = f"  (up to {_HIGHEST:.0f} Hz)" if label.strip() else ""
 
 
 def _radiation(result: Result) -> Iterator[str]:

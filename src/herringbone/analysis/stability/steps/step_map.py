@@ -157,7 +157,7 @@ class MappedPart(LinearPart):
             point[inputs],
             outputs + HEADER,
             base,
-            np.array(columns).T.ravel(),
+            np.array(columns).ravel(),
         )
         flat = np.concatenate(found)
         self._map[: flat.size] = flat

@@ -32,7 +32,7 @@ _call_signals = c_call("address", "real")
 
 
 @inlined
-def _call_laws(
+def call_laws(
     calls: Calls, t: float, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray
 ) -> None:
     """Values, tangents and indicators of all laws at their arguments and a time [s]."""
@@ -161,7 +161,7 @@ def _solve_step(
         else:
             copy(rows[: z.size], z)
         for i in range(inner):
-            _call_laws(
+            call_laws(
                 calls,
                 t + h * fixed.nodes[i + 1],
                 nodes.z[i],
@@ -203,7 +203,7 @@ def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> 
     From the arguments at the time t [s], which stand in `nodes.z[0]`.
     """
     count = len(nodes.e)
-    _call_laws(calls, t, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
+    call_laws(calls, t, nodes.z[0], nodes.f[0], nodes.k[0], nodes.e[0])
     for value in range(table.unknown.size):
         u[value * count + count - 1] = less_tangents(table, value, nodes.f[0, value], nodes.z[0])
 

@@ -40,6 +40,8 @@ class Modes:
         of_channels: (arguments, channels).
         tangent: (law values, arguments), the mean tangents.
         start, angles: modal coordinates (modes,) and angles (rotations,) at the start.
+        back: (modes, states), coordinates of the states less rigid rotations.
+        references: (rotations,) the states whose angles they are.
     """
 
     rates: np.ndarray
@@ -54,6 +56,8 @@ class Modes:
     tangent: np.ndarray
     start: np.ndarray
     angles: np.ndarray
+    back: np.ndarray
+    references: tuple[int, ...]
 
     def states(self, q: np.ndarray) -> np.ndarray:
         """States (n, times).
@@ -112,6 +116,8 @@ def make_modes(twin: Twin, equations: Equations) -> Modes:
     rates, shapes, inverse = _eigen(twin, rest[np.ix_(inside, inside)])
     every = np.zeros((n, rates.size), dtype=complex)
     every[inside] = shapes
+    back = np.zeros((rates.size, n), dtype=complex)
+    back[:, inside] = inverse
     angles = x0[references]
     of_channels = equations.d.copy()
     of_channels[:, -1] += equations.c @ constant
@@ -128,6 +134,8 @@ def make_modes(twin: Twin, equations: Equations) -> Modes:
         tangent,
         inverse @ (x0 - rigid @ angles)[inside],
         angles,
+        back,
+        tuple(references),
     )
 
 

@@ -9,15 +9,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.equations import Equations, laws_of
+from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.condensed.modes import Modes
-from herringbone.analysis.twin.condensed.observing import call_parts
 from herringbone.analysis.twin.condensed.rungs import coefficients, padded, parts, powers, twice
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.analysis.twin.condensed.wanted import AffineRows, Wanted, places_seen
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.components.law_addresses import signals_address
 
 _SAME = 1e-9
 """Of the terms that are added: a difference below is rounding."""
@@ -44,16 +43,6 @@ def outputs_of_kernels(twin: Twin) -> tuple[str, ...]:
     return tuple(found)
 
 
-def places_seen(twin: Twin) -> list[int]:
-    """Places of all inputs and outputs in a twin's block."""
-    found = []
-    for first, instance in zip(twin.layout.block_first, twin.instances, strict=False):
-        declaration = instance.component.declaration
-        variables = (*declaration.inputs, *declaration.outputs)
-        found += [first + declaration.index[v.name] for v in variables]
-    return found
-
-
 class Outputs:
     """Values of some outputs.
 
@@ -78,83 +67,34 @@ class Outputs:
         *,
         inside: bool,
     ) -> None:
-        self.names, self._system, self._degree = tuple(columns), system, degree
-        twin, first = system.twin, system.twin.layout.block_first
-        wanted = [twin.index(c) for c in columns]
-        rows = {place: row for row, place in enumerate(places_seen(twin))}
+        self.names = tuple(columns)
         if inside:
-            affine = affine & ~np.any(system.equations.g[:, : len(system.modes.tangent)], axis=1)
-        own = sorted({_part_of(twin, place) for place in wanted if not affine[rows[place]]})
-        targets = [place for p in own for place in _needed(twin, p)]
-        equations = system.equations
-        e = np.zeros((len(targets), twin.state.size))
-        g = np.zeros((len(targets), equations.channels))
-        whole = False
-        for k, place in enumerate(targets):
-            if place in rows:
-                e[k], g[k] = equations.e[rows[place]], equations.g[rows[place]]
-                whole |= not affine[rows[place]]
-            else:
-                e[k, _state_of(twin, place)] = 1.0
-        here = [k for k, place in enumerate(wanted) if affine[rows[place]]]
-        chosen = [rows[wanted[k]] for k in here]
-        self._here = np.array(here, dtype=np.int64)
-        self._there = np.setdiff1d(np.arange(len(wanted)), self._here)
-        self._whole = whole  # an input of such a part is not affine: by the twin's own kernels
-        self._rows = _Rows(
-            system.modes,
-            equations,
-            np.concatenate([equations.e[chosen], e]),
-            np.concatenate([equations.g[chosen], g]),
-            degree,
-        )
-        self._blocks = twin.block.copy()
-        self._addresses = _integers(signals_address(twin.instances[p].component.name) for p in own)
-        self._first = _integers(first[p] for p in own)
-        self._targets = _integers(targets)
-        self._read = _integers(wanted[k] for k in self._there)
+            laws = len(system.modes.tangent)
+            affine = affine & ~np.any(system.equations.g[:, :laws], axis=1)
+        self._wanted = Wanted(system, affine, columns)
+        self._rows = _Rows(system.modes, self._wanted.rows, degree)
 
     def values(self, run: Solution, samples: Samples) -> np.ndarray:
         """Values (times, columns) at the times of samples of a solution."""
         found = self._rows.values(run, samples)
-        count = self._here.size
-        if not self._there.size:
+        wanted = self._wanted
+        count = wanted.here.size
+        if not wanted.there.size:
             return np.ascontiguousarray(found[:, :count])
         values = np.empty((samples.times.size, len(self.names)))
-        values[:, self._here] = found[:, :count]
-        if self._whole:
-            names = [self.names[k] for k in self._there]
-            states = run.states(samples)
-            values[:, self._there] = self._system.twin.observe(samples.times, states, names)
-            return values
-        own = np.empty((samples.times.size, self._there.size))
-        given = np.ascontiguousarray(found[:, count:])
-        call_parts(
-            self._addresses, self._first, self._blocks, samples.times, self._targets, given,
-            self._read, own,
-        )  # fmt: skip
-        values[:, self._there] = own
+        values[:, wanted.here] = found[:, :count]
+        if wanted.whole:
+            values[:, wanted.there] = wanted.observed(samples.times, run.states(samples))
+        else:
+            values[:, wanted.there] = wanted.computed(samples.times, found[:, count:])
         return values
 
 
 class _Rows:
     """Affine rows over the modal coordinates, by place in a step."""
 
-    def __init__(
-        self, modes: Modes, equations: Equations, e: np.ndarray, g: np.ndarray, degree: int
-    ) -> None:
-        values = len(modes.tangent)
-        bent = g[:, :values] @ modes.tangent
-        over_states = e + bent @ equations.c
-        self._channels = g.copy()
-        self._channels[:, values:] += bent @ equations.d[:, values:]
-        self._still = self._channels[:, -1] + over_states @ modes.constant
-        self._channels[:, -1] = 0.0
-        self._modal = over_states @ modes.shapes
-        self._turned = over_states @ modes.rigid
-        size = np.abs(over_states) @ np.abs(modes.rigid)
-        self._turned[np.abs(self._turned) <= _SAME * size] = 0.0  # differences of angles
-        self._still += self._turned @ modes.angles
+    def __init__(self, modes: Modes, rows: AffineRows, degree: int) -> None:
+        self._modal, self._turned, self._channels, self._still = rows
         self._modes, self._degree = modes, degree
         self._kept: dict[tuple[float, int], np.ndarray] = {}
 
@@ -267,23 +207,3 @@ def _forces(system: Condensed, z: np.ndarray) -> np.ndarray:
         at += len(laws.arguments)
         found.append(f)
     return np.concatenate([np.zeros(0), *found])
-
-
-def _part_of(twin: Twin, place: int) -> int:
-    return int(np.searchsorted(twin.layout.block_first, place, side="right")) - 1
-
-
-def _state_of(twin: Twin, place: int) -> int:
-    p = _part_of(twin, place)
-    return twin.layout.state_first[p] + place - twin.layout.block_first[p]
-
-
-def _needed(twin: Twin, p: int) -> list[int]:
-    """Places of the states and inputs of a part."""
-    declaration, first = twin.instances[p].component.declaration, twin.layout.block_first[p]
-    inputs = [declaration.index[v.name] for v in declaration.inputs]
-    return [first + i for i in (*range(declaration.state_count), *inputs)]
-
-
-def _integers(values: object) -> np.ndarray:
-    return np.array(list(values), dtype=np.int64)  # type: ignore[call-overload]

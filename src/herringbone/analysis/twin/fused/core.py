@@ -11,10 +11,11 @@ from herringbone.analysis.twin.condensed.outputs import (
     Outputs,
     affine_places,
     outputs_of_kernels,
-    places_seen,
 )
+from herringbone.analysis.twin.condensed.renewed import renewed
 from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
 from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError
 from herringbone.core.names import matches_any
@@ -53,9 +54,12 @@ class Core:
 
     Args:
         system: its parts are all components of this package.
+        like: of the same structure; what is the same is taken from it.
 
     Attributes:
         twin: the system as one right-hand side.
+        condensed: the same, taken apart.
+        affine: which of the places that are seen are affine.
         names: outputs that can be recorded, `instance.variable`.
         missing: outputs that only steps of the components make.
 
@@ -64,7 +68,7 @@ class Core:
         ParameterError, ResourceError: bad values.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, like: "Core | None" = None) -> None:
         self.twin = twin = Twin(system)
         for instance in twin.instances:
             if instance.component.samples:
@@ -72,8 +76,9 @@ class Core:
                     f"{instance.name}: {instance.component.name} takes samples, so that it cannot "
                     "be fused; run without fuse"
                 )
-        self._system = _condensed(twin)
-        self._affine = affine_places(self._system)
+        self.condensed: Condensed = _condensed(twin, like.condensed if like else None)
+        same = like is not None and self.condensed.modes.rates is like.condensed.modes.rates
+        self.affine: np.ndarray = like.affine if like and same else affine_places(self.condensed)
         self.names = outputs_of_kernels(twin)
         declared = [
             f"{i.name}.{v.name}" for i in twin.instances for v in i.component.declaration.outputs
@@ -123,11 +128,11 @@ class Core:
 
     def solution(self, steps: Steps) -> Solution:
         """A march from the start values on."""
-        return Solution(self._system, steps.degree, steps.close, lean=steps.lean)
+        return Solution(self.condensed, steps.degree, steps.close, lean=steps.lean)
 
     def outputs(self, columns: Sequence[str], steps: Steps, *, inside: bool) -> Outputs:
         """Values of some outputs; see `Outputs`."""
-        return Outputs(self._system, self._affine, columns, steps.degree, inside=inside)
+        return Outputs(self.condensed, self.affine, columns, steps.degree, inside=inside)
 
 
 def endings_of(name: str) -> tuple[str, ...]:
@@ -136,10 +141,11 @@ def endings_of(name: str) -> tuple[str, ...]:
     return tuple(".".join(words[k:]) for k in range(len(words) - 1))
 
 
-def _condensed(twin: Twin) -> Condensed:
+def _condensed(twin: Twin, like: Condensed | None) -> Condensed:
     equations = take_apart(twin, places_seen(twin))
+    modes = renewed(twin, equations, like.equations, like.modes) if like else None
     with one_blas_thread():
-        found = Condensed(twin, equations, make_modes(twin, equations))
+        found = Condensed(twin, equations, modes or make_modes(twin, equations))
     if not np.isfinite(found.modes.start).all():
         raise StructureError(f"{twin.system.name}: its start values are not finite")
     return found

@@ -51,14 +51,9 @@ uint32_t input_derivatives_to_nodes(Instance *instance, double step_size) {
     return degree;
 }
 
-static bool is_input(uint32_t reference) {
-    return instance_is_real(reference) && hb_component.access[reference] == HB_INPUT &&
-           (reference - hb_component.first_input) % HB_STRIDE == 0;
-}
-
 static Status set_input_derivative(Instance *instance, uint32_t reference, int32_t order,
                                    double value) {
-    if (!is_input(reference))
+    if (!instance_is_input(reference))
         return instance_unknown(instance, "input", &reference, 1);
     const char *name = real_name(reference);
     if (order < 1 || order > HIGHEST_ORDER)

@@ -38,7 +38,12 @@ typedef struct {
 
 typedef struct FmuState FmuState;
 
-typedef struct {
+/* Why the host is called within a step: for its inputs at `now.time`, or as that has been reached. */
+typedef enum { UPDATE_ASKS, UPDATE_REACHED } Update;
+
+typedef struct Instance Instance;
+
+struct Instance {
     Log log;
     char *name, *resources;
     bool model_exchange;
@@ -57,7 +62,12 @@ typedef struct {
     double *indicators; /* work space for event indicators */
 
     double *direction; /* of directional derivatives; NULL until one is asked for */
-} Instance;
+
+    void (*update)(Instance *instance, Update why); /* calls the host; NULL: it wants none */
+    void (*callback)(void);                         /* what is called */
+    bool asks;                                      /* the host may set inputs within the step */
+    uint32_t given;                                 /* bit k: it has set input k */
+};
 
 /* instance.c: life cycle. */
 Instance *instance_new(const char *name, const char *token, const char *resources,
@@ -106,6 +116,8 @@ Status instance_unknown(Instance *instance, const char *type, const uint32_t ref
 void instance_stamp(Instance *instance);
 void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count);
 bool instance_is_real(uint32_t reference);
+/* An input itself, none of its nodes. */
+bool instance_is_input(uint32_t reference);
 /* An output itself, none of its nodes. */
 bool instance_is_output(uint32_t reference);
 /* Value reference of a state's derivative; FMI 3: of the time. */
@@ -129,6 +141,14 @@ Status instance_get_output_derivatives(Instance *instance, const uint32_t refere
                                        size_t count, const int32_t orders[], double values[]);
 /* Write the nodes of all inputs, and forget the derivatives; returns the degree. */
 uint32_t input_derivatives_to_nodes(Instance *instance, double step_size);
+
+/* updates.c: inputs that the host gives at times within a step, an alternative to nodes. */
+Status instance_set_within_step(Instance *instance, const uint32_t references[], size_t count,
+                                const double values[]);
+/* Ask for the inputs at all nodes of the next step, and write them; false if none was given. */
+bool instance_ask_inputs(Instance *instance, double step_size);
+/* After that step: inputs have the values that were given last. */
+void instance_keep_last_inputs(Instance *instance);
 
 /* fmu_state.c */
 Status instance_get_state(Instance *instance, void **state);

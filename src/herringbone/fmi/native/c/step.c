@@ -76,6 +76,26 @@ static int32_t step_along_derivatives(Instance *instance, double time, double st
     return failed;
 }
 
+/* Inputs that the host gives within the step make nodes of the highest degree. */
+static int32_t step_along_updates(Instance *instance, double time, double step_size) {
+    if (!instance_ask_inputs(instance, step_size))
+        return step(instance, time, step_size);
+    double *live = &instance->block[hb_component.degree];
+    *live = instance->now.last_degree = HIGHEST_ORDER;
+    int32_t failed = step(instance, time, step_size);
+    *live = 0.0;
+    instance_keep_last_inputs(instance);
+    return failed;
+}
+
+static int32_t step_along_inputs(Instance *instance, double time, double step_size) {
+    if (instance->now.input_order)
+        return step_along_derivatives(instance, time, step_size);
+    if (instance->update && hb_component.inputs && !instance->now.last_degree && step_size > 0.0)
+        return step_along_updates(instance, time, step_size);
+    return step(instance, time, step_size);
+}
+
 static Status refuse_two_signals(Instance *instance) {
     return instance_fail(instance, STATUS_ERROR,
                          "%s.interface_degree = %g: it must be 0 in a step along input derivatives",
@@ -93,11 +113,12 @@ Status instance_step(Instance *instance, double time, double step_size) {
            (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
-    int32_t failed = now->input_order ? step_along_derivatives(instance, time, step_size)
-                                      : step(instance, time, step_size);
+    int32_t failed = step_along_inputs(instance, time, step_size);
     instance->rates_outdated = true;
     if (failed)
         return explain_failure(instance, failed, step_size);
     now->time = time + step_size;
+    if (instance->update)
+        instance->update(instance, UPDATE_REACHED);
     return STATUS_OK;
 }

@@ -12,6 +12,11 @@ bool instance_is_real(uint32_t reference) {
     return reference < hb_component.first_table && hb_component.access[reference] != HB_HIDDEN;
 }
 
+bool instance_is_input(uint32_t reference) {
+    return instance_is_real(reference) && hb_component.access[reference] == HB_INPUT &&
+           (reference - hb_component.first_input) % HB_STRIDE == 0;
+}
+
 bool instance_is_output(uint32_t reference) {
     if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
         return false;

@@ -37,19 +37,43 @@ static fmi3Instance refuse(const Log *log, const char *why) {
     return NULL;
 }
 
+/* Call the host within a step. It may not end the step early. */
+static void update(Instance *instance, Update why) {
+    bool asks = why == UPDATE_ASKS;
+    fmi3Boolean early = false;
+    fmi3Float64 end = instance->now.time;
+    ((fmi3IntermediateUpdateCallback)instance->callback)(instance->log.environment,
+                                                         instance->now.time, asks, !asks, !asks,
+                                                         false, &early, &end);
+}
+
+static bool all_continuous(const fmi3ValueReference references[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!instance_is_input(references[i]) && !instance_is_output(references[i]))
+            return false;
+    return true;
+}
+
 fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
     fmi3Boolean logging, fmi3Boolean event_mode_used, fmi3Boolean early_return_allowed,
     const fmi3ValueReference intermediate[], size_t intermediate_count,
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
     fmi3IntermediateUpdateCallback intermediate_update) {
-    (void)visible, (void)early_return_allowed, (void)intermediate, (void)intermediate_update;
+    (void)visible, (void)early_return_allowed;
     Log log = make_log(name, logging, environment, logger);
     if (event_mode_used)
         return refuse(&log, "co-simulation has no event mode here; instantiate without it");
-    if (intermediate_count)
-        return refuse(&log, "there is no intermediate update; give inputs by nodes");
-    return instance_new(name, token, resources, false, &log);
+    if (intermediate_count && !intermediate_update)
+        return refuse(&log, "intermediate variables are required without a callback for them");
+    if (!all_continuous(intermediate, intermediate_count))
+        return refuse(&log, "inputs and outputs are intermediate variables, and no others");
+    Instance *instance = instance_new(name, token, resources, false, &log);
+    if (instance && intermediate_update) {
+        instance->callback = (void (*)(void))intermediate_update;
+        instance->update = update;
+    }
+    return instance;
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
@@ -151,9 +175,11 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     if (!c)
         return fmi3Error;
     const uint32_t *elements;
-    Status status = expand(c, vr, n, value_count, &elements);
+    Instance *instance = c;
+    Status status = expand(instance, vr, n, value_count, &elements);
     if (status == STATUS_OK)
-        status = instance_set(c, elements, value_count, v);
+        status = instance->asks ? instance_set_within_step(instance, elements, value_count, v)
+                                : instance_set(instance, elements, value_count, v);
     release(elements, vr);
     return (fmi3Status)status;
 }

@@ -1,0 +1,305 @@
+"""Comparison of two runs: how far apart they are, and levels and orders side by side.
+
+Differences are those of `apart`, at common times, over the alternating part of the second run.
+Levels are root mean squares of the alternating parts over each run's own steady part, of the
+channels of a group together; orders are amplitudes at multiples of each run's own mesh frequency,
+Hann-windowed, of the channel in which they are largest.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import CubicSpline
+
+from herringbone.analysis.accuracy.apart import Apart, differences, groups_of
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES
+from herringbone.core import ParameterError
+from herringbone.core.declaring.facts import Facts
+from herringbone.result.folder.load import load
+from herringbone.result.result import TIME, Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ORDERS = 6
+"""Mesh orders that are compared."""
+_FEWEST = 4
+_SAME = 1e-9
+
+
+class Sides(NamedTuple):
+    """A run and what it is called in a comparison."""
+
+    name: str
+    result: Result
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Facts):
+    """Two runs side by side.
+
+    Attributes:
+        first, second: the runs; relative differences are over the alternating part of the second.
+        begin, end: of the times at which they are compared [s].
+        groups: one row per group of channels: "group", "unit", "channels", "difference" [1],
+            "worst" channel and "worst_difference" [1], "level_first", "level_second" (unit).
+        columns: one row per common column: "column", "unit", "difference" [1], "mean_first",
+            "mean_second", "rms_first", "rms_second" (alternating part, unit).
+        orders: one row per group and mesh order: "group", "unit", "order", "amplitude_first",
+            "amplitude_second"; empty without steady mesh frequency in both.
+        parameters: parameters that differ: "parameter", "first", "second"; NaN where a run has not
+            that one.
+        notes: lines to read: what is compared at all, and what only one of them has.
+    """
+
+    first: Sides
+    second: Sides
+    begin: float
+    end: float
+    groups: pd.DataFrame
+    columns: pd.DataFrame
+    orders: pd.DataFrame
+    parameters: pd.DataFrame
+    notes: tuple[str, ...]
+
+    def plot(self, highest: float | None = None) -> "Figure":
+        """Both runs over each other: the worst channel of each group, over time and frequency.
+
+        Args:
+            highest: end of the spectra [Hz].
+        """
+        from herringbone.plotting.comparison import comparison  # noqa: PLC0415 (matplotlib: lazy)
+
+        return comparison(self) if highest is None else comparison(self, highest)
+
+    def summary(self) -> dict[str, Any]:
+        """All tables as lists of rows, for JSON."""
+        tables = ("groups", "columns", "orders", "parameters")
+        return {
+            "first": self.first.name,
+            "second": self.second.name,
+            "begin": self.begin,
+            "end": self.end,
+            **{name: getattr(self, name).to_dict("records") for name in tables},
+            "notes": list(self.notes),
+        }
+
+    def _facts(self) -> dict[str, str]:
+        rows = self.groups.itertuples()
+        return {
+            "runs": f"{self.first.name} and {self.second.name}",
+            "compared": f"{self.begin:g} to {self.end:g} s",
+            **{str(row.group): f"{100.0 * float(row.difference):.3g} %" for row in rows},
+            "parameters that differ": str(len(self.parameters) or ""),
+            "notes": "; ".join(self.notes),
+        }
+
+
+def compare(first: Result | str | Path, second: Result | str | Path, *patterns: str) -> Comparison:
+    """Compare two runs.
+
+    Args:
+        first, second: results, or folders that `herringbone run` has written.
+        patterns: columns (`*`, `?`) that make a group of their own each; the channel groups of the
+            second run if none are given, or all common columns by unit if it has none.
+
+    Raises:
+        ResourceError: a folder holds no results.
+        ParameterError: the runs have no columns or no times in common.
+    """
+    ours, theirs = _side(first), _side(second)
+    if ours.name == theirs.name:
+        ours, theirs = ours._replace(name="first"), theirs._replace(name="second")
+    shared = [c for c in theirs.result.signals if c in set(ours.result.signals)]
+    if not shared:
+        raise ParameterError(f"{ours.name} and {theirs.name} have no columns in common")
+    times, values, notes = _at_common_times(ours, theirs, shared)
+    groups = _groups(theirs.result, shared, patterns)
+    notes += _only(ours, theirs, shared)
+    units = theirs.result.units
+    found = differences(*values, shared, groups)
+    orders, why = _orders(ours, theirs, groups)
+    return Comparison(
+        ours,
+        theirs,
+        float(times[0]),
+        float(times[-1]),
+        _table_of_groups(ours, theirs, groups, found, values, shared),
+        _table_of_columns(ours, theirs, shared, values, units),
+        orders,
+        _parameters(ours.result, theirs.result),
+        (*notes, *why),
+    )
+
+
+def _side(given: Result | str | Path) -> Sides:
+    if isinstance(given, Result):
+        scene = Path(given.info.scene).stem
+        return Sides(
+            f"{given.info.system}-{scene}" if scene else given.info.system, given.uniform()
+        )
+    return Sides(str(given), load(given).uniform())
+
+
+def _at_common_times(
+    ours: Sides, theirs: Sides, shared: Sequence[str]
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[str, ...]]:
+    """Times [s] of the second run within the first, both runs' columns there, and a note."""
+    mine, other = (side.result.data[TIME].to_numpy(float) for side in (ours, theirs))
+    for side, time in ((ours, mine), (theirs, other)):
+        if time.size < _FEWEST:
+            raise ParameterError(f"{side.name} has {time.size} records; it takes {_FEWEST}")
+    slack = _SAME * max(1.0, float(other[-1]))
+    inside = (other >= mine[0] - slack) & (other <= mine[-1] + slack)
+    if inside.sum() < _FEWEST:
+        raise ParameterError(
+            f"{ours.name} has times from {mine[0]:g} to {mine[-1]:g} s, {theirs.name} from "
+            f"{other[0]:g} to {other[-1]:g} s: there is nothing to compare"
+        )
+    times = other[inside]
+    near = np.clip(np.searchsorted(mine, times), 1, mine.size - 1)
+    near = np.where(times - mine[near - 1] < mine[near] - times, near - 1, near)
+    first = ours.result.data[list(shared)].to_numpy(float)
+    second = theirs.result.data[list(shared)].to_numpy(float)[inside]
+    if (np.abs(mine[near] - times) <= slack).all():
+        return times, (first[near], second), ()
+    note = f"{ours.name} is interpolated to the times of {theirs.name} by cubic splines"
+    return times, (CubicSpline(mine, first)(np.clip(times, mine[0], mine[-1])), second), (note,)
+
+
+def _groups(result: Result, shared: Sequence[str], patterns: Sequence[str]) -> dict[str, list[str]]:
+    """Columns by group, of one unit each."""
+    given = {p: result.columns(p) for p in patterns} if patterns else groups_of(result)
+    known = set(shared)
+    found: dict[str, list[str]] = {}
+    for name, columns in given.items():
+        kept = [c for c in columns if c in known]
+        units = {result.units[c]: None for c in kept}
+        for unit in units:
+            label = name if len(units) == 1 else f"{name} [{unit or '1'}]"
+            found[label] = [c for c in kept if result.units[c] == unit]
+    if not found and not patterns:
+        bare = replace(result, channels={}, data=result.data[[TIME, *shared]])
+        return groups_of(bare)
+    return found
+
+
+def _only(ours: Sides, theirs: Sides, shared: Sequence[str]) -> tuple[str, ...]:
+    """What one run alone has, and how their settings differ, in lines."""
+    lines = []
+    for side in (ours, theirs):
+        alone = [c for c in side.result.signals if c not in set(shared)]
+        if alone:
+            lines.append(f"{len(alone)} columns of {side.name} alone, such as {alone[0]}")
+    speeds = [run_mesh_frequency(side.result) for side in (ours, theirs)]
+    if None not in speeds and abs(speeds[0] - speeds[1]) > 1e-4 * speeds[1]:  # type: ignore[operator]
+        lines.append(
+            f"mesh frequencies are {speeds[0]:.4g} and {speeds[1]:.4g} Hz: differences over time "
+            "say little, levels and orders do"
+        )
+    return tuple(lines)
+
+
+def _table_of_groups(
+    ours: Sides,
+    theirs: Sides,
+    groups: dict[str, list[str]],
+    found: Apart,
+    values: tuple[np.ndarray, np.ndarray],
+    shared: Sequence[str],
+) -> pd.DataFrame:
+    place = {name: i for i, name in enumerate(shared)}
+    rows = []
+    for name, columns in groups.items():
+        own = [place[c] for c in columns]
+        alone = differences(values[0][:, own], values[1][:, own], columns, {name: columns})
+        rows.append({
+            "group": name,
+            "unit": theirs.result.units[columns[0]],
+            "channels": len(columns),
+            "difference": found.groups.get(name, math.nan),
+            "worst": alone.worst or columns[0],
+            "worst_difference": alone.worst_difference if alone.worst else math.nan,
+            "level_first": _level(ours.result, columns),
+            "level_second": _level(theirs.result, columns),
+        })  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def _level(result: Result, columns: Sequence[str]) -> float:
+    """Root mean square of the alternating parts over the steady part, of all columns together."""
+    values = result.data[list(columns)].to_numpy(float)[steady_part(result).rows]
+    return float(np.sqrt(values.var(axis=0).mean()))
+
+
+def _table_of_columns(
+    ours: Sides,
+    theirs: Sides,
+    shared: Sequence[str],
+    values: tuple[np.ndarray, np.ndarray],
+    units: Any,  # noqa: ANN401 (a mapping)
+) -> pd.DataFrame:
+    off = np.sqrt(np.mean((values[0] - values[1]) ** 2, axis=0))
+    spread = values[1].std(axis=0)
+    varies = spread > _SAME * np.abs(values[1]).max(axis=0)
+    relative = np.where(varies, off / np.where(varies, spread, 1.0), np.nan)
+    table = pd.DataFrame({"column": list(shared), "unit": [units[c] for c in shared]})
+    table["difference"] = relative
+    for name, side in (("first", ours), ("second", theirs)):
+        steady = side.result.data[list(shared)].to_numpy(float)[steady_part(side.result).rows]
+        table[f"mean_{name}"], table[f"rms_{name}"] = steady.mean(axis=0), steady.std(axis=0)
+    return table
+
+
+def _orders(
+    ours: Sides, theirs: Sides, groups: dict[str, list[str]]
+) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Amplitudes of mesh orders, the largest of each group; or why there are none."""
+    names = ["group", "unit", "order", "amplitude_first", "amplitude_second"]
+    for side in (ours, theirs):
+        rows = steady_part(side.result).rows
+        if run_mesh_frequency(side.result) is None or rows.stop - rows.start < FEWEST_SAMPLES:
+            return pd.DataFrame(columns=names), (f"{side.name} has no steady mesh frequency",)
+    found = []
+    for name, columns in groups.items():
+        one, other = (mesh_amplitudes(side.result, columns) for side in (ours, theirs))
+        unit = theirs.result.units[columns[0]]
+        found += [
+            (name, unit, k + 1, float(one[k].max()), float(other[k].max())) for k in range(ORDERS)
+        ]
+    return pd.DataFrame(found, columns=names), ()
+
+
+def mesh_amplitudes(result: Result, columns: Sequence[str], count: int = ORDERS) -> np.ndarray:
+    """Amplitudes (count, columns) at multiples of the mesh frequency in the steady part.
+
+    NaN above half the record rate.
+
+    Raises:
+        ParameterError: there is no steady mesh frequency.
+    """
+    part, mesh = steady_part(result), run_mesh_frequency(result)
+    if mesh is None:
+        raise ParameterError(f"system '{result.info.system}': no steady mesh frequency is known")
+    time = result.data[TIME].to_numpy()[part.rows]
+    values = result.data[list(columns)].to_numpy(float)[part.rows]
+    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(time.size) / time.size)
+    weight = window / window.sum()
+    frequencies = mesh * np.arange(1, count + 1)
+    turned = np.exp(-2j * math.pi * frequencies[:, None] * (time - time[0]))
+    found = 2.0 * np.abs((turned * weight) @ (values - weight @ values))
+    found[frequencies > 0.5 / part.sample_step] = math.nan
+    return found
+
+
+def _parameters(first: Result, second: Result) -> pd.DataFrame:
+    ours, theirs = first.info.parameters, second.info.parameters
+    names = [n for n in {**ours, **theirs} if ours.get(n) != theirs.get(n)]
+    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in names]
+    return pd.DataFrame(rows, columns=["parameter", "first", "second"])

@@ -1,0 +1,228 @@
+"""What the sensors of a system show of a run, evaluated from its rows.
+
+A sensor acts on nothing, so that no loop needs to step it: the bearing forces of the rows drive the
+housing's oscillators (`modal_response`), their velocity at the sensor's point runs through the
+chain of the component that is a sensor (`velocity_sensor`). Rows whose distance does not divide the
+distance of samples are interpolated by cubic splines.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
+from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
+from herringbone.analysis.figures.velocity_sensor import VelocitySensor
+from herringbone.components.registry import component_for
+from herringbone.core import ParameterError
+from herringbone.core.declaring.roles import Role
+from herringbone.core.sensor_spec import SensorSpec
+from herringbone.cosim.structure.system import System
+from herringbone.housing import ModalHousing
+from herringbone.result.result import TIME, Result
+
+_CHAIN = tuple(f.name for f in fields(VelocitySensor))
+_FIRST = "first_sample"
+_FEWEST_ROWS = 4
+_MOST_ORDERS = 50
+
+
+@dataclass(frozen=True)
+class SensorLine:
+    """A line in a sampled record.
+
+    Attributes:
+        frequency_hz: at which it shows.
+        amplitude: [m/s].
+        mesh_order: harmonic of the mesh frequency that shows there; None if none does.
+        folded: that harmonic lies above half the sampling rate.
+    """
+
+    frequency_hz: float
+    amplitude: float
+    mesh_order: int | None
+    folded: bool
+
+
+@dataclass(frozen=True)
+class SensorFigures:
+    """Record of a sensor, and figures over the steady part of the run.
+
+    Attributes:
+        spec: where it sits.
+        chain: what it does to a vibration.
+        time: (n,) of the samples [s].
+        velocity: (n,) samples [m/s].
+        steady: (n,) samples of the steady part.
+        saturated: samples that were clipped.
+        lines: the largest ones of the steady part, largest first; none if the speed is not steady.
+    """
+
+    spec: SensorSpec
+    chain: VelocitySensor
+    time: np.ndarray
+    velocity: np.ndarray
+    steady: np.ndarray
+    saturated: int
+    lines: tuple[SensorLine, ...]
+
+    @property
+    def rms(self) -> float:
+        """Of the steady part, without its mean [m/s]."""
+        return float(self.velocity[self.steady].std()) if self.steady.any() else math.nan
+
+    @property
+    def peak(self) -> float:
+        """Largest magnitude of the steady part [m/s]."""
+        return float(np.abs(self.velocity[self.steady]).max(initial=0.0))
+
+
+def check_sensors(system: System) -> None:
+    """Refuse sensors whose parameters the component that is a sensor does not have.
+
+    Raises:
+        ParameterError: unknown parameter, or a value that is not allowed.
+    """
+    for name, spec in system.sensors.items():
+        _chain(name, spec)
+
+
+def sensor_figures(
+    result: Result, names: tuple[str, ...] = ()
+) -> tuple[dict[str, SensorFigures], dict[str, str]]:
+    """What the sensors of a run show.
+
+    Args:
+        result: of a run.
+        names: of sensors; all if none is given.
+
+    Returns:
+        Figures by name, and why there are none, by name of the others.
+
+    Raises:
+        ParameterError: there is no such sensor.
+    """
+    known = result.info.sensors
+    if missing := [name for name in names if name not in known]:
+        raise ParameterError(
+            f"there is no sensor '{missing[0]}'; there are: {', '.join(known) or 'none'}"
+        )
+    result = result.uniform()
+    found, refused = {}, {}
+    motions: dict[str, tuple[ModalHousing, np.ndarray]] = {}
+    for name in names or known:
+        spec = known[name]
+        try:
+            if spec.part not in motions:
+                motions[spec.part] = _motion(result, spec.part)
+            found[name] = _figures(result, name, spec, *motions[spec.part])
+        except ParameterError as error:
+            refused[name] = str(error)
+    return found, refused
+
+
+def _motion(result: Result, part: str) -> tuple[ModalHousing, np.ndarray]:
+    """A housing's data and the velocities of its oscillators at the rows."""
+    if part not in result.parts_with(Role.HOUSING):
+        raise ParameterError(f"{part} is no {Role.HOUSING} of known data")
+    housing = housing_of(result, part)
+    if housing is None:
+        raise ParameterError(f"{part} has no modal data with points for sensors")
+    if result.outcome.unstable or len(result.data) < _FEWEST_ROWS:
+        raise ParameterError("the run left too few rows, or diverged")
+    time = result.data[TIME].to_numpy()
+    step = float(time[-1] - time[0]) / (time.size - 1)
+    return housing, modal_velocity(housing, seat_forces(result, part), step)
+
+
+def _figures(
+    result: Result, name: str, spec: SensorSpec, housing: ModalHousing, modal: np.ndarray
+) -> SensorFigures:
+    if (spec.point, spec.axis) not in housing.dofs:
+        raise ParameterError(
+            f"the data of {spec.part} have no point {spec.point} along {spec.axis}"
+        )
+    chain, first = _chain(name, spec)
+    time = result.data[TIME].to_numpy()
+    even, step = _even_times(time, chain, first)
+    velocity = modal @ housing.shape(spec.point, spec.axis)
+    if even.size < 2:
+        raise ParameterError(f"the run ends before the second sample of sensor {name}")
+    same = even.size == time.size and np.allclose(even, time, rtol=0.0, atol=1e-9 * step)
+    record = chain.measure(velocity if same else CubicSpline(time, velocity)(even), step)
+    part = steady_part(result)
+    at = even[0] + record.time
+    steady = (at >= part.begin) & (at <= part.end)
+    lines = _lines(result, chain, record.velocity[steady]) if part.steady else ()
+    return SensorFigures(spec, chain, at, record.velocity, steady, int(record.saturated), lines)
+
+
+def _chain(name: str, spec: SensorSpec) -> tuple[VelocitySensor, float]:
+    """The chain of a sensor, and the time of its first sample [s]."""
+    declared = component_for(Role.SENSOR).declaration
+    known: Mapping[str, float] = {v.name: v.start for v in declared.parameters}
+    allowed = [k for k in known if k in {*_CHAIN, _FIRST}]
+    if unknown := [k for k in spec.values if k not in allowed]:
+        raise ParameterError(
+            f"sensor {name} has no parameter '{unknown[0]}'; it has: {', '.join(allowed)}"
+        )
+    values = {k: spec.values.get(k, known[k]) for k in allowed}
+    try:
+        chain = VelocitySensor(
+            values["high_pass_hz"],
+            values["low_pass_hz"],
+            bool(values["anti_alias"]),
+            values["sampling_hz"],
+            values["range"],
+            int(values["bits"]),
+        )
+        return chain, values[_FIRST]
+    except ParameterError as error:
+        raise ParameterError(f"sensor {name}: {error}") from error
+
+
+def _even_times(time: np.ndarray, chain: VelocitySensor, first: float) -> tuple[np.ndarray, float]:
+    """Times [s] from a sample on, a whole number of steps per sample; and the step [s].
+
+    Raises:
+        ParameterError: the rows are too coarse.
+    """
+    own = float(time[-1] - time[0]) / (time.size - 1)
+    chain.check_input(own)
+    period = 1.0 / chain.sampling_hz
+    every = math.ceil(period / own * (1.0 - 1e-9))
+    step = period / every
+    begin = first + period * max(0, math.ceil((time[0] - first) / period - 1e-9))
+    count = int((time[-1] - begin) / step * (1.0 + 1e-12)) + 1
+    return np.minimum(begin + step * np.arange(max(count, 0)), time[-1]), step
+
+
+def _lines(
+    result: Result, chain: VelocitySensor, samples: np.ndarray, count: int = 3
+) -> tuple[SensorLine, ...]:
+    """The largest lines of samples, with the mesh harmonics that show there."""
+    if len(samples) < FEWEST_SAMPLES:
+        return ()
+    half = 0.5 * chain.sampling_hz
+    found = spectral_lines(samples, 1.0 / chain.sampling_hz, half, count)
+    return tuple(
+        SensorLine(line.frequency, line.amplitude, *_order(result, chain, line.frequency, samples))
+        for line in found
+    )
+
+
+def _order(
+    result: Result, chain: VelocitySensor, frequency: float, samples: np.ndarray
+) -> tuple[int | None, bool]:
+    """Lowest mesh harmonic that shows at a frequency, within a resolution; is it folded."""
+    mesh, resolution = run_mesh_frequency(result), chain.sampling_hz / len(samples)
+    if mesh is None:
+        return None, False
+    for k in range(1, _MOST_ORDERS + 1):
+        if abs(chain.alias_hz(k * mesh) - frequency) <= resolution:
+            return k, k * mesh > 0.5 * chain.sampling_hz
+    return None, False

@@ -1,0 +1,1 @@
+"""Periodic steady states: what a system comes to at a constant operating point."""

@@ -1,0 +1,227 @@
+"""Harmonic balance: laws in time, linear answer in frequency, Newton on the harmonics.
+
+T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56, 1989, 149-154 (alternating frequency and time).
+Unknown are harmonics of the stiff values of the laws, less mean tangents times arguments:
+
+    F(r) = r - P [f(z(r)) - tangent z(r)] = 0,    z(r) = H r + what is given
+
+with the exact answer H of the linear part and the projection P on harmonics. Newton takes the laws'
+own tangents at all places of the period. Harmonics beyond its highest, which the linear part hardly
+answers to, and values without tangents are replaced by what the laws give. Of a period of many
+meshes those harmonics are in use that are not negligible.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.steady.correction import correct_at_once
+from herringbone.analysis.steady.families import Families
+from herringbone.analysis.steady.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.krylov import correct_by_families
+from herringbone.analysis.steady.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.problem import Problem, Samples
+from herringbone.analysis.steady.response import Coordinates, Response
+
+_ITERATIONS = 40
+_HALVINGS = 6
+_SMALL = 0.03
+"""Change so small that it is taken whatever the residual: what the laws' harmonics that Newton does
+not solve for give makes it rise a little."""
+_ROUNDING = 1e-13
+_SAME_SPEED = 1e-10
+_INEXACT = 0.03
+"""Residual of the linear equations of a step of Newton, of many meshes."""
+
+
+class _Answered(NamedTuple):
+    """What the linear part does under channels; z: (arguments, harmonics)."""
+
+    response: Response
+    channels: np.ndarray
+    q: Coordinates
+    angle: np.ndarray
+    z: np.ndarray
+
+
+class Balance:
+    """Harmonic balance of a problem with one resolution of the period.
+
+    Args:
+        problem: linear part and laws.
+        period: how it is resolved.
+        motion: what is given.
+    """
+
+    def __init__(self, problem: Problem, period: Period, motion: Motion) -> None:
+        self.problem, self.period, self.motion = problem, period, motion
+        self._share = np.arange(period.places) / period.places
+        highest = period.places // 2 - 1 if period.order else period.meshes // 2
+        self._every = np.arange(highest + 1)
+
+    def _channels(self, orders: np.ndarray, values: np.ndarray, known: np.ndarray) -> np.ndarray:
+        """Channels (channels, harmonics) from values (values, harmonics) of known orders."""
+        given = self.motion.given
+        return np.vstack([on(orders, values, known), on(orders, given, np.arange(given.shape[1]))])
+
+    def _response(self, speed: float, orders: np.ndarray) -> Response:
+        """The linear part at a speed."""
+        motion = self.motion
+        turning = motion.turn != 0.0
+        frequency = abs(2.0 * np.pi * speed / motion.turn) if turning else motion.frequency
+        return Response(self.problem, frequency, orders, speed if turning else 0.0)
+
+    def _first_speed(self, channels: np.ndarray) -> float:
+        """d theta / dt [rad/s] under the means of the channels."""
+        if not self.motion.turn:
+            return 0.0
+        still = Response(self.problem, 0.0, self._every[:1], self.motion.speed)
+        return still.turning(still.coordinates(channels[:, :1]))[0]
+
+    def _answered(self, answer: Response, channels: np.ndarray) -> _Answered:
+        """What the linear part does under channels; made anew where these change the speed."""
+        q = answer.coordinates(channels)
+        speed, angle = answer.turning(q)
+        if self.motion.turn and abs(speed - answer.speed) > _SAME_SPEED * abs(speed):
+            answer = self._response(speed, answer.orders)
+            q = answer.coordinates(channels)
+            _, angle = answer.turning(q)
+        problem = self.problem
+        z = answer.of(problem.arguments, q)
+        z += problem.of_angle[:, None] * angle
+        z += problem.of_channels @ channels
+        return _Answered(answer, channels, q, angle, z)
+
+    def _begun(self, values: np.ndarray, known: np.ndarray) -> _Answered:
+        """The motion of a guess."""
+        orders = self._every
+        speed = self._first_speed(self._channels(orders[:1], values[:, :1], known[:1]))
+        if self.period.meshes > 1:
+            used = self._in_use(self._response(speed, orders[:1]), values, known)
+            orders = used[used < orders.size]
+        channels = self._channels(orders, values, known)
+        return self._answered(self._response(speed, orders), channels)
+
+    def solve(self, values: np.ndarray, known: np.ndarray, close: float) -> Orbit:
+        """The periodic motion from a guess of the laws' values, less mean tangents.
+
+        Args:
+            values: (values, harmonics) coefficients.
+            known: (harmonics,) their orders, the first is 0.
+            close: change of the alternating part of the stiff arguments at which it ends.
+        """
+        problem = self.problem
+        now, count = self._begun(values, known), problem.values
+        part, merit, change, iterations = 1.0, np.inf, np.inf, 0
+        stepped = now.response.orders
+        step = np.zeros((count, stepped.size))
+        while iterations < _ITERATIONS:
+            samples = problem.laws(self._arguments(now))
+            iterations += 1
+            now, laws = self._with_orders(now, samples)
+            off = laws - now.channels[:count]
+            before, merit = merit, self._size(samples, off, now.response.orders)
+            if merit > before and change > _SMALL and part > 0.5**_HALVINGS:
+                part *= 0.5  # not as far
+                step = on(now.response.orders, step, stepped)
+                stepped = now.response.orders
+                now, merit = self._moved(now, -part * step), before
+                continue
+            step, part = self._correction(now.response, samples, off), 1.0
+            last, now, stepped = now, self._moved(now, step), now.response.orders
+            change = self._change(last.z, now.z)
+            if change <= close or merit <= _ROUNDING:
+                break
+        moved = np.zeros_like(now.channels)
+        moved[:count] = step
+        return Orbit(
+            now.channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples,
+            change, merit, iterations, change <= close or merit <= _ROUNDING,
+        )  # fmt: skip
+
+    def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:
+        """The motion with values changed by a step (values, harmonics)."""
+        channels = now.channels.copy()
+        channels[: len(step)] += step
+        return self._answered(now.response, channels)
+
+    def _with_orders(self, now: _Answered, samples: Samples) -> tuple[_Answered, np.ndarray]:
+        """The motion on all orders that are in use, and the laws' values there."""
+        rest = (samples.f - samples.z @ self.problem.tangent.T).T
+        if self.period.meshes == 1:
+            return now, in_frequency(rest, self._every)
+        every = in_frequency(rest, self._every)
+        used = self._in_use(now.response, every, self._every)
+        wanted = np.union1d(now.response.orders, used)
+        if wanted.size > now.response.orders.size:
+            own = now.channels[: self.problem.values]
+            channels = self._channels(wanted, own, now.response.orders)
+            now = self._answered(self._response(now.response.speed, wanted), channels)
+        return now, every[:, wanted]
+
+    def _in_use(self, answer: Response, values: np.ndarray, orders: np.ndarray) -> np.ndarray:
+        """Orders without which the values (values, harmonics) lose a share of their alternation.
+
+        Values count by what they move the stiff arguments by, at the mesh frequency.
+        """
+        problem = self.problem
+        mesh = answer.at(np.array([0, self.period.meshes]))
+        gains = mesh.gain(problem.along, problem.along_angle, np.arange(len(values)), 2)[:, :, 1]
+        weights = np.abs(problem.mean[:, None] * gains).sum(axis=0)
+        energy = ((weights[:, None] * np.abs(values)) ** 2).sum(axis=0)
+        energy[0] = 0.0
+        ascending = np.argsort(energy)
+        left_out = np.cumsum(energy[ascending]) <= self.period.thin**2 * energy.sum()
+        used = np.ones(energy.size, dtype=bool)
+        used[ascending[left_out]] = False
+        used[0] = True
+        return orders[used]
+
+    def missing(self, orbit: Orbit) -> tuple[Response, np.ndarray]:
+        """What the laws give at these places, and an orbit at fewer of them lacks.
+
+        Returns:
+            The linear part, and channels (channels, harmonics).
+        """
+        now = self._begun(orbit.channels[: self.problem.values], orbit.response.orders)
+        samples = self.problem.laws(self._arguments(now))
+        now, laws = self._with_orders(now, samples)
+        found = np.zeros_like(now.channels)
+        found[: len(laws)] = laws - now.channels[: len(laws)]
+        return now.response, found
+
+    def _arguments(self, now: _Answered) -> np.ndarray:
+        """Arguments (places, arguments) in time."""
+        z = in_time(now.z, now.response.orders, self.period.places)
+        if self.motion.turn:
+            turn = np.sign(now.response.speed) * abs(self.motion.turn)
+            turned = self.motion.angle + turn * self._share
+            z += self.problem.of_angle[:, None] * turned
+        return np.ascontiguousarray(z.T)
+
+    def _size(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
+        """How far stiff values are off, over their sizes."""
+        stiff = self.problem.stiff
+        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0) + np.finfo(float).tiny
+        low = orders <= self.period.order * self.period.meshes
+        return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
+
+    def _correction(self, answer: Response, samples: Samples, off: np.ndarray) -> np.ndarray:
+        """Changes of the values (values, harmonics) by one step of Newton."""
+        period = self.period
+        if period.meshes == 1:
+            return correct_at_once(self.problem, answer, samples, off, period.order)
+        families = Families(answer.orders, period.meshes, period.order)
+        return correct_by_families(self.problem, answer, samples, off, families, _INEXACT)
+
+    def _change(self, before: np.ndarray, after: np.ndarray) -> float:
+        """What a correction changes the stiff arguments by, over their alternating part."""
+        rows = self.problem.directions @ after
+        alternating = np.linalg.norm(rows[:, 1:], axis=1)
+        moved = np.linalg.norm(rows - self.problem.directions @ before, axis=1)
+        sizes = np.where(alternating > 0.0, alternating, np.inf)
+        return float((moved / sizes).max(initial=0.0))
+
+
+def _less(after: Coordinates, before: Coordinates) -> Coordinates:
+    return Coordinates(after.ahead - before.ahead, after.back - before.back)

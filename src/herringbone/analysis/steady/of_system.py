@@ -1,0 +1,121 @@
+"""The problem of harmonic balance of a condensed system."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+import numpy as np
+
+from herringbone.analysis.steady.problem import Problem, Samples
+from herringbone.analysis.twin.condensed.along import laws_along
+from herringbone.analysis.twin.condensed.equations import laws_of
+from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.core import StructureError, common_period
+
+_NONE = 1e-9
+"""Turn of an argument, over the largest one, that is rounding."""
+_FINEST, _EXACT = 10_000, 1e-9
+"""Largest denominator of a ratio of turns, and how exact it is."""
+
+
+class SystemLaws:
+    """The laws of a condensed system, after all ramps.
+
+    Args:
+        system: whose laws.
+        late: time [s] after which no signal changes.
+    """
+
+    def __init__(self, system: Condensed, late: float) -> None:
+        self._calls, self._late = system.calls(), late
+        twin = system.twin
+        first = twin.layout.block_first
+        for p in system.equations.laws:
+            laws = laws_of(twin.instances[p])
+            assert laws is not None
+            laws.settle(self._calls.blocks[first[p] : first[p + 1]])
+        self._room: dict[int, Samples] = {}
+
+    def __call__(self, z: np.ndarray) -> Samples:
+        """What they give at arguments (places, arguments); good until the next call."""
+        places, calls = len(z), self._calls
+        if places not in self._room:
+            self._room[places] = Samples(
+                z,
+                np.zeros((places, calls.value[-1])),
+                np.zeros((places, calls.tangent[-1])),
+                np.zeros((places, max(1, calls.indicator[-1]))),
+            )
+        found = self._room[places]._replace(z=z)
+        laws_along(calls, self._late, z, found.f, found.k, found.e)
+        return found
+
+
+def problem_of(system: Condensed, late: float) -> Problem:
+    """Linear part and laws of a system that rotates as a whole, or not at all.
+
+    Args:
+        system: taken apart.
+        late: time [s] after which no signal changes.
+
+    Raises:
+        StructureError: it rotates in several ways.
+    """
+    modes, calls = system.modes, system.calls()
+    if modes.angles.size > 1:
+        raise StructureError(
+            f"{system.twin.system.name}: {modes.angles.size} shafts rotate independently of each "
+            "other, so that their motion does not repeat"
+        )
+    table = system.table(calls)
+    rotating = modes.angles.size == 1
+    size = np.abs(system.equations.c) @ np.abs(modes.rigid)
+    of_angle = np.where(np.abs(modes.of_angles) > _NONE * size, modes.of_angles, 0.0)
+    return Problem(
+        modes.rates,
+        modes.inputs,
+        modes.arguments,
+        of_angle[:, 0] if rotating else np.zeros(len(modes.arguments)),
+        modes.of_channels,
+        modes.turns[0] if rotating else np.zeros(modes.rates.size),
+        modes.tangent,
+        system.directions,
+        table.value,
+        table.mean,
+        SystemLaws(system, late),
+    )
+
+
+def turn_of(system: Condensed, of_angle: np.ndarray) -> Fraction:
+    """Turns of the reference after which all laws repeat.
+
+    Raises:
+        StructureError: the turns of two laws have no common multiple, or none depends on an angle.
+    """
+    found = list(_turns(system, of_angle))
+    if not found:
+        raise StructureError(
+            f"{system.twin.system.name}: nothing in it depends on an angle, so that its steady "
+            "state does not vibrate"
+        )
+    return common_period(found)
+
+
+def _turns(system: Condensed, of_angle: np.ndarray) -> Iterator[Fraction]:
+    twin, at = system.twin, 0
+    for p in system.equations.laws:
+        instance = twin.instances[p]
+        laws = laws_of(instance)
+        assert laws is not None
+        block = instance.block.copy()
+        laws.prepare(block)
+        laws.settle(block)
+        for argument, turns in laws.periods(block):
+            ratio = float(abs(of_angle[at + argument]))
+            whole = Fraction(ratio).limit_denominator(_FINEST)
+            if not whole or abs(float(whole) - ratio) > _EXACT * ratio:
+                raise StructureError(
+                    f"{instance.name}: it turns {ratio:.9g} times as fast as the reference shaft, "
+                    "no ratio of whole numbers, so that the motion does not repeat"
+                )
+            yield turns / whole
+        at += len(laws.arguments)

@@ -1,0 +1,96 @@
+"""A steady state as text, as numbers of a JSON object, and as files."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.core.places.files import replacing
+from herringbone.result.tables import pieces_of, write_csv
+
+_R_MIN = 30.0 / math.pi
+_LINES = 5
+"""Largest lines of a group that are told."""
+ORDERS, SUMMARY = "orders.csv", "steady.json"
+
+
+def per_second(speed: float) -> float:
+    """Speed [rad/s] of one in r/min."""
+    return speed / _R_MIN
+
+
+def steady_summary(state: SteadyState) -> dict:
+    """Figures of a state, for JSON; SI units."""
+    return {
+        "system": state.structure.system.name,
+        "converged": state.converged,
+        "speed": state.speed,
+        "period": state.period,
+        "meshes": state.meshes,
+        "tolerance": state.tolerance,
+        "left_out": dict(state.errors.left_out),
+        "change": dict(state.errors.change),
+        "iterations": state.orbit.iterations,
+        "places": state.orbit.places,
+        "drift": state.drift,
+        "bends": list(state.bends),
+        "levels": {group: state.level(group) for group in state.channels},
+        "notes": list(state.notes),
+    }
+
+
+def steady_text(state: SteadyState) -> list[str]:
+    """Lines for people."""
+    found = "periodic" if state.converged else "NOT CONVERGED: no figure below can be trusted"
+    lines = [
+        f"Steady state of {state.structure.system.name}: {found}",
+        f"  speed {state.speed * _R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
+        f"({state.period:.6g} s)",
+        f"  harmonics left out {state.errors.worst:.2g} of the alternating part (asked "
+        f"{state.tolerance:g}), last correction "
+        f"{max(state.errors.change.values(), default=0.0):.2g}; {state.orbit.iterations} "
+        f"iterations, {state.orbit.places} points of the period",
+    ]
+    if state.bends:
+        lines.append(f"  laws bend within the period: {', '.join(state.bends)}")
+    if state.structure.problem.free is not None:
+        lines.append(
+            f"  nothing holds the speed: it would change by {state.drift:.3g} rad/s2, which is left"
+            " out"
+        )
+    for group in state.channels:
+        lines += ["", *_group(state, group)]
+    return lines
+
+
+def _group(state: SteadyState, group: str) -> list[str]:
+    columns = state.chosen(group)
+    unit = state.structure.core.unit(columns[0])
+    sizes = np.sqrt(np.mean(np.abs(state.amplitudes(group)) ** 2, axis=0) / 2.0)
+    largest = [k for k in np.argsort(sizes[1:])[::-1][:_LINES] + 1 if sizes[k] > 0.0]
+    loudest = max(columns, key=state.level)
+    return [
+        f"{group.replace('_', ' ')}: {state.level(group):.5g} {unit} rms over {len(columns)} "
+        f"channels, most {state.level(loudest):.5g} {unit} at {loudest}",
+        *(
+            f"  mesh order {state.mesh_orders[k]:<8.5g} {k * state.frequency:9.5g} Hz "
+            f"{sizes[k]:11.5g} {unit} rms"
+            for k in sorted(largest)
+        ),
+    ]
+
+
+def write_steady(state: SteadyState, folder: Path) -> list[Path]:
+    """Write `orders.csv`, one row per output and harmonic, and `steady.json`; returns their names.
+
+    Amplitudes have the unit of their row.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    table = state.table()
+    with replacing(folder / ORDERS) as file:
+        write_csv(file, list(table.columns), pieces_of(table))
+    with replacing(folder / SUMMARY) as file:
+        file.write(json.dumps(steady_summary(state), indent=1) + "\n")
+    return [folder / ORDERS, folder / SUMMARY]

@@ -1,0 +1,100 @@
+"""A system prepared for steady states: taken apart once, whatever operating points follow."""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.steady.of_system import problem_of, turn_of
+from herringbone.analysis.steady.problem import Problem
+from herringbone.analysis.steady.response import Rows
+from herringbone.analysis.steady.set_points import SetPoints
+from herringbone.analysis.twin.condensed.wanted import Wanted
+from herringbone.analysis.twin.fused.core import Core
+from herringbone.core import StructureError
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.cosim.structure.system import System
+
+_LATE = 1e9
+"""Time [s] before which all breakpoints lie."""
+
+
+class Structure:
+    """A system taken apart, with what harmonic balance needs.
+
+    Args:
+        system: its parts are all components of this package; with start values near steady
+            rotation.
+        like: of the same structure; what is the same is taken from it.
+
+    Attributes:
+        core: the system, condensed.
+        problem: linear part and laws.
+        late: time [s] after which no set point changes.
+        turn: angle of the reference shaft over a period [rad].
+        meshes: periods of the first gear pair's mesh in a period.
+        points: what speed and torque stand for.
+
+    Raises:
+        StructureError: it cannot be taken apart, or its motion does not repeat.
+    """
+
+    def __init__(self, system: System, like: "Structure | None" = None) -> None:
+        self.system = system
+        self.core: Core = Core(system, like.core if like else None)
+        condensed, twin = self.core.condensed, self.core.twin
+        self.late = max([0.0, *twin.breakpoints(_LATE)])
+        self.problem: Problem = problem_of(condensed, self.late)
+        turns = turn_of(condensed, self.problem.of_angle)
+        self.turn = 2.0 * np.pi * float(turns)
+        self.points = SetPoints(system)
+        self.pinion = self._pinion()
+        own = Wanted(condensed, self.core.affine, [self.pinion]).rows
+        ratio = abs(float(own.turned[0, 0])) if own.turned.any() else 1.0
+        self.turns_of_pinion = float(turns) * ratio
+        self.meshes = round(self.turns_of_pinion * self._teeth())
+
+    def _pinion(self) -> str:
+        """Column of the first pinion's angle."""
+        known = anatomy(self.system)
+        for pair in known.with_role(Role.GEAR_PAIR):
+            for port in known.parts[pair].ports:
+                if port.place == GEARS[0] and f"{pair}.{port.name}.phi" in self.core.names:
+                    return f"{pair}.{port.name}.phi"
+        raise StructureError(f"{self.system.name}: no gear pair in it tells its pinion's angle")
+
+    def _teeth(self) -> float:
+        known = anatomy(self.system)
+        pair = known.with_role(Role.GEAR_PAIR)[0]
+        column = known.column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
+        return float(self.core.twin.block[self.core.twin.index(str(column))])
+
+    def wanted(self, columns: Sequence[str]) -> Wanted:
+        """Rows of outputs."""
+        return Wanted(self.core.condensed, self.core.affine, columns)
+
+    @cached_property
+    def groups(self) -> tuple[dict[str, slice], Rows]:
+        """Where the affine columns of each group of channels lie in rows, and these rows."""
+        found: dict[str, slice] = {}
+        columns: list[str] = []
+        for name, own in self.core.groups().items():
+            affine = [own[k] for k in self.wanted(own).here]
+            if affine:
+                found[name] = slice(len(columns), len(columns) + len(affine))
+                columns += affine
+        modal, turned, channels, _ = self.wanted(columns).rows
+        of_angle = turned[:, 0] if turned.shape[1] else np.zeros(len(turned))
+        return found, Rows(modal, of_angle, channels)
+
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Laws' values less mean tangents (values, 1) at the start values of the system."""
+        modes, problem = self.core.condensed.modes, self.problem
+        signals = self.core.condensed.signals(self.late)
+        channels = np.concatenate([np.zeros(problem.values), signals, [1.0]])
+        z = (modes.arguments @ modes.start).real + modes.of_channels @ channels
+        z += modes.of_angles @ modes.angles
+        f = problem.laws(np.ascontiguousarray(z[None, :])).f[0]
+        return (f - problem.tangent @ z)[:, None].astype(complex)

@@ -1,0 +1,1 @@
+"""Harmonic balance of many equations with scalar laws; arrays only."""

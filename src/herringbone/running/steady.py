@@ -1,0 +1,75 @@
+"""Periodic steady states of systems, by name."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from herringbone.analysis.steady.set_points import Point, SetPoints
+from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.cosim.structure.system import System
+from herringbone.running.loading import load_system
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.scenes import Scene, Start
+
+
+def steady(
+    system: str | Path | System,
+    *,
+    scene: str | Path | Scene | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    tolerance: float = TOLERANCE,
+    near: SteadyState | None = None,
+) -> SteadyState:
+    """The periodic steady state of a system at an operating point, by harmonic balance.
+
+    Set points that change with time are taken as they are in the end.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, .ssp file, or a System.
+        scene: name or file; gives values, as in `run`.
+        speed: of the pinion [rad/s], where the system declares a set point of it, or nothing is
+            joined to its gear pair; the scene's if not given.
+        torque: at the pinion [N m], likewise.
+        values, gear, housing: see `herringbone.run`.
+        tolerance: error of the alternating part of each group of channels, harmonics left out
+            included.
+        near: a state nearby, to begin from; it decides on the branch where there are several.
+
+    Returns:
+        A state; ask it whether it is `converged`.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or the motion does not repeat.
+    """
+    solver, point, notes = prepared_solver(
+        system, scene=scene, speed=speed, torque=torque, values=values, gear=gear, housing=housing,
+        tolerance=tolerance,
+    )  # fmt: skip
+    return solver.solve(point, near).noted(notes)
+
+
+def prepared_solver(
+    system: str | Path | System,
+    *,
+    scene: str | Path | Scene | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    tolerance: float = TOLERANCE,
+) -> tuple[SteadySolver, Point, tuple[str, ...]]:
+    """What solves for steady states, the operating point asked for, and notes; see `steady`."""
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    point = Point(speed, torque)
+    wanted = {**SetPoints(structure).values(point), **(values or {})}
+    wishes = Wishes(
+        values=wanted, gear=gear, housing=housing, start=Start.EQUILIBRIUM, start_offset={}
+    )
+    found = prepared(system, scene, wishes)
+    return SteadySolver(found.system, tolerance), point, found.notes

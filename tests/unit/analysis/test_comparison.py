@@ -1,0 +1,118 @@
+"""Comparison of runs: differences, levels and orders of runs that are known to differ."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.result import make_foreign_result, make_result
+
+import herringbone as hb
+from herringbone.commands.main import main
+from herringbone.core import ParameterError
+from herringbone.running.reporting.report import write_report
+
+FORCES = "bearing_force"
+SHARE = 0.01
+
+
+@pytest.fixture(scope="module")
+def second():
+    return make_result()
+
+
+@pytest.fixture(scope="module")
+def first(second):
+    """Alternating parts of the bearing forces are 1 % larger."""
+    columns = second.channel(FORCES)
+    values = second.data[columns]
+    data = second.data.assign(**(values + SHARE * (values - values.mean())))
+    parameters = {**second.info.parameters, "gear_mesh.backlash": 1e-4}
+    return replace(second, data=data, info=replace(second.info, parameters=parameters))
+
+
+def test_differences_levels_and_orders(first, second):
+    found = hb.compare(first, second)
+    groups = found.groups.set_index("group")
+    assert list(groups.index) == [FORCES, "seat_velocity"]
+    assert groups.loc[FORCES, "difference"] == pytest.approx(SHARE, rel=1e-9)
+    assert groups.loc[FORCES, "worst_difference"] == pytest.approx(SHARE, rel=1e-9)
+    ratio = groups.loc[FORCES, "level_first"] / groups.loc[FORCES, "level_second"]
+    assert ratio == pytest.approx(1.0 + SHARE, rel=1e-9)
+    assert groups.loc["seat_velocity", "difference"] == 0.0
+    orders = found.orders[found.orders["group"] == FORCES]
+    assert list(orders["order"]) == [1, 2, 3, 4, 5, 6]
+    one = orders.iloc[0]
+    assert one["amplitude_second"] == pytest.approx(12.0, rel=1e-6)  # of the synthetic run
+    assert one["amplitude_first"] == pytest.approx(12.0 * (1.0 + SHARE), rel=1e-6)
+    assert orders.iloc[1]["amplitude_second"] == pytest.approx(0.4 * 12.0, rel=1e-6)
+    assert found.parameters.to_dict("records")[0]["first"] == 1e-4
+    assert (found.begin, found.end) == (0.0, 0.2)
+
+
+def test_runs_of_other_record_steps_are_interpolated(first, second):
+    """Cubic splines through 25 kHz err by (2 pi f h)^4 / 384 of a line at 900 Hz, 7e-6."""
+    coarse = replace(first, data=first.data.iloc[::2].reset_index(drop=True))
+    found = hb.compare(coarse, second)
+    assert found.groups["difference"][0] == pytest.approx(SHARE, rel=1e-3)
+    assert any("by cubic splines" in note for note in found.notes)
+
+
+def test_named_columns_and_their_worst(first, second):
+    found = hb.compare(first, second, "*.v_x", "*.shaft.*.f_y")
+    assert list(found.groups["group"]) == ["*.v_x", "*.shaft.*.f_y"]
+    assert found.groups["worst"][1].endswith(".f_y")
+
+
+def test_speeds_that_differ_are_said(second):
+    data = second.data.assign(**{"gearbox.gear_mesh.pinion.w": 1.01 * second["gear_mesh.pinion.w"]})
+    notes = hb.compare(replace(second, data=data), second).notes
+    assert any("mesh frequencies are 454.5 and 450 Hz" in note for note in notes)
+
+
+def test_what_has_nothing_in_common_is_refused(second):
+    with pytest.raises(ParameterError, match="no columns in common"):
+        hb.compare(make_foreign_result(), second)
+    later = replace(second, data=second.data.assign(time=second.data["time"] + 1.0))
+    with pytest.raises(ParameterError, match="there is nothing to compare"):
+        hb.compare(later, second)
+
+
+def test_systems_without_gears_are_compared_by_unit():
+    found = hb.compare(make_foreign_result(), make_foreign_result())
+    assert list(found.groups["group"]) == ["outputs in m", "outputs in m/s", "outputs in 1"]
+    assert not found.groups["difference"].any()
+    assert not len(found.orders)
+
+
+def test_picture_has_both_runs_in_every_panel(first, second):
+    for axes in hb.compare(first, second).plot().axes:
+        assert len([line for line in axes.lines if not line.get_label().startswith("_")]) == 2
+        assert axes.get_ylabel().endswith("]")
+        assert axes.get_xlabel().endswith(("[ms]", "cut at 3000 of 25000 Hz [Hz]"))
+
+
+def test_command_writes_tables_and_picture(first, second, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("herringbone.plotting.write_pictures", lambda result, folder: [])
+    folders = []
+    for name, result in (("a", first), ("b", second)):
+        folders.append(tmp_path / name)
+        short = result.data.iloc[::4].reset_index(drop=True)
+        write_report(replace(result, data=short), folders[-1])
+    output = tmp_path / "out"
+    assert main(["compare", *map(str, folders), "-o", str(output)]) == 0
+    text = capsys.readouterr().out
+    (row,) = [
+        line for line in text.splitlines() if line.startswith("bearing_force ") and "[N]" in line
+    ]
+    assert row.split()[1:3] == ["1", "%"]
+    assert "parameters that differ: 1" in text
+    assert {file.name for file in output.iterdir()} == {
+        "compare.json",
+        "compare.csv",
+        "compare.png",
+    }
+    assert main(["compare", *map(str, folders), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["groups"][0]["difference"] == pytest.approx(SHARE, rel=1e-6)
+    assert np.isfinite([row["amplitude_first"] for row in told["orders"]]).all()

@@ -1,0 +1,93 @@
+"""Steady states by harmonic balance against the fused core that marches on from them."""
+
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_limits
+
+import herringbone as hb
+from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.twin.fused.core import Steps
+from herringbone.core import ParameterError
+from herringbone.running.steady import prepared_solver
+
+GROUPS = ("bearing_force", "seat_velocity")
+PERIODS, PER_PERIOD, STEP = 40, 64, 5e-6
+STILL = {"gear_mesh.symmetry_deviation": 0.0}
+
+
+def marched(
+    state: hb.SteadyState, columns: list[str], periods: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values of the last of some periods, from the state on."""
+    steps = Steps(STEP, 4, 1e-9, lean=False)
+    core, orbit = state.structure.core, state.orbit
+    run = core.solution(steps)
+    q = orbit.q.ahead.sum(axis=1) + orbit.q.back[:, 1:].sum(axis=1)
+    angle = (orbit.angle[0] + 2.0 * orbit.angle[1:].sum()).real
+    own = np.concatenate([q.real, q.imag, [angle]])
+    run.state.q[: own.size] = own
+    outputs = core.outputs(columns, steps, inside=False)
+    places = PER_PERIOD * state.meshes
+    gap = state.period / places
+    step = gap / np.ceil(gap / STEP)
+    times = (np.arange(places) + (periods - 1) * places) * gap
+    end = round(periods * state.period / step) * step
+    with threadpool_limits(limits=1, user_api="blas"):
+        values = [outputs.values(run, part) for part in run.piece(0.0, end, step, times)]
+    return times, np.concatenate(values)
+
+
+def error(state: hb.SteadyState, group: str, periods: int = PERIODS) -> float:
+    """What a march differs by after some periods, over the alternating part of a group."""
+    columns = state.chosen(group)
+    times, values = marched(state, columns, periods)
+    expected = state.signal(group, times)
+    alternating = expected - expected.mean(axis=0)
+    return float(np.linalg.norm(values - expected) / np.linalg.norm(alternating))
+
+
+@pytest.fixture(scope="module")
+def solver() -> SteadySolver:
+    return prepared_solver("test_rig", values=STILL, tolerance=1e-4)[0]
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_a_march_stays_on_the_state(tolerance):
+    """The stated error is of single harmonics in all channels: the march differs by no more."""
+    state = hb.steady("test_rig", values=STILL, tolerance=tolerance)
+    assert state.converged
+    assert state.meshes == 1
+    for group in GROUPS:
+        assert error(state, group) < tolerance
+        assert error(state, group) < 2.0 * state.errors.left_out[group] + 1e-5  # the march's own
+
+
+def test_set_points_are_addressed(solver):
+    state = solver.solve(Point(speed=2945.0 * np.pi / 30.0, torque=150.0))
+    assert state.speed == pytest.approx(2945.0 * np.pi / 30.0, rel=1e-9)
+    # Losses of the meshes are all that the drive gives besides; 200 N m would be 33 % off.
+    assert state.mean("drive_motor.torque") == pytest.approx(150.0, rel=1e-3)
+
+
+def test_neighbours_lead_to_the_same_state(solver):
+    """Newton's last correction is far below the tolerance: its square is what is left."""
+    near = solver.solve(Point(speed=100.0))
+    ours, theirs = solver.solve(Point(speed=105.0), near), solver.solve(Point(speed=105.0))
+    for group in GROUPS:
+        assert ours.level(group) == pytest.approx(theirs.level(group), rel=1e-4)
+
+
+def test_speed_of_what_follows_its_loads_is_refused():
+    with pytest.raises(ParameterError, match="declares no set points"):
+        hb.steady("turbine", values=STILL, speed=100.0)
+
+
+def test_run_outs_make_the_period_long():
+    """27 and 81 teeth: 81 meshes; a march over two of these periods stays on the state."""
+    state = hb.steady("test_rig", tolerance=1e-3)
+    assert state.converged
+    assert state.meshes == 81
+    assert state.period == pytest.approx(3.0 * 0.06, rel=1e-9)  # three turns of the pinion
+    for group in GROUPS:
+        assert error(state, group, periods=2) < 1e-3
