@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.accuracy import Accuracy
-from herringbone.analysis.steady.balance import Orbit
 from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.orbit import Orbit
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
