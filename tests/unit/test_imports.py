@@ -30,7 +30,16 @@ ALLOWED: dict[str, set[str]] = {
         "result",
         "plotting",
     },
-    "studies": {"core", "components", "cosim", "analysis", "scenes", "result", "running"},
+    "studies": {
+        "core",
+        "components",
+        "cosim",
+        "analysis",
+        "scenes",
+        "result",
+        "running",
+        "plotting",
+    },
     "benchmarks": {"core", "fmi", "gears", "cosim", "analysis", "scenes", "result", "running"},
     "plotting": {"core", "components", "gears", "analysis", "result"},
 }

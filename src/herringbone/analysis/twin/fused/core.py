@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
@@ -20,6 +19,7 @@ from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
@@ -144,7 +144,7 @@ def endings_of(name: str) -> tuple[str, ...]:
 def _condensed(twin: Twin, like: Condensed | None) -> Condensed:
     equations = take_apart(twin, places_seen(twin))
     modes = renewed(twin, equations, like.equations, like.modes) if like else None
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         found = Condensed(twin, equations, modes or make_modes(twin, equations))
     if not np.isfinite(found.modes.start).all():
         raise StructureError(f"{twin.system.name}: its start values are not finite")
