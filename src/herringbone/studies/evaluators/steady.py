@@ -106,10 +106,9 @@ class _States:
         meshes = state.meshes * state.frequency
         figures = {"mesh_frequency": Figure(meshes, "Hz")}
         chosen = state.chosen(*self._asked.columns) if self._asked.columns else []
-        for name in (*state.channels, *chosen):
-            columns = state.chosen(name)
+        for name, columns in {**state.channels, **{name: [name] for name in chosen}}.items():
             unit = state.structure.core.unit(columns[0])
-            amplitudes = state.amplitudes(*columns)
+            amplitudes = state.amplitudes(name)
             figures |= prefixed(name, _moments(amplitudes), unit)
             size = np.sqrt(np.mean(np.square(np.abs(amplitudes[:, 1:])), axis=0))
             figures |= order_figures(name, state.mesh_orders[1:], size, unit)
