@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.balance import Balance
@@ -23,11 +22,11 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3
 AS_IT_IS = Point()
-_BLAS = ThreadpoolController()
 _PLACES, _MOST_PLACES = 64, 2048
 """Points in time of a mesh period: at first, and at most."""
 _THIN = 0.05
@@ -98,7 +97,7 @@ class SteadySolver:
         Raises:
             ParameterError: the system declares no such set point.
         """
-        with _BLAS.limit(limits=1, user_api="blas"), np.errstate(all="ignore"):
+        with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             (motion, orbit, errors), notes = self._found(structure, _motion(structure, point), near)
         return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)

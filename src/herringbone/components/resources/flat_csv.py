@@ -7,13 +7,19 @@ left,56.306,0.0,8.22e8
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
 from herringbone.core import ResourceError
+from herringbone.core.caching.remembered import Remembered, content_key
+from herringbone.core.places.files import is_file
 from herringbone.core.reading.numbers import number
-from herringbone.core.reading.texts import AnyPath, lines_of, read_text
+from herringbone.core.reading.texts import LARGEST_TEXT, AnyPath, lines_of, read_text
 
+_Table = tuple[dict[str, np.ndarray], dict[str, str]]
+_tables: Remembered[_Table] = Remembered(64)
+_headers: Remembered[np.ndarray] = Remembered(64)
 _BLANK = " \t\v\f"
 _QUOTED = re.compile(r'"((?:[^"]++|"")*+)"([^,]*)')
 _PLAIN = re.compile(r"()([^,]*)")
@@ -60,6 +66,25 @@ def read_flat_csv(
     Raises:
         ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
+    key = _content(file)
+    if not key:
+        return _read(file, texts, numbers, more)
+    asked = key, texts, tuple(numbers.items()), more
+    columns, units = _tables(asked, lambda: _read(file, texts, numbers, more))
+    return {name: values.copy() for name, values in columns.items()}, dict(units)
+
+
+def _content(file: AnyPath) -> str:
+    """What tells a file's content from others; "" if it is not known, or is refused."""
+    if not isinstance(file, Path) or not is_file(file) or file.stat().st_size > LARGEST_TEXT:
+        return ""
+    return content_key(file)
+
+
+def _read(
+    file: AnyPath, texts: tuple[str, ...], numbers: Mapping[str, tuple[str, ...]], more: str
+) -> _Table:
+    """See `read_flat_csv`."""
     lines = lines_of(read_text(file))
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
@@ -102,6 +127,14 @@ def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
     Raises:
         ResourceError: it has not that many finite numbers.
     """
+    key = _content(file)
+    if not (key and count):
+        return _read_header(file, name, count)
+    return _headers((key, name, count), lambda: _read_header(file, name, count)).copy()
+
+
+def _read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
+    """See `read_header`."""
     mark, last = f"# {name}:", 0
     lines = lines_of(read_text(file)) if count else []
     for line, text in enumerate(lines, 1):
