@@ -5,6 +5,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb
+from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.fused.core import Steps
@@ -96,3 +97,18 @@ def test_run_outs_make_the_period_long():
     assert state.period == pytest.approx(3.0 * 0.06, rel=1e-9)  # three turns of the pinion
     for group in GROUPS:
         assert error(state, group, periods=2) < 1e-3
+
+
+def test_sensitivities_are_differences():
+    """Central differences of the same problem: what is left is the second order of their steps."""
+    speed, name = 1300.0 * np.pi / 30.0, "gear_mesh.mesh_damping_ratio"
+    solver = prepared_solver("test_rig", values=STILL, tolerance=1e-5)[0]
+    state = solver.solve(Point(speed=speed))
+    found = sensitivities(state, "bearing_force", [name])[name]
+    sides = [
+        solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}))
+        for e in (1e-3, -1e-3)
+    ]
+    levels = [side.level("bearing_force") for side in sides]
+    expected = (levels[0] - levels[1]) / (2e-3 * found.value)
+    assert found.derivative == pytest.approx(expected, rel=1e-3)

@@ -9,10 +9,10 @@ from herringbone.analysis.steady.structure import Structure
 def bending_parts(structure: Structure, orbit: Orbit) -> tuple[str, ...]:
     """Names of the parts whose laws bend within the period."""
     condensed = structure.core.condensed
-    calls, signs = condensed.calls(), np.sign(orbit.samples.e)
+    first, signs = structure.indicators, np.sign(orbit.samples.e)
     found = []
     for number, part in enumerate(condensed.equations.laws):
-        own = signs[:, calls.indicator[number] : calls.indicator[number + 1]]
+        own = signs[:, first[number] : first[number + 1]]
         if (own.max(axis=0, initial=-1.0) > own.min(axis=0, initial=1.0)).any():
             found.append(str(condensed.twin.instances[part].name))
     return tuple(found)

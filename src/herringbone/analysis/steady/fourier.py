@@ -22,6 +22,10 @@ def in_frequency(values: np.ndarray, orders: np.ndarray) -> np.ndarray:
 def on(orders: np.ndarray, coefficients: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Coefficients (n, harmonics) of orders, from those (n, ...) of known ones; zero elsewhere."""
     found = np.zeros((len(coefficients), orders.size), dtype=complex)
+    if orders.size > orders[-1] and known.size > known[-1]:  # none is left out
+        count = min(orders.size, known.size)
+        found[:, :count] = coefficients[:, :count]
+        return found
     _, here, there = np.intersect1d(orders, known, assume_unique=True, return_indices=True)
     found[:, here] = coefficients[:, there]
     return found

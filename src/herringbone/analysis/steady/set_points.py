@@ -61,13 +61,18 @@ class SetPoints:
             return pairs[0]
         return None
 
-    def signals(self, condensed: Condensed, late: float, point: Point) -> np.ndarray:
+    def signals(self, condensed: Condensed, still: np.ndarray, point: Point) -> np.ndarray:
         """Signals of the sources (signals,) at an operating point.
+
+        Args:
+            condensed: the system.
+            still: its own signals.
+            point: operating point.
 
         Raises:
             ParameterError: the system has no such set point.
         """
-        found = condensed.signals(late)
+        found = still.copy()
         twin = condensed.twin
         places = [place for _, place in condensed.equations.signals]
         for quantity, wanted in (

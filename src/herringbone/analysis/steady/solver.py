@@ -180,7 +180,7 @@ def _told(times: int) -> tuple[str, ...]:
 def _motion(structure: Structure, point: Point) -> Motion:
     """What is given of the motion at an operating point."""
     condensed, problem = structure.core.condensed, structure.problem
-    signals = structure.points.signals(condensed, structure.late, point)
+    signals = structure.points.signals(condensed, structure.signals, point)
     given = np.append(signals, 1.0)[:, None].astype(complex)
     speed = 0.0
     if problem.free is not None:

@@ -92,11 +92,20 @@ class Structure:
         return found, Rows(modal, of_angle, channels)
 
     @cached_property
+    def signals(self) -> np.ndarray:
+        """Its own signals of the sources (signals,), after the last change."""
+        return self.core.condensed.signals(self.late)
+
+    @cached_property
+    def indicators(self) -> np.ndarray:
+        """(laws + 1,) where the indicators of each part's laws begin."""
+        return self.core.condensed.calls().indicator
+
+    @cached_property
     def start(self) -> np.ndarray:
         """Laws' values less mean tangents (values, 1) at the start values of the system."""
         modes, problem = self.core.condensed.modes, self.problem
-        signals = self.core.condensed.signals(self.late)
-        channels = np.concatenate([np.zeros(problem.values), signals, [1.0]])
+        channels = np.concatenate([np.zeros(problem.values), self.signals, [1.0]])
         z = (modes.arguments @ modes.start).real + modes.of_channels @ channels
         z += modes.of_angles @ modes.angles
         f = problem.laws(np.ascontiguousarray(z[None, :])).f[0]
