@@ -22,8 +22,8 @@ from herringbone.core.names import matches_any
 
 _R_MIN = 30.0 / np.pi
 _BLAS = ThreadpoolController()
-_STEPS = 32
-"""Of a mesh period, at least, in which deviations are followed."""
+_STEPS, _BENT_STEPS = 32, 256
+"""Of a mesh period, at least, in which deviations are followed; where laws bend."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -73,13 +73,18 @@ class SteadyState(Facts):
     @property
     def meshes(self) -> int:
         """Mesh periods of the first gear pair in the period."""
-        return self.structure.meshes
+        return round(self.motion.turn / self.structure.turn) * self.structure.meshes
 
     @property
     def speed(self) -> float:
         """Mean speed of the first pinion [rad/s]."""
-        turned = 2.0 * np.pi * self.structure.turns_of_pinion / self.period
+        turned = 2.0 * np.pi * self._turns / self.period
         return float(np.copysign(turned, self.orbit.response.speed))
+
+    @property
+    def _turns(self) -> float:
+        """Turns of the first pinion in the period."""
+        return self.structure.turns_of_pinion * self.meshes / self.structure.meshes
 
     @property
     def drift(self) -> float:
@@ -107,7 +112,8 @@ class SteadyState(Facts):
 
         Takes some ten milliseconds for each mesh of the period.
         """
-        steps = max(_STEPS, self.orbit.places // self.meshes // 2) * self.meshes
+        per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
+        steps = max(per_mesh, self.orbit.places // self.meshes // 2) * self.meshes
         with _BLAS.limit(limits=1, user_api="blas"):
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 
@@ -119,7 +125,7 @@ class SteadyState(Facts):
     @property
     def orders(self) -> np.ndarray:
         """Periods per turn of the first pinion, of all harmonics."""
-        return self.orbit.response.orders / self.structure.turns_of_pinion
+        return self.orbit.response.orders / self._turns
 
     @property
     def mesh_orders(self) -> np.ndarray:

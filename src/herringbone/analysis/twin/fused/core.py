@@ -56,6 +56,7 @@ class Core:
     Args:
         system: its parts are all components of this package.
         like: of the same structure; what is the same is taken from it.
+        same_tangents: take its mean tangents, too, so that harmonics of both can be compared.
 
     Attributes:
         twin: the system as one right-hand side.
@@ -69,7 +70,9 @@ class Core:
         ParameterError, ResourceError: bad values.
     """
 
-    def __init__(self, system: System, like: "Core | None" = None) -> None:
+    def __init__(
+        self, system: System, like: "Core | None" = None, *, same_tangents: bool = False
+    ) -> None:
         self.twin = twin = Twin(system)
         for instance in twin.instances:
             if instance.component.samples:
@@ -77,7 +80,9 @@ class Core:
                     f"{instance.name}: {instance.component.name} takes samples, so that it cannot "
                     "be fused; run without fuse"
                 )
-        self.condensed: Condensed = _condensed(twin, like.condensed if like else None)
+        self.condensed: Condensed = _condensed(
+            twin, like.condensed if like else None, same_tangents=same_tangents
+        )
         same = like is not None and self.condensed.modes.rates is like.condensed.modes.rates
         self.affine: np.ndarray = like.affine if like and same else affine_places(self.condensed)
         self.names = outputs_of_kernels(twin)
@@ -146,11 +151,14 @@ def endings_of(name: str) -> tuple[str, ...]:
     return tuple(".".join(words[k:]) for k in range(len(words) - 1))
 
 
-def _condensed(twin: Twin, like: Condensed | None) -> Condensed:
+def _condensed(twin: Twin, like: Condensed | None, *, same_tangents: bool) -> Condensed:
     equations = take_apart(twin, places_seen(twin))
     modes = renewed(twin, equations, like.equations, like.modes) if like else None
     with one_blas_thread():
-        found = Condensed(twin, equations, modes or make_modes(twin, equations))
+        tangent = like.modes.tangent if like and same_tangents else None
+        references = like.modes.references if like else ()
+        modes = modes or make_modes(twin, equations, tangent, references)
+        found = Condensed(twin, equations, modes)
     if not np.isfinite(found.modes.start).all():
         raise StructureError(f"{twin.system.name}: its start values are not finite")
     return found
