@@ -66,6 +66,14 @@ def test_folded_lines_are_named():
     assert told[2, True] == pytest.approx(100.0, abs=0.5)
 
 
+def test_answers_are_kept_while_nothing_changes():
+    result = with_sensors(0.2)
+    first = sensor_figures(result)[0]["A"]
+    assert sensor_figures(result)[0]["A"] is first
+    result.data["gearbox.bearing_supports.seat.pinion_left.f_z"] *= 2.0
+    assert sensor_figures(result)[0]["A"] is not first
+
+
 def test_clipped_samples_are_counted():
     system = RIG.with_values({"A.range": 1e-7})
     figures = sensor_figures(with_sensors(0.2, system=system), ("A",))[0]["A"]
