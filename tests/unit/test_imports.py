@@ -63,7 +63,7 @@ ONLY_IN: dict[str, set[str]] = {
         "cosim/cell/inside/loading.py",
         "cosim/loops/calls.py",
         "cosim/loops/float_modes.py",
-        "cosim/fmu/fmi3_steps.py",
+        "cosim/fmu/fmi3/steps.py",
         "fmi/native/objects.py",
         "kernels/compiling/linking.py",
     },

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
+from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -120,14 +121,15 @@ def computed(
             overwrite=asked.overwrite,
         )
         chains = chains_of(study, base, evaluator, asked.key)
-        missing = [chain for chain in chains if not store.has(chain, series=asked.series)]
+        there = [store.has(chain, series=asked.series) for chain in chains]
+        missing = [chain for chain, known in zip(chains, there, strict=True) if not known]
         progress(sum(len(c.keys) for c in chains) - sum(len(c.keys) for c in missing))
 
         def job(numbers: Sequence[int]) -> Job:
             points = tuple(study.point(number) for number in numbers)
             return Job(asked.key, base, evaluator, points, asked.series)
 
-        known = [store.read(c) for c in chains if c not in set(missing)][:_KNOWN]
+        known = [store.read(c) for c in list(compress(chains, there))[:_KNOWN]]
         if not known:
             missing, known = _measured(missing, job, store, progress)
         ahead = expected(len(study.points), len(chains), sum(len(c.keys) for c in missing), known)

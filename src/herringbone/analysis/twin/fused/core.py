@@ -1,6 +1,7 @@
 """A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -108,6 +109,10 @@ class Core:
 
     def groups(self) -> dict[str, list[str]]:
         """Outputs by group of channels; of a system without channels all of a unit."""
+        return self._groups
+
+    @cached_property
+    def _groups(self) -> dict[str, list[str]]:
         channels = self.twin.system.channels
         found = {
             group: [n for n in self.names if matches_any(endings_of(n), patterns)]
