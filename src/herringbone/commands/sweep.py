@@ -113,7 +113,11 @@ def run(options: argparse.Namespace) -> int:
             told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
             progress=bar.update,
         )
-    files_told = [str(folder / file.name) for file in found.files]
+    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
+
+    title = Path(options.system).stem
+    drawn = write_study_pictures(found.table, found.units, folder, title)
+    files_told = [str(folder / file.name) for file in (*found.files, *drawn)]
     show(_summary(found, files_told, as_json=options.json))
     return 0
 

@@ -5,13 +5,15 @@ Source: R. B. Lehoucq, D. C. Sorensen, C. Yang, ARPACK Users' Guide, SIAM 1998, 
 
 import logging
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, SuperLU, eigsh, splu
 
 from herringbone.core import HerringboneError
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
+    from scipy.sparse.linalg import SuperLU
 
 _log = logging.getLogger(__name__)
 
@@ -37,7 +39,7 @@ class Factorisation:
         solver: "PARDISO" or "SuperLU".
     """
 
-    def __init__(self, matrix: sp.sparray | sp.spmatrix) -> None:
+    def __init__(self, matrix: "sp.sparray | sp.spmatrix") -> None:
         """Factor a matrix (n, n).
 
         Raises:
@@ -49,14 +51,18 @@ class Factorisation:
             self.solver = "SuperLU"
             self._factor = self._superlu(matrix)
         else:
+            from scipy import sparse  # noqa: PLC0415 (lazy)
+
             self.solver = "PARDISO"
-            self._upper = sp.triu(matrix, format="csr")
+            self._upper = sparse.triu(matrix, format="csr")
             self._pardiso = PyPardisoSolver(mtype=-2)  # real, symmetric, indefinite
             self._pardiso.factorize(self._upper)
         _log.info("factored %d unknowns with %s", matrix.shape[0], self.solver)
 
     @staticmethod
-    def _superlu(matrix: sp.sparray | sp.spmatrix) -> SuperLU:
+    def _superlu(matrix: "sp.sparray | sp.spmatrix") -> "SuperLU":
+        from scipy.sparse.linalg import splu  # noqa: PLC0415 (lazy)
+
         try:
             return splu(
                 matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
@@ -81,8 +87,8 @@ class Factorisation:
 
 
 def eigenmodes(
-    stiffness: sp.sparray | sp.spmatrix,
-    mass: sp.sparray | sp.spmatrix,
+    stiffness: "sp.sparray | sp.spmatrix",
+    mass: "sp.sparray | sp.spmatrix",
     count: int,
     *,
     shift: float = 0.0,
@@ -100,6 +106,8 @@ def eigenmodes(
     Raises:
         HerringboneError: too many modes are asked for, the matrix is singular, or no convergence.
     """
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh  # noqa: PLC0415 (lazy)
+
     unknowns = stiffness.shape[0]
     if not 0 < count < unknowns:
         raise HerringboneError(f"{count} modes of {unknowns} unknowns: ask for 1 to {unknowns - 1}")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import CubicSpline
 
 from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
@@ -193,6 +192,8 @@ class Result(Facts):
         Those of an adaptive run, which lie where its steps ended, are interpolated by cubic
         splines, as many as there are; others are returned as they are.
         """
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         if self.info.steps is None or len(self.data) < _SPLINE_ROWS:
             return self
         columns = [TIME, *self.signals]

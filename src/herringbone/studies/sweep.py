@@ -6,6 +6,7 @@ from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from itertools import compress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -19,6 +20,9 @@ from herringbone.studies.study import Study
 from herringbone.studies.table import study_table
 from herringbone.studies.working.chain import Done, Job, run_chain
 from herringbone.studies.working.executors import Workers, Working, working
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _KNOWN = 16
 """Chains that are there, from which the cost of the others is told."""
@@ -66,6 +70,13 @@ class Sweep:
     units: Mapping[str, str]
     expected: Expected
     files: tuple[Path, ...]
+
+    def plot(self, across: str | None = None) -> "Figure":
+        """Levels and mesh orders over a parameter: speed, or the first number, if not given."""
+        from herringbone.plotting.studies.levels import levels  # noqa: PLC0415 (matplotlib: lazy)
+        from herringbone.plotting.studies.table import Points  # noqa: PLC0415
+
+        return levels(Points(self.table, self.units), across)
 
 
 Told = Callable[[str], None]

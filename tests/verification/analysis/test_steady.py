@@ -78,9 +78,14 @@ def test_neighbours_lead_to_the_same_state(solver):
         assert ours.level(group) == pytest.approx(theirs.level(group), rel=1e-4)
 
 
+def test_an_open_set_point_takes_a_value():
+    state = hb.steady("turbine", values=STILL, speed=100.0)
+    assert state.mean("turbine.flange.w") == pytest.approx(100.0, rel=1e-9)
+
+
 def test_speed_of_what_follows_its_loads_is_refused():
     with pytest.raises(ParameterError, match="declares no set points"):
-        hb.steady("turbine", values=STILL, speed=100.0)
+        hb.steady("ship", values=STILL, speed=100.0)
 
 
 def test_run_outs_make_the_period_long():

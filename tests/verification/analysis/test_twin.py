@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import integrate
 from scipy.linalg import expm
 from support.gear_mesh import constant_table
 
@@ -130,13 +131,13 @@ def test_solver_restarts_at_breakpoints(monkeypatch, name, more, t_end, kinks):
     twin = Twin(rig(name, **more))
     assert twin.breakpoints(t_end) == kinks
     pieces = []
-    solver = monolithic.DOP853
+    solver = integrate.DOP853
 
     def watched(function, t0, x0, t1, **options):
         pieces.append((t0, t1))
         return solver(function, t0, x0, t0 + 1e-6, **options)
 
-    monkeypatch.setattr(monolithic, "DOP853", watched)
+    monkeypatch.setattr(integrate, "DOP853", watched)
     twin.solve(np.array([0.0, t_end]), BEARING, 1e-3)
     ends = [*kinks, t_end]
     assert pieces == list(zip([0.0, *kinks], ends, strict=True))

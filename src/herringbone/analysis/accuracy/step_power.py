@@ -7,8 +7,6 @@ With steps h1 > h2 > h3 and an error C h^p, the results differ by
 which gives p, and the error of the last run, C h3^p = d23 h3^p / (h2^p - h3^p).
 """
 
-from scipy.optimize import brentq
-
 LOWEST, HIGHEST = 0.01, 8.0
 """Powers that are looked for."""
 
@@ -21,6 +19,8 @@ def step_power(first: float, second: float, steps: tuple[float, float, float]) -
         second: difference d23.
         steps: h1 > h2 > h3 [s].
     """
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     if not first > 0.0 or not second > 0.0:
         return HIGHEST if first > 0.0 else 0.0
 

@@ -20,14 +20,15 @@ Signal Processing 11 (1997) 187-205.
 """
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.signal import detrend
 
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES
 from herringbone.core import ParameterError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 _FINER = 1.5
 """Samples of a block over its records where they are sparsest in angle."""
@@ -114,6 +115,8 @@ def order_map(
     Raises:
         ParameterError: the cycles do not grow, or the run has no whole block of enough records.
     """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     if time.size < FEWEST_SAMPLES or not (np.diff(cycles) > 0.0).all():
         raise ParameterError("orders take a shaft that turns in one direction, and 8 records")
     if not (block > 0.0 and highest > 0.0 and 0.0 <= overlap < 1.0):
@@ -142,12 +145,14 @@ def order_map(
 def _block(
     time: np.ndarray,
     cycles: np.ndarray,
-    spline: CubicSpline,
+    spline: "CubicSpline",
     begin: float,
     block: float,
     orders: np.ndarray,
 ) -> tuple[float, float, np.ndarray, float] | None:
     """Middle, speed, amplitudes and level of one block; None of one with too few records."""
+    from scipy.signal import detrend  # noqa: PLC0415 (lazy)
+
     first, last = np.searchsorted(cycles, [begin, begin + block])
     if last - first < FEWEST_SAMPLES:
         return None

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
@@ -142,6 +141,8 @@ def _motion(result: Result, part: str) -> tuple[ModalHousing, np.ndarray]:
 def _figures(
     result: Result, name: str, spec: SensorSpec, housing: ModalHousing, modal: np.ndarray
 ) -> SensorFigures:
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     if (spec.point, spec.axis) not in housing.dofs:
         raise ParameterError(
             f"the data of {spec.part} have no point {spec.point} along {spec.axis}"

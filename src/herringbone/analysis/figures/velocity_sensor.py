@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import butter, sosfilt
 
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.components.registry import component_for
@@ -87,6 +86,8 @@ class VelocitySensor:
         Raises:
             ParameterError: the input is too coarse, or its rate no multiple of the sampling rate.
         """
+        from scipy.signal import sosfilt  # noqa: PLC0415 (lazy)
+
         velocity = np.asarray(velocity, dtype=float)
         every = self._every(step)
         seen = velocity
@@ -128,6 +129,8 @@ class VelocitySensor:
 
     def _filters(self, step: float) -> list[np.ndarray]:
         """Second-order sections of the filters that are there."""
+        from scipy.signal import butter  # noqa: PLC0415 (lazy)
+
         rate = 1.0 / step
         wanted = (
             (2, self.high_pass_hz, "highpass"),

@@ -14,7 +14,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
 from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, linear_part
@@ -245,6 +244,8 @@ def _coupled(matrix: np.ndarray) -> np.ndarray:
     Eigenvalues are those of the strongly connected blocks. What is left out has the eigenvalue 0
     (a signal that nothing looks back to) or exactly 1 (a state that nothing changes).
     """
+    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415 (lazy)
+
     count, block = connected_components(matrix != 0.0, directed=True, connection="strong")
     alone = np.bincount(block, minlength=count)[block] == 1
     diagonal = np.diag(matrix)

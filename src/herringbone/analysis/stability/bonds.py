@@ -19,7 +19,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from herringbone.analysis.stability.linear_parts import Member
 from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
@@ -126,6 +125,8 @@ def bond_directions(network: Network, members: Sequence[Member]) -> list[Directi
 
     Without elements that are foreign, whose laws are not known.
     """
+    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415 (lazy)
+
     found = []
     bodies = set(network.bodies)
     for e in network.elements:

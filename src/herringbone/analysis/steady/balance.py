@@ -64,6 +64,10 @@ class Balance:
         given = self.motion.given
         return np.vstack([on(orders, values, known), on(orders, given, np.arange(given.shape[1]))])
 
+    def with_given(self, channels: np.ndarray) -> np.ndarray:
+        """Channels (channels, harmonics) of all harmonics, with what is given of this motion."""
+        return self._channels(self._every, channels[: self.problem.values], self._every)
+
     def _response(self, speed: float, orders: np.ndarray) -> Response:
         """The linear part at a speed."""
         motion = self.motion
@@ -138,6 +142,24 @@ class Balance:
             now.channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples,
             change, merit, iterations, change <= close or merit <= _ROUNDING,
         )  # fmt: skip
+
+    def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
+        """A motion of given channels, of one mesh, and what the laws give and it lacks.
+
+        Args:
+            channels: (channels, harmonics), all harmonics that the places tell apart.
+        """
+        speed = self._first_speed(channels)
+        now = self._answered(self._response(speed, self._every), channels)
+        samples = self.problem.laws(self._arguments(now))
+        _, laws = self._with_orders(now, samples)
+        off = laws - channels[: len(laws)]
+        nothing = np.zeros_like(channels)
+        still = _less(now.q, now.q)
+        return Orbit(
+            channels, now.response, now.q, still, nothing, now.angle, samples, 0.0,
+            self._size(samples, off, self._every), 1, converged=False,
+        ), off  # fmt: skip
 
     def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:
         """The motion with values changed by a step (values, harmonics)."""

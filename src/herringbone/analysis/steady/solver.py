@@ -66,8 +66,9 @@ class SteadySolver:
         """
         with one_blas_thread():
             structure = self._at(point)
-            orbit, errors = self._resolved(structure, point, near)
-        return SteadyState(structure, point, orbit, errors, self.tolerance)
+            motion = _motion(structure, point)
+            orbit, errors = self._resolved(structure, motion, near)
+        return SteadyState(structure, point, motion, orbit, errors, self.tolerance)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -78,10 +79,10 @@ class SteadySolver:
         return self._structure
 
     def _resolved(
-        self, structure: Structure, point: Point, near: SteadyState | None
+        self, structure: Structure, motion: Motion, near: SteadyState | None
     ) -> tuple[Orbit, Accuracy]:
         """A motion with as many harmonics as the tolerance needs."""
-        motion, meshes, problem = _motion(structure, point), structure.meshes, structure.problem
+        meshes, problem = structure.meshes, structure.problem
         per_mesh = _PLACES
         if near is not None and near.meshes == meshes:
             start, known = near.orbit.channels[: problem.values], near.orbit.response.orders

@@ -8,7 +8,6 @@ breakpoints that the components declare.
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy.integrate import DOP853
 
 from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_source
 from herringbone.components.in_process import InProcessPart
@@ -151,6 +150,8 @@ class Twin:
         progress: Callable[[float, float], None] | None,
     ) -> np.ndarray:
         """Solve between two breakpoints; fills the states at the wanted rows."""
+        from scipy.integrate import DOP853  # noqa: PLC0415 (lazy)
+
         dx = np.empty_like(x)
         rhs, block = self._module.rhs, self.block
 

@@ -11,7 +11,7 @@ from herringbone.gears.files.read_job import read_job
 from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
-from herringbone.gears.load.figures import Conditions, Loaded, loaded_figures
+from herringbone.gears.load.figures import Conditions, Loaded, check_conditions, loaded_figures
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.methods import AUTO, METHODS, check_method, chosen_method
 from herringbone.gears.stiffness.point_mesh import Progress, silent
@@ -56,9 +56,11 @@ def gear(
     job = read_job(file, stage=stage, halves=halves)
     if torque is not None:
         job = GearJob(**{**vars(job), "torque": torque})
+    conditions = conditions or Conditions()
+    check_conditions(job, conditions)
     stiffness = stiffness_for(job, method, progress)
     mesh = METHODS[chosen_method(job.method if method is None else method)].mesh(job.task(), silent)
-    loaded = loaded_figures(job, mesh, stiffness, conditions or Conditions())
+    loaded = loaded_figures(job, mesh, stiffness, conditions)
     folder = output or Path("results") / f"gear-{file.stem}"
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:

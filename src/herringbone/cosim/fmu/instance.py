@@ -31,6 +31,6 @@ def new_part(
     model = model or read_fmu(file)
     if not is_fmi3(model):
         return Fmu2Part(name, file, model, folder, alike)
-    from herringbone.cosim.fmu.fmi3_part import Fmu3Part  # noqa: PLC0415 (compiled adapters)
+    from herringbone.cosim.fmu.fmi3.part import Fmu3Part  # noqa: PLC0415 (compiled adapters)
 
     return Fmu3Part(name, file, model, folder)

@@ -24,7 +24,6 @@ Extremes equal the tolerances, which makes the gear the worst that the class let
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 from herringbone.gears.accuracy.iso1328 import FlankTolerances, flank_tolerances
@@ -123,6 +122,8 @@ def _cumulative_pitch(
     eccentric: np.ndarray, scatter: np.ndarray, tolerances: FlankTolerances
 ) -> tuple[np.ndarray, float]:
     """Cumulative pitch [m], and the share of its random part."""
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     wanted = tolerances.single_pitch / tolerances.cumulative_pitch
 
     def shape(share: float) -> np.ndarray:

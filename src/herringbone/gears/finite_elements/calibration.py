@@ -37,7 +37,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements.mesh import FiniteElementMesh
@@ -87,6 +86,8 @@ def calibrate(
     Raises:
         ParameterError: no factor between 0.2 and 4 will do.
     """
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     elements = mesh.solve([load], phases)
     wanted = elements.secant.mean()
 

@@ -51,9 +51,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.gears.finite_elements.blocks import Profile, Resolution
 from herringbone.gears.finite_elements.layer import layer_stiffness
@@ -61,6 +61,9 @@ from herringbone.gears.finite_elements.section import Section, mesh_section
 from herringbone.gears.finite_elements.sweep import stack_compliance
 from herringbone.gears.finite_elements.unit_loads import sweep_lead, unit_loads
 from herringbone.gears.geometry.gear_pair import GearPair
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 STATIONS = 9
 """Candidate points along the path of contact."""
@@ -111,7 +114,9 @@ class ToothCompliance:
         return weights.reshape(path.size, -1)
 
     @cached_property
-    def _splines(self) -> CubicSpline:
+    def _splines(self) -> "CubicSpline":
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         return CubicSpline(self.path, np.eye(self.path.size))
 
 

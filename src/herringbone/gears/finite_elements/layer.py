@@ -6,14 +6,16 @@ in axes that turn with the section, all layers have the same matrix.
 
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements.section import Section
+
+if TYPE_CHECKING:
+    from scipy import sparse
 
 _POINTS = 4
 """Polynomial order that the quadrature integrates exactly: 3 x 3 x 3 points."""
@@ -76,8 +78,10 @@ def _rows(node: np.ndarray, level: np.ndarray, wanted: int) -> np.ndarray:
 
 def _assembled(
     section: Section, thickness: float, twist: float, young: float, poisson: float
-) -> tuple[sparse.csr_matrix, np.ndarray, np.ndarray]:
+) -> "tuple[sparse.csr_matrix, np.ndarray, np.ndarray]":
     """Stiffness in axes that turn with the section; section node and level of each row."""
+    from scipy import sparse  # noqa: PLC0415 (lazy)
+
     fem = scikit_fem()
     elasticity = fem.models.elasticity
     mesh = _mesh(fem, section, thickness, twist)

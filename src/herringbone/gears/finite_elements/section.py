@@ -7,7 +7,6 @@ teeth, with the root circle as their surface.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements.blocks import (
@@ -98,6 +97,8 @@ def _merged(grids: list[np.ndarray], left: int, right: int, bore_radius: float) 
 
     The teeth's grids come six by six: the fine tooth, then the others from left to right.
     """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 (lazy)
+
     cells, first = [], 0
     for grid in grids:
         n, m = grid.shape[1:]

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 
@@ -90,6 +89,8 @@ def meshing_impact(
     Raises:
         ParameterError: the deflection is so large that teeth would meet a base pitch early.
     """
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     along = deflection / math.cos(pair.base_helix_angle)
 
     def early(distance: float) -> float:

@@ -2,8 +2,6 @@
 
 import math
 
-from scipy.optimize import brentq
-
 
 def involute(angle: float) -> float:
     """inv(alpha) = tan(alpha) - alpha [rad]."""
@@ -12,6 +10,8 @@ def involute(angle: float) -> float:
 
 def involute_angle(value: float) -> float:
     """The angle [rad] whose involute function is `value` >= 0."""
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     if value == 0.0:
         return 0.0
     return brentq(lambda angle: involute(angle) - value, 0.0, 0.5 * math.pi - 1e-6, xtol=1e-15)

@@ -19,7 +19,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.involute import involute
@@ -188,6 +187,7 @@ def _meets_involute(
     trochoid: Callable[[np.ndarray], np.ndarray], end: float, base: float, at_base: float
 ) -> float:
     """Parameter at which the fillet of an undercut tooth comes out through the involute."""
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
 
     def outside(theta: np.ndarray) -> np.ndarray:
         points = trochoid(np.atleast_1d(theta))

@@ -14,6 +14,7 @@ from herringbone.gears.load.dynamic_factor import (
 )
 from herringbone.gears.load.flank_load import FlankLoad, LoadedLines, flank_load
 from herringbone.gears.load.loaded_pair import LoadedPair, Symmetry, loaded_pair, over_torque
+from herringbone.gears.stiffness.load_sharing import check_held
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
 _RPM = math.pi / 30.0
@@ -63,6 +64,18 @@ class Loaded:
     flanks: tuple[FlankLoad, ...]
     factor: DynamicFactor | str
     teeth: DeviatingLoad | None = None
+
+
+def check_conditions(job: GearJob, conditions: Conditions) -> None:
+    """Check conditions before anything long is computed; raises ParameterError."""
+    _dynamic_factor(job, conditions)
+    if (symmetry := conditions.symmetry) is not None:
+        check_held(
+            job.pair,
+            job.pinion_torque,
+            symmetry.pinion_axial_stiffness,
+            symmetry.wheel_axial_stiffness,
+        )
 
 
 def loaded_figures(

@@ -2,13 +2,16 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.slices import Law
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,10 @@ class TableLaw:
         return self.stiffness.pair
 
     @cached_property
-    def _over_phase(self) -> CubicSpline:
+    def _over_phase(self) -> "CubicSpline":
         """Deflections and tangents over the phase, shape (2, loads)."""
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         values = np.stack([self.stiffness.deflection, self.stiffness.tangent])
         closed = np.concatenate([values, values[..., :1]], axis=2)
         phases = np.append(self.stiffness.phases, 1.0)

@@ -8,7 +8,6 @@ load above which ISO 6336-1 takes it as constant.  Finite elements take none.
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.gear_pair import GearPair
@@ -38,6 +37,8 @@ def default_calibration(pair: GearPair, method: str) -> float:
 
 @lru_cache(maxsize=32)
 def _slices_factor(pair: GearPair) -> float:
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     load = pair.tooth_forces(full_torque(pair)).normal
     wanted = _mean(CoupledSliceMesh(pair), load)
 

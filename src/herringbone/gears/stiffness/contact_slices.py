@@ -30,10 +30,9 @@ schraegverzahnten Raedern (1953), for the contact.
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.contact_lines import cut_lines
@@ -45,6 +44,9 @@ from herringbone.gears.stiffness.tooth_compliance import (
     plane_modulus,
     tooth_compliance,
 )
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 SLICES = 120
 _GRID = 129
@@ -171,8 +173,10 @@ class ContactSlices:
         return Slices(length * np.ones_like(path), compliance(on_path), logarithm(on_path), gap)
 
     @cached_property
-    def _along_path(self) -> tuple[CubicSpline, CubicSpline]:
+    def _along_path(self) -> "tuple[CubicSpline, CubicSpline]":
         """Structural compliance and the contact's logarithm over the path of contact."""
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         pair, points = self.pair, self.pair.path_of_contact
         s = np.linspace(0.0, points.length, _GRID)
         reach = (points.start + s, points.tangent_length - points.start - s)

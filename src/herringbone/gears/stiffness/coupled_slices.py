@@ -35,9 +35,9 @@ Roark's Formulas for Stress and Strain, 6th edition (1989), table 24, for the fo
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.linalg import block_diag
 
 from herringbone.core import ParameterError
@@ -47,6 +47,9 @@ from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness.contact_slices import ContactSlices, Line
 from herringbone.gears.stiffness.point_mesh import PointMesh
 from herringbone.gears.stiffness.tooth_compliance import PLANES, tooth_compliance
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 LENGTHS = (1.15, 3.1)
 """Default lengths along the face of tooth and foundation, in normal modules."""
@@ -124,8 +127,10 @@ class CoupledSliceMesh(PointMesh):
         return total
 
     @cached_property
-    def _of_slices(self) -> list[tuple[CubicSpline, CubicSpline]]:
+    def _of_slices(self) -> "list[tuple[CubicSpline, CubicSpline]]":
         """Compliances of tooth and foundation over the path of contact, of both gears."""
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         points, found = self.pair.path_of_contact, []
         s = np.linspace(0.0, points.length, _GRID)
         reach = (points.start + s, points.tangent_length - points.start - s)

@@ -169,7 +169,12 @@ def load_sharing(
     return LoadSharing(at, left.force, right.force, left.deflection, right.deflection, zeta)
 
 
-def _check(pair: GearPair, torque: float, pinion: float, wheel: float, compliance: float) -> None:
+def check_held(pair: GearPair, torque: float, pinion: float, wheel: float) -> None:
+    """Check what a load is shared by: a double-helical pair, its torque, axial stiffnesses [N/m].
+
+    Raises:
+        ParameterError: the pair is not double helical, torque not positive, a stiffness negative.
+    """
     if pair.halves != 2 or pair.helix_angle == 0.0:
         raise ParameterError("load sharing is of double-helical pairs: halves 2 and a helix angle")
     if not torque > 0.0:
@@ -179,5 +184,9 @@ def _check(pair: GearPair, torque: float, pinion: float, wheel: float, complianc
             raise ParameterError(
                 f"axial stiffness {value:g} N/m of the {name} must not be negative"
             )
+
+
+def _check(pair: GearPair, torque: float, pinion: float, wheel: float, compliance: float) -> None:
+    check_held(pair, torque, pinion, wheel)
     if not compliance >= 0.0:
         raise ParameterError(f"shaft compliance {compliance:g} m/N must not be negative")

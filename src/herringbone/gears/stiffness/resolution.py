@@ -1,7 +1,6 @@
 """Resolution study of the slice method: the table in the documentation of `slices`."""
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stiffness.slices import SliceMesh
@@ -13,6 +12,8 @@ _PHASES = (8, 16, 32, 64, 128, 256)
 
 def resolution_table(pair: GearPair, load: float) -> str:
     """Error of slices and phases for a pair at a normal load of one half [N], as text."""
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     fine = SliceMesh(pair, slices=_FINE_SLICES).solve([load])
     corner = SliceMesh(pair, slices=_FINE_SLICES, corner_contact=True).solve([load])
     rows = ["slices    mean error %    largest error %    false %    false %, corner contact"]

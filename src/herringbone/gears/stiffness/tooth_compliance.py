@@ -36,7 +36,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.core import ParameterError
 from herringbone.gears.geometry.tooth_profile import ToothProfile, generate_tooth
@@ -129,6 +128,8 @@ def tooth_compliance(
     moment = width**3 / 12.0
 
     def integral(values: np.ndarray) -> np.ndarray:
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         spline = CubicSpline(height, values).antiderivative()
         return spline(y - origin)
 

@@ -18,18 +18,20 @@ Fundamentals of Structural Dynamics, 2nd ed., section 17.6.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import scipy.linalg as la
-import scipy.sparse as sp
 
 from herringbone.core import HerringboneError
 from herringbone.housing.eigenmodes import Factorisation, Modes, eigenmodes
 from herringbone.housing.modal_model import SEAT_DOFS
 from herringbone.housing.reduction.bound import choose_modes, make_certificate
 
-Matrix: TypeAlias = sp.sparray | sp.spmatrix
+if TYPE_CHECKING:
+    import scipy.sparse as sp
+
+Matrix: TypeAlias = "sp.sparray | sp.spmatrix"
 _FIRST_COUNT = 30
 _DENSE = 600
 """Up to this size the whole eigenproblem is solved at once."""
@@ -66,7 +68,7 @@ class Reduction:
 def reduce_model(
     stiffness: Matrix,
     mass: Matrix,
-    seat_input: np.ndarray | Matrix,
+    seat_input: "np.ndarray | Matrix",
     *,
     band_hz: float,
     tolerance: float = 0.05,
@@ -88,11 +90,11 @@ def reduce_model(
         HerringboneError: sizes differ, not symmetric, singular, or more oscillators are needed
             than allowed.
     """
-    seats = np.asarray(
-        seat_input if isinstance(seat_input, np.ndarray) else sp.csr_array(seat_input).toarray(),
-        float,
-    )
-    stiffness, mass = sp.csr_array(stiffness), sp.csr_array(mass)
+    from scipy import sparse  # noqa: PLC0415 (lazy)
+
+    dense = isinstance(seat_input, np.ndarray)
+    seats = np.asarray(seat_input if dense else sparse.csr_array(seat_input).toarray(), float)
+    stiffness, mass = sparse.csr_array(stiffness), sparse.csr_array(mass)
     check_matrices(stiffness, mass, seats)
     progress("factor the stiffness matrix")
     factorisation = Factorisation(stiffness)

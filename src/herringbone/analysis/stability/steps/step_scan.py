@@ -20,7 +20,6 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.core import HerringboneError, ParameterError
@@ -163,6 +162,8 @@ def _with_maxima(
 
 def _tries(growth: GrowthOf, low: float, high: float, radius: str) -> list[tuple[float, Growth]]:
     """Steps on the way to the largest value of a radius between two steps."""
+    from scipy.optimize import minimize_scalar  # noqa: PLC0415 (lazy)
+
     tried = []
 
     def negative(step: float) -> float:
