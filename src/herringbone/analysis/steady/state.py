@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy
 from herringbone.analysis.steady.bending import bending_parts
@@ -19,9 +18,9 @@ from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 
 _R_MIN = 30.0 / np.pi
-_BLAS = ThreadpoolController()
 _STEPS = 32
 """Of a mesh period, at least, in which deviations are followed."""
 
@@ -108,7 +107,7 @@ class SteadyState(Facts):
         Takes some ten milliseconds for each mesh of the period.
         """
         steps = max(_STEPS, self.orbit.places // self.meshes // 2) * self.meshes
-        with _BLAS.limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 
     @property
