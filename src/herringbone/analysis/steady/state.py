@@ -125,6 +125,11 @@ class SteadyState(Facts):
         """Periods per mesh period, of all harmonics."""
         return self.orbit.response.orders / self.meshes
 
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Frequencies [Hz] of all harmonics."""
+        return self.orbit.response.orders * self.frequency
+
     def chosen(self, *names: str) -> list[str]:
         """Columns of groups of channels, and those that match a pattern (`*`, `?`).
 
@@ -179,7 +184,7 @@ class SteadyState(Facts):
             "unit": np.repeat([self.structure.core.unit(c) for c in columns], count),
             "order": np.tile(self.orders, len(columns)),
             "mesh_order": np.tile(self.mesh_orders, len(columns)),
-            "frequency": np.tile(self.orbit.response.orders * self.frequency, len(columns)),
+            "frequency": np.tile(self.frequencies, len(columns)),
             "amplitude": np.abs(found).ravel(),
             "phase": np.angle(found).ravel(),
         })  # fmt: skip
