@@ -162,8 +162,10 @@ def _coupled(
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
-        start = start_of(system, scene, algorithm, asked.fmu, grid, lines)
-        streaming = _streaming(output, start, scene, step, asked) if output else None
+        streaming = None
+        if output is not None:
+            start = start_of(system, scene, algorithm, asked.fmu, grid, lines)
+            streaming = _streaming(output, start, scene, step, asked)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
                 system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,

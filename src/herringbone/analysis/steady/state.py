@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy
 from herringbone.analysis.steady.bending import bending_parts
@@ -19,9 +18,9 @@ from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 
 _R_MIN = 30.0 / np.pi
-_BLAS = ThreadpoolController()
 _STEPS, _BENT_STEPS = 32, 256
 """Of a mesh period, at least, in which deviations are followed; where laws bend."""
 
@@ -114,7 +113,7 @@ class SteadyState(Facts):
         """
         per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
         steps = max(per_mesh, self.orbit.places // self.meshes // 2) * self.meshes
-        with _BLAS.limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 
     @property
