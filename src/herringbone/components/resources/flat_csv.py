@@ -60,7 +60,19 @@ def read_flat_csv(
     Raises:
         ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
-    lines = lines_of(read_text(file))
+    return parse_flat_csv(read_text(file), file, texts, numbers, more=more)
+
+
+def parse_flat_csv(
+    text: str,
+    file: AnyPath,
+    texts: tuple[str, ...],
+    numbers: Mapping[str, tuple[str, ...]],
+    *,
+    more: str = "",
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """As `read_flat_csv`, of the text of the file."""
+    lines = lines_of(text)
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
     rows = [
@@ -86,9 +98,9 @@ def read_flat_csv(
     for line, row in rows[1:]:
         if len(row) != len(header):
             raise ResourceError(f"{file}, line {line}: {len(row)} fields, {len(header)} expected")
-        for name, text in zip(header, row, strict=True):
+        for name, field in zip(header, row, strict=True):
             columns[name].append(
-                text.strip(_BLANK) if name in texts else _number(text, name, file, line)
+                field.strip(_BLANK) if name in texts else _number(field, name, file, line)
             )
     return {name: np.array(values) for name, values in columns.items()}, units
 
@@ -102,10 +114,15 @@ def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
     Raises:
         ResourceError: it has not that many finite numbers.
     """
+    return parse_header(read_text(file) if count else "", file, name, count)
+
+
+def parse_header(text: str, file: AnyPath, name: str, count: int) -> np.ndarray:
+    """As `read_header`, of the text of the file."""
     mark, last = f"# {name}:", 0
-    lines = lines_of(read_text(file)) if count else []
-    for line, text in enumerate(lines, 1):
-        last = line if text.startswith(mark) else last
+    lines = lines_of(text) if count else []
+    for line, said in enumerate(lines, 1):
+        last = line if said.startswith(mark) else last
     if last == 0:
         return np.full(count, np.nan)
     try:
