@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from herringbone.result.result import Result
     from herringbone.running.api import run
     from herringbone.running.exporting.export import build_fmus
+    from herringbone.running.modes import modes
     from herringbone.running.own_master import connections, start_values
     from herringbone.running.steady import steady
     from herringbone.scenes import Scene
@@ -54,6 +55,7 @@ __all__ = [
     "compare",
     "connections",
     "load",
+    "modes",
     "radiated_power",
     "run",
     "start_values",
@@ -80,6 +82,7 @@ _WHERE = {
     "Role": "herringbone.core.declaring.roles",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
+    "modes": "herringbone.running.modes",
     "compare": "herringbone.analysis.accuracy.comparison",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",

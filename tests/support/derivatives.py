@@ -81,10 +81,11 @@ def without_nodes(fmu: Path, folder: Path, **flags: object) -> Path:
     """A stranger's view of one of our FMUs: the same binary, its signal nodes not declared.
 
     Args:
-        fmu: the FMU.
+        fmu: the FMU, 2.0 or 3.0.
         folder: where the new one goes.
         flags: attributes of CoSimulation, such as canInterpolateInputs="false".
     """
+    folder.mkdir(exist_ok=True)
     found = folder / fmu.name
     with zipfile.ZipFile(fmu) as archive, zipfile.ZipFile(found, "w") as changed:
         for name in archive.namelist():
@@ -99,6 +100,8 @@ def _hide_nodes(description: bytes, flags: dict[str, object]) -> bytes:
     root = ElementTree.fromstring(description)
     for name, value in flags.items():
         root.find("CoSimulation").set(name, str(value))
+    if root.get("fmiVersion") == "3.0":
+        return _hide_arrays(root)
     variables = root.find("ModelVariables")
     names = [v.get("name") for v in variables]
     kept = [n for n in names if ".node" not in n and n != INTERFACE_DEGREE]
@@ -127,4 +130,23 @@ def _hide_nodes(description: bytes, flags: dict[str, object]) -> bytes:
         real = v.find("Real")
         if real is not None and real.get("derivative") in place:
             real.set("derivative", place[real.get("derivative")])
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _hide_arrays(root: ElementTree.Element) -> bytes:
+    """As `_hide_nodes`, for FMI 3.0, whose structure goes by value references."""
+    variables, hidden = root.find("ModelVariables"), set()
+    for v in list(variables):
+        if v.get("name").endswith(".node") or v.get("name") == INTERFACE_DEGREE:
+            variables.remove(v)
+            hidden.add(v.get("valueReference"))
+    for unknown in list(root.find("ModelStructure")):
+        if unknown.get("valueReference") in hidden:
+            root.find("ModelStructure").remove(unknown)
+            continue
+        left = [d for d in (unknown.get("dependencies") or "").split() if d not in hidden]
+        if "dependencies" in unknown.attrib:
+            unknown.set("dependencies", " ".join(left))
+        if "dependenciesKind" in unknown.attrib:
+            unknown.set("dependenciesKind", " ".join(["dependent"] * len(left)))
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)

@@ -13,7 +13,7 @@ from herringbone.studies.evaluators.evaluator import Evaluated, Figure
 
 @dataclass(frozen=True)
 class Cheap:
-    """x = cos(speed x / 1000), by few iterations from the neighbour's x.
+    """x = cos(speed x / 100), by few iterations from the neighbour's x.
 
     Attributes:
         seconds: that a point waits.
@@ -50,5 +50,5 @@ class Cheap:
         time.sleep(self.seconds)
         x = 0.5 if near is None else near
         for _ in range(3):
-            x = math.cos(speed * x / 1000.0)
+            x = math.cos(speed * x / 100.0)
         return Evaluated("completed", "", {"x": Figure(x, "m")}, x)

@@ -10,16 +10,14 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.rigid_rotation import steady_rows, turning
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
-_BLAS = ThreadpoolController()
-"""Systems of a hundred equations: threads of BLAS would mostly wait for each other."""
 _ITERATIONS, _PATIENCE = 40, 12
 """At most, and without getting closer: a search that is caught stays so."""
 _CLOSER = 0.9
@@ -57,7 +55,7 @@ def equilibrium(system: System) -> Equilibrium:
         EquilibriumError: no equilibrium was found.
     """
     twin = Twin(system)
-    with _BLAS.limit(limits=1, user_api="blas"):
+    with one_blas_thread():
         held = _held(twin)
         try:
             return _solved(system, twin, held, _guess(twin))

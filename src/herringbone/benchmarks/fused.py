@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import suited, values_at
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import closing_all
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.simulation import make_grid, simulate
@@ -57,7 +57,7 @@ def measure(repeats: int = 5) -> list[Speed]:
     """
     loops: dict[str, Callable[[float], float]] = {}
     errors: dict[str, tuple[float, float]] = {}
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         for scene in _SCENES:
             system = prepared(_SYSTEM, scene, Wishes()).system
             core = Core(system)

@@ -15,6 +15,8 @@ from herringbone.commands import build as build_command
 from herringbone.commands import check as check_command
 from herringbone.commands import compare as compare_command
 from herringbone.commands import export as export_command
+from herringbone.commands import modes as modes_command
+from herringbone.commands import plot as plot_command
 from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
 from herringbone.commands import steady as steady_command
@@ -103,6 +105,10 @@ def _parser() -> argparse.ArgumentParser:
     sweep_command.add_options(sub)
     sub = add("steady", steady_command.run, "the periodic steady state at an operating point")
     steady_command.add_options(sub)
+    sub = add("plot", plot_command.run, "pictures of a results folder or of a sweep's folder")
+    plot_command.add_options(sub)
+    sub = add("modes", modes_command.run, "natural modes: participation, Campbell diagram, shapes")
+    modes_command.add_options(sub)
     _chart_options(add("chart", _chart, "draw error against cost of coupling algorithms"))
     sub = add("stability", _stability, "predict the stable steps of algorithms")
     _comparison_options(sub)

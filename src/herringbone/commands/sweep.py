@@ -3,6 +3,7 @@
 import argparse
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,10 +23,11 @@ from herringbone.commands.output import check_writable, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
-    from herringbone.studies.evaluators.transient import Transient
+    from herringbone.studies.evaluators.evaluator import Evaluator
     from herringbone.studies.sweep import Sweep
 
 _AXES = "START:STOP:COUNT or A,B,..."
+_GOOD = {"completed", "steady", "ended_by_part"}
 _SET = "INSTANCE.VARIABLE=VALUES"
 
 
@@ -41,11 +43,15 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="grid, points or sample (TOML) in place of these; see 'herringbone template study'",
     )  # fmt: skip
     add_start_values(sub, varied=f"{_AXES} is varied; ")
+    sub.add_argument(
+        "--transient", action="store_true",
+        help="points by runs; by periodic steady states if not given and no part is foreign",
+    )  # fmt: skip
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
     sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
     sub.add_argument("--step", type=float, help="step size in s, of the coupling or the core")
-    sub.add_argument("--tolerance", type=float, help="relative error of each run")
+    sub.add_argument("--tolerance", type=float, help="relative error of each point")
     sub.add_argument("--algorithm", help="run coupled with this algorithm, not fused")
     add_replacements(sub)
     add_cells(sub)
@@ -73,20 +79,23 @@ def run(options: argparse.Namespace) -> int:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
     from herringbone.studies.api import sweep  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.studies.study import PER_MINUTE, grid  # noqa: PLC0415
     from herringbone.studies.study_file import read_study_file  # noqa: PLC0415
 
     folder = options.output or Path("results") / f"sweep-{Path(options.system).stem}"
     check_writable(folder)
     fixed, points = _points(options)
-    if options.study is not None:
-        if points:
-            raise ParameterError(f"--study has its points; drop --{next(iter(points))}")
-        points = {"study": read_study_file(options.study)}
+    if options.study is None:
+        study = replace(grid(points), speed_unit=PER_MINUTE)
+    elif points:
+        raise ParameterError(f"--study has its points; drop {', '.join(points)}")
+    else:
+        study = read_study_file(options.study)
     files = files_of_parts(options)
     with tqdm(unit=" points", disable=None) as bar:
         found = sweep(
             options.system,
-            **points,
+            study=study,
             scene=options.scene,
             values=fixed,
             gear=files.gear,
@@ -104,7 +113,11 @@ def run(options: argparse.Namespace) -> int:
             told=lambda ahead: tqdm.write(ahead, file=sys.stderr),
             progress=bar.update,
         )
-    files_told = [str(folder / file.name) for file in found.files]
+    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
+
+    title = Path(options.system).stem
+    drawn = write_study_pictures(found.table, found.units, folder, title)
+    files_told = [str(folder / file.name) for file in (*found.files, *drawn)]
     show(_summary(found, files_told, as_json=options.json))
     return 0
 
@@ -125,20 +138,34 @@ def _points(options: argparse.Namespace) -> tuple[dict[str, Any], dict[str, Any]
         for name in ("speed", "torque")
         if (text := getattr(options, name)) is not None
     }
-    if varied:
-        points["vary"] = varied
+    points |= varied
     return start_values(fixed), points
 
 
-def _evaluator(options: argparse.Namespace) -> "Transient":
+def _evaluator(options: argparse.Namespace) -> "Evaluator | None":
+    """What was asked for; None: chosen by the system.
+
+    Raises:
+        ParameterError: something is asked of runs, and not the runs.
+    """
+    from herringbone.studies.evaluators.steady import Steady  # noqa: PLC0415
     from herringbone.studies.evaluators.transient import Transient  # noqa: PLC0415
 
-    return Transient(
-        step=options.step,
-        tolerance=options.tolerance,
-        algorithm=options.algorithm,
-        columns=tuple(options.column),
-    )
+    columns = tuple(options.column)
+    of_runs = [n for n in ("step", "algorithm") if getattr(options, n) is not None]
+    if options.transient or options.replace:
+        return Transient(
+            step=options.step,
+            tolerance=options.tolerance,
+            algorithm=options.algorithm,
+            columns=columns,
+        )
+    if of_runs:
+        raise ParameterError(f"--{of_runs[0]}: of runs; add --transient")
+    if options.tolerance is None and not columns:
+        return None
+    tolerance = {} if options.tolerance is None else {"tolerance": options.tolerance}
+    return Steady(columns=columns, **tolerance)
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
@@ -147,7 +174,7 @@ def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
         return json.dumps({"points": len(found.table), "outcomes": outcomes, "results": files})
     told = ", ".join(f"{count} {kind}" for kind, count in outcomes.items())
     lines = [f"{len(found.table)} points: {told}"]
-    bad = found.table[~found.table["outcome"].str.startswith("completed")]
+    bad = found.table[~found.table["outcome"].isin(_GOOD)]
     for row in bad.head(3).itertuples(index=False):
         lines.append(f"point {row.point}: {row.outcome}: {row.message}")
     if len(bad) > 3:

@@ -63,6 +63,10 @@ TEMPLATES = {
         lambda: systems_folder() / "gearbox" / "scenes" / "loaded.toml",
         "A scene of the gearbox: herringbone run SYSTEM --scene FILE",
     ),
+    "study": Template(
+        lambda: systems_folder() / "test_rig" / "studies" / "speeds.toml",
+        "Points of a sweep: herringbone sweep SYSTEM --study FILE",
+    ),
 }
 
 

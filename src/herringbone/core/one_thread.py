@@ -3,10 +3,21 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from threading import Lock
+from typing import Any
 
 from threadpoolctl import ThreadpoolController
 
-_BLAS = "blas"
+
+class _Open:
+    """Contexts that are open in this process: the number of threads is of all of it."""
+
+    def __init__(self) -> None:
+        self.lock, self.count = Lock(), 0
+        self.limit: Any = None
+
+
+_open = _Open()
 
 
 @cache
@@ -19,6 +30,18 @@ def _libraries() -> ThreadpoolController:
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
-    """Context in which linear algebra takes one thread; of no effect where there is no BLAS."""
-    with _libraries().limit(limits=1, user_api=_BLAS):
+    """Context in which linear algebra takes one thread; of no effect where there is no BLAS.
+
+    When the last context of all threads ends, the number is what it was before the first one.
+    """
+    with _open.lock:
+        if _open.count == 0:
+            _open.limit = _libraries().limit(limits=1, user_api="blas")
+        _open.count += 1
+    try:
         yield
+    finally:
+        with _open.lock:
+            _open.count -= 1
+            if _open.count == 0:
+                _open.limit.restore_original_limits()

@@ -12,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from herringbone.core import FmuError
 from herringbone.cosim.fmu.file import is_fmi3, read_fmu
 from herringbone.cosim.fmu.fmi2_part import Fmu2Part
-from herringbone.cosim.fmu.fmi3_part import Fmu3Part
+from herringbone.cosim.fmu.fmi3.part import Fmu3Part
 from herringbone.cosim.fmu.part import FmuPart
 
 

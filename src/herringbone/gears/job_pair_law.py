@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.core.activity import activity
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.gears.finite_elements import FiniteElementMesh
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
@@ -38,7 +38,7 @@ def pair_law_for(job: GearJob) -> PairLaw:
         note = "; ".join(filter(None, (chosen.takes, "once for each pair")))
         with (
             activity(f"making the force law of a pair of teeth by {chosen.title}", note),
-            threadpool_limits(limits=1, user_api="blas"),
+            one_blas_thread(),
         ):
             mesh = chosen.mesh(task, silent)
             if isinstance(mesh, SliceMesh | FiniteElementMesh):  # coupled ones know what they need

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -212,7 +213,7 @@ _OF_SOME: dict[str, Callable[[Result], Figure]] = {"run_up": run_up}
 """Pictures of runs of a kind: those whose speed changes."""
 
 
-def write_pictures(result: Result, folder: str | Path) -> list[Path]:
+def write_pictures(result: Result, folder: str | Path, highest: float | None = None) -> list[Path]:
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
     Several gearboxes have pictures of their own, such as `overview.first.png`. A run of less than
@@ -221,15 +222,20 @@ def write_pictures(result: Result, folder: str | Path) -> list[Path]:
     Args:
         result: of a run.
         folder: existing folder.
+        highest: end of spectra and waterfalls [Hz]; each picture's own if not given.
 
     Raises:
         HerringboneError: a file cannot be written.
     """
+    drawn: dict[str, Callable[[Result], Figure]] = {"overview": overview, **PICTURES, **_OF_SOME}
+    if highest is not None:
+        drawn["spectra"] = partial(spectra, highest=highest)
+        drawn["run_up"] = partial(run_up, highest=highest)
     files: list[Path] = []
     if len(result.data) < 2:
         return files
     for box, seen in by_gearbox(result).items():
-        for name, draw in {"overview": overview, **PICTURES, **_OF_SOME}.items():
+        for name, draw in drawn.items():
             try:
                 figure = draw(seen)
             except ParameterError:

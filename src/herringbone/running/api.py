@@ -8,6 +8,7 @@ from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core.activity import activity
 from herringbone.core.energy_report import Verdict
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import housing_of_strangers
 from herringbone.cosim.rows.recording import Recording
@@ -130,7 +131,10 @@ def run(
     if tolerance is not None:
         check_tolerance(tolerance)
     wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
-    with housing_of_strangers(in_process=in_process, deadline=call_deadline):
+    with (
+        one_blas_thread(),
+        housing_of_strangers(in_process=in_process, deadline=call_deadline),
+    ):
         structure, chosen, notes = prepared(
             system,
             scene,

@@ -1,14 +1,12 @@
 """What a part and a system depend on, by content: for the keys of what is kept about them."""
 
-import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
 from herringbone.core.caching.keys import sources_key
+from herringbone.core.caching.remembered import content_key
 from herringbone.core.places.files import is_file
 from herringbone.cosim.structure.system import PartSpec, System
-
-_BLOCK = 1 << 20
 
 
 def contents_of(spec: PartSpec) -> Iterator[str]:
@@ -36,12 +34,5 @@ def values_of(spec: PartSpec) -> Iterator[str]:
 
 
 def digest_of_file(file: Path) -> str:
-    """Digest of a file's content."""
-    digest = hashlib.sha256()
-    try:
-        with file.open("rb") as stream:
-            while block := stream.read(_BLOCK):
-                digest.update(block)
-    except OSError:  # whoever needs it says so
-        return "not readable"
-    return digest.hexdigest()
+    """Digest of a file's content; whoever needs one that cannot be read says so."""
+    return content_key(file) or "not readable"

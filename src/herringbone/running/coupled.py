@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from herringbone.analysis.stability.instability import warn_if_unstable
-from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.files import same_folder
@@ -30,6 +29,7 @@ from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.output.run_output import RunOutput
+from herringbone.running.remembered_answers import bond_of, stability_warning
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
     decimated,
@@ -150,7 +150,7 @@ def _coupled(
         if algorithm is None:
             algorithm, why = choose_algorithm(parts, asked.step)
             lines.append(why)
-        bond = fastest_bond(system)
+        bond = bond_of(system)
         own = start_step(algorithm, parts)
         step = asked.step or suited_step(system, scene, algorithm, own, bond, asked.record_step)
         if asked.step is None and step > own:
@@ -209,6 +209,10 @@ def _stability_notes(
     if algorithm.adaptive or asked.slow or not known:
         return []
     what = f"predicting whether {system.name} is stable"
+    if not system.foreign_parts:
+        with activity(what):
+            warning = stability_warning(system, algorithm, step, t_end, under_load)
+        return [warning] if warning else []
     with activity(what), surrogates_of(system, parts, step) as found:
         if found.missing:
             return [f"whether the step is stable is not known: {found.why}"]

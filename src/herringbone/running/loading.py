@@ -9,8 +9,9 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
+from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
-from herringbone.core.part import STRUCTURE, Part
+from herringbone.core.part import STRUCTURE, Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu
@@ -26,6 +27,7 @@ from herringbone.running.housing_check import replacement_notes
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
+_declared: Remembered[dict[str, PartVariable]] = Remembered(64)
 _BUILDERS = {"native": build_native_fmus, "python": build_python_fmus}
 
 
@@ -119,7 +121,7 @@ def open_parts(system: System, fmu: str) -> list[Part]:
     parts: list[Part] = []
     try:
         for spec in system.parts:
-            parts.append(_open_part(spec, files))
+            parts.append(_open_part(spec, files, shared=kind == "native"))
             _set_values(parts[-1], spec)
             if spec.foreign and system.connections:
                 parts[-1] = in_si_units(parts[-1])
@@ -160,6 +162,15 @@ def _set_values(part: Part, spec: PartSpec) -> None:
         part.set(name, spec.values[name])
 
 
+def _with_rates(part: Part, name: str) -> dict[str, PartVariable]:
+    """Variables of a component's FMU with the rates that the component declares."""
+    declared = part_variables(name)
+    return {
+        name: replace(v, rate=declared[name].rate) if name in declared else v
+        for name, v in part.variables.items()
+    }
+
+
 @contextmanager
 def _named(instance: str) -> Iterator[None]:
     """What is wrong with an FMU is said of the instance."""
@@ -169,16 +180,13 @@ def _named(instance: str) -> Iterator[None]:
         raise FmuError(f"{instance}: {error}") from error
 
 
-def _open_part(spec: PartSpec, files: Mapping[str, Path]) -> Part:
+def _open_part(spec: PartSpec, files: Mapping[str, Path], *, shared: bool) -> Part:
     if spec.fmu is not None:
         with _named(spec.name):
             return open_fmu(spec.name, spec.fmu)
     if str(spec.component) in files:
-        part = open_fmu(spec.name, files[str(spec.component)], own=True)
-        declared = part_variables(str(spec.component))
-        part.variables = {
-            name: replace(v, rate=declared[name].rate) if name in declared else v
-            for name, v in part.variables.items()
-        }
+        part = open_fmu(spec.name, files[str(spec.component)], own=True, shared=shared)
+        content = spec.component, content_key(files[str(spec.component)])
+        part.variables = _declared(content, lambda: _with_rates(part, str(spec.component)))
         return part
     return InProcessPart(Instance(component(str(spec.component)), spec.name))

@@ -7,7 +7,7 @@ from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
-from herringbone.running.pairs.carrying_flank import loaded_start
+from herringbone.running.remembered_answers import start_of_known
 from herringbone.scenes import Scene, Start
 
 LOAD_RAMP_TIME = 0.02
@@ -70,7 +70,7 @@ def ramp_times(system: System) -> Values:
 def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
     with activity(f"looking for the steady rotation of {system.name}"):
-        return loaded_start(known_parts(system))
+        return start_of_known(known_parts(system))
 
 
 def known_parts(system: System) -> System:

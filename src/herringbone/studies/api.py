@@ -14,6 +14,7 @@ from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
 from herringbone.studies.axes import numbers
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
+from herringbone.studies.evaluators.steady import Steady
 from herringbone.studies.evaluators.transient import Transient, with_known_values
 from herringbone.studies.keys import base_settings
 from herringbone.studies.set_points import addressed, commanded
@@ -51,13 +52,14 @@ def sweep(
 
     Args:
         system: name of a shipped system, folder with system.toml, or .ssp file.
-        speed: values of the speed set point that the system declares [r/min].
+        speed: values of the speed set point that the system declares [rad/s].
         torque: of the torque set point [N m].
         vary: values by `instance.variable`, in SI units; all combinations are computed.
         study: points, in place of `speed`, `torque` and `vary`.
         scene, values, gear, housing, replace_parts, t_end, record_step, start: of all points, as in
             `herringbone.run`.
-        evaluator: what computes a point; runs if not given.
+        evaluator: what computes a point; periodic steady states (`Steady`) if not given, or runs
+            (`Transient`) with foreign parts.
         executor: any of `concurrent.futures`, or such as that of `dask.distributed`; processes of
             our own if not given.
         workers: number of these; as many as there are cores, and as are worth it, if not given.
@@ -84,10 +86,11 @@ def sweep(
     wishes = Wishes(t_end, record_step, start, as_texts(values), gear, housing, replace_parts or {})
     named = str(scene) if scene is not None else None
     base = Base(_found(system), named, wishes, str(Path.cwd()))
-    chosen = evaluator or Transient()
     structure, folder = load_system(base.system)
     known = with_known_values(structure, load_scene(folder, named), wishes)
+    chosen = evaluator or _suited(known, wishes, series=series)
     units = {name: _unit(known, name) for name in study.names}
+    units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
     commanded(known.with_values({n: v for n, v in first.items() if n not in SET_POINTS}), first)
     settings = base_settings(base, chosen)
@@ -105,6 +108,20 @@ def sweep(
     return computed(
         study, base, chosen, asked, Workers(executor, workers, 1 + cells), told, progress
     )
+
+
+def _suited(system: System, wishes: Wishes, *, series: bool) -> Evaluator:
+    """Steady states where all equations are known, and nothing is asked of a run."""
+    of_runs = {"t_end": wishes.t_end, "record_step": wishes.record_step, "start": wishes.start}
+    given = [name for name, value in of_runs.items() if value is not None]
+    if system.foreign_parts or wishes.replace_parts:
+        return Transient()
+    if given or series:
+        raise ParameterError(
+            f"{', '.join(given) or 'series'}: of runs, and steady states are without; evaluate "
+            "the points by runs (--transient)"
+        )
+    return Steady()
 
 
 def _found(system: str | Path) -> str:

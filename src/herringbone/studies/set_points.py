@@ -1,6 +1,5 @@
 """What speed and torque address: the set points that a system declares."""
 
-import math
 from typing import NamedTuple
 
 from herringbone.components.registry import component
@@ -12,7 +11,6 @@ from herringbone.running.own_master import at_pinion
 from herringbone.studies.study import SPEED, TORQUE, Point
 
 _QUANTITIES = {SPEED: Quantity.SPEED_SETPOINT, TORQUE: Quantity.TORQUE_SETPOINT}
-_TO_SI = {SPEED: math.pi / 30.0, TORQUE: 1.0}
 
 
 class SetPoint(NamedTuple):
@@ -66,7 +64,7 @@ def addressed(system: System, name: str) -> str:
 
 
 def commanded(system: System, point: Point) -> Point:
-    """A point whose speed [r/min] and torque [N m] are values of variables, in SI units.
+    """A point whose speed [rad/s] and torque [N m] are values of variables.
 
     Args:
         system: with all values but these.
@@ -78,7 +76,7 @@ def commanded(system: System, point: Point) -> Point:
     values = {name: value for name, value in point.items() if name not in _QUANTITIES}
     for name in _QUANTITIES:
         if name in point:
-            values |= _values(system, name, float(point[name]) * _TO_SI[name])
+            values |= _values(system, name, float(point[name]))
     return values
 
 

@@ -1,6 +1,7 @@
 """The points of a study, and the chains of neighbours that they make."""
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
@@ -8,8 +9,9 @@ from random import Random
 from herringbone.core import ParameterError
 
 SPEED, TORQUE = "speed", "torque"
-SET_POINTS = {SPEED: "r/min", TORQUE: "N.m"}
-"""Parameters that address what a system declares as its set points, and their units."""
+SET_POINTS = {SPEED: "rad/s", TORQUE: "N.m"}
+"""Parameters that address what a system declares as its set points, and their SI units."""
+PER_MINUTE = "r/min"
 
 Value = float | str
 Point = dict[str, Value]
@@ -22,13 +24,15 @@ class Study:
 
     Attributes:
         names: parameters.
-        points: values (points, names): speeds in r/min, torques in N m, others in SI units.
+        points: values (points, names) in SI units, but for the speed.
+        speed_unit: "rad/s" or "r/min".
         line: so many points after each other are neighbours, from the first one on.
     """
 
     names: tuple[str, ...]
     points: tuple[tuple[Value, ...], ...]
     line: int = 1
+    speed_unit: str = SET_POINTS[SPEED]
 
     def __post_init__(self) -> None:
         """Check it.
@@ -44,8 +48,11 @@ class Study:
             raise ParameterError(f"the point {told} stands twice in the study; drop one")
 
     def point(self, number: int) -> Point:
-        """Values of a point."""
-        return dict(zip(self.names, self.points[number], strict=True))
+        """Values of a point, in SI units."""
+        point = dict(zip(self.names, self.points[number], strict=True))
+        if SPEED in point and self.speed_unit == PER_MINUTE:
+            point[SPEED] = float(point[SPEED]) * math.pi / 30.0
+        return point
 
     def chains(self, longest: int | None) -> list[range]:
         """Numbers of the points of each chain: neighbours, at most so many; None: all of a line."""

@@ -1,6 +1,7 @@
 """A study from a TOML file: a grid, a list of points, or a sample."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,14 +9,23 @@ from herringbone.core import ParameterError
 from herringbone.core.places.files import beside
 from herringbone.core.reading.structured import read_toml
 from herringbone.studies.axes import axis, numbers
-from herringbone.studies.study import SET_POINTS, Point, Study, Value, grid, listed, sampled
+from herringbone.studies.study import (
+    PER_MINUTE,
+    SET_POINTS,
+    Point,
+    Study,
+    Value,
+    grid,
+    listed,
+    sampled,
+)
 
 _KINDS = ("grid", "point", "sample")
 _ENDS = 2
 
 
 def read_study_file(file: str | Path) -> Study:
-    """Read a study; see `herringbone template study`.
+    """Read a study, with speeds in r/min; see `herringbone template study`.
 
     Raises:
         HerringboneError: it cannot be read, or something in it is wrong.
@@ -30,10 +40,12 @@ def read_study_file(file: str | Path) -> Study:
     content = data[given[0]]
     try:
         if given == ["grid"]:
-            return grid({n: _axis(n, v, file) for n, v in _table(content, "grid").items()})
-        if given == ["point"]:
-            return listed([_point(each, file) for each in content])
-        return _sample(_table(content, "sample"))
+            found = grid({n: _axis(n, v, file) for n, v in _table(content, "grid").items()})
+        elif given == ["point"]:
+            found = listed([_point(each, file) for each in content])
+        else:
+            found = _sample(_table(content, "sample"))
+        return replace(found, speed_unit=PER_MINUTE)
     except ParameterError as error:
         raise ParameterError(f"{file}: {error}") from None
 

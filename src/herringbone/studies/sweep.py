@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
+from itertools import compress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -18,6 +20,9 @@ from herringbone.studies.study import Study
 from herringbone.studies.table import study_table
 from herringbone.studies.working.chain import Done, Job, run_chain
 from herringbone.studies.working.executors import Workers, Working, working
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _KNOWN = 16
 """Chains that are there, from which the cost of the others is told."""
@@ -66,6 +71,13 @@ class Sweep:
     expected: Expected
     files: tuple[Path, ...]
 
+    def plot(self, across: str | None = None) -> "Figure":
+        """Levels and mesh orders over a parameter: speed, or the first number, if not given."""
+        from herringbone.plotting.studies.levels import levels  # noqa: PLC0415 (matplotlib: lazy)
+        from herringbone.plotting.studies.table import Points  # noqa: PLC0415
+
+        return levels(Points(self.table, self.units), across)
+
 
 Told = Callable[[str], None]
 """Called before points are computed, with what is ahead."""
@@ -109,14 +121,15 @@ def computed(
             overwrite=asked.overwrite,
         )
         chains = chains_of(study, base, evaluator, asked.key)
-        missing = [chain for chain in chains if not store.has(chain, series=asked.series)]
+        there = [store.has(chain, series=asked.series) for chain in chains]
+        missing = [chain for chain, known in zip(chains, there, strict=True) if not known]
         progress(sum(len(c.keys) for c in chains) - sum(len(c.keys) for c in missing))
 
         def job(numbers: Sequence[int]) -> Job:
             points = tuple(study.point(number) for number in numbers)
             return Job(asked.key, base, evaluator, points, asked.series)
 
-        known = [store.read(c) for c in chains if c not in set(missing)][:_KNOWN]
+        known = [store.read(c) for c in list(compress(chains, there))[:_KNOWN]]
         if not known:
             missing, known = _measured(missing, job, store, progress)
         ahead = expected(len(study.points), len(chains), sum(len(c.keys) for c in missing), known)

@@ -16,7 +16,9 @@ PERIODS, PER_PERIOD, STEP = 40, 64, 5e-6
 STILL = {"gear_mesh.symmetry_deviation": 0.0}
 
 
-def marched(state: hb.SteadyState, columns: list[str]) -> tuple[np.ndarray, np.ndarray]:
+def marched(
+    state: hb.SteadyState, columns: list[str], periods: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Times and values of the last of some periods, from the state on."""
     steps = Steps(STEP, 4, 1e-9, lean=False)
     core, orbit = state.structure.core, state.orbit
@@ -26,19 +28,20 @@ def marched(state: hb.SteadyState, columns: list[str]) -> tuple[np.ndarray, np.n
     own = np.concatenate([q.real, q.imag, [angle]])
     run.state.q[: own.size] = own
     outputs = core.outputs(columns, steps, inside=False)
-    gap = state.period / PER_PERIOD
+    places = PER_PERIOD * state.meshes
+    gap = state.period / places
     step = gap / np.ceil(gap / STEP)
-    times = (np.arange(PER_PERIOD) + (PERIODS - 1) * PER_PERIOD) * gap
-    end = round(PERIODS * state.period / step) * step
+    times = (np.arange(places) + (periods - 1) * places) * gap
+    end = round(periods * state.period / step) * step
     with threadpool_limits(limits=1, user_api="blas"):
         values = [outputs.values(run, part) for part in run.piece(0.0, end, step, times)]
     return times, np.concatenate(values)
 
 
-def error(state: hb.SteadyState, group: str) -> float:
+def error(state: hb.SteadyState, group: str, periods: int = PERIODS) -> float:
     """What a march differs by after some periods, over the alternating part of a group."""
     columns = state.chosen(group)
-    times, values = marched(state, columns)
+    times, values = marched(state, columns, periods)
     expected = state.signal(group, times)
     alternating = expected - expected.mean(axis=0)
     return float(np.linalg.norm(values - expected) / np.linalg.norm(alternating))
@@ -75,6 +78,21 @@ def test_neighbours_lead_to_the_same_state(solver):
         assert ours.level(group) == pytest.approx(theirs.level(group), rel=1e-4)
 
 
+def test_an_open_set_point_takes_a_value():
+    state = hb.steady("turbine", values=STILL, speed=100.0)
+    assert state.mean("turbine.flange.w") == pytest.approx(100.0, rel=1e-9)
+
+
 def test_speed_of_what_follows_its_loads_is_refused():
     with pytest.raises(ParameterError, match="declares no set points"):
-        hb.steady("turbine", values=STILL, speed=100.0)
+        hb.steady("ship", values=STILL, speed=100.0)
+
+
+def test_run_outs_make_the_period_long():
+    """27 and 81 teeth: 81 meshes; a march over two of these periods stays on the state."""
+    state = hb.steady("test_rig", tolerance=1e-3)
+    assert state.converged
+    assert state.meshes == 81
+    assert state.period == pytest.approx(3.0 * 0.06, rel=1e-9)  # three turns of the pinion
+    for group in GROUPS:
+        assert error(state, group, periods=2) < 1e-3

@@ -6,11 +6,13 @@ import numpy as np
 
 from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
+from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 from herringbone.result.result import Result
 
+_housings: Remembered[ModalHousing] = Remembered(8)
 _SERIES = 1e-4
 
 
@@ -45,7 +47,9 @@ def housing_of(result: Result, part: str = "") -> ModalHousing | None:
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None
-    return read_housing(modes.parent)
+    folder = modes.parent
+    content = tuple((file.name, content_key(file)) for file in sorted(folder.iterdir()))
+    return _housings((folder, content), lambda: read_housing(folder))
 
 
 def seat_forces(result: Result, part: str = "") -> np.ndarray:

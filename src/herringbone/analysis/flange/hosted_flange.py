@@ -20,13 +20,12 @@ from functools import cache
 
 import numpy as np
 from scipy.linalg import expm
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.growth import Growth, growth_of
 from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.analysis.stability.surrogates.identification import LinearModel
+from herringbone.core.one_thread import one_blas_thread
 
-_BLAS = ThreadpoolController()
 ORDERS = (0, 1, 2)
 SMALLEST, LARGEST = 1e-6, 1.0
 """Steps [s] at which the scan begins and ends."""
@@ -79,7 +78,7 @@ def host_limits(flange: LinearModel, host: Host, *, takes_torque: bool) -> tuple
     ways = [
         (q, parallel) for parallel in ((False, True) if takes_torque else (False,)) for q in ORDERS
     ]
-    with _BLAS.limit(limits=1, user_api="blas"):
+    with one_blas_thread():
         return tuple(
             HostLimit(q, parallel, _bands(flange, host, q, parallel, takes_torque))
             for q, parallel in ways

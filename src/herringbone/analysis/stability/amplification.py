@@ -14,20 +14,18 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
 from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, linear_part
 from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
 from herringbone.core import HerringboneError, Instance
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
 from herringbone.cosim.loops.common import DONE, get_all
 from herringbone.cosim.structure.network import Network
 
-_BLAS = ThreadpoolController()
-"""Matrices of a few hundred rows: threads of BLAS would mostly wait for each other."""
 NOISE = 1e-8
 """Error of a matrix with foreign parts in it, over its size: of models, and of differences."""
 _EVEN = 1e-3
@@ -136,7 +134,7 @@ class Amplification:
             HerringboneError: a part fails at this step.
         """
         matrix = self.matrix(step)
-        with _BLAS.limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             eigenvalues, vectors = np.linalg.eig(matrix)
         sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import dgebal
-from threadpoolctl import ThreadpoolController
 
-_BLAS = ThreadpoolController()
-"""Matrices of a few hundred rows: threads of BLAS would mostly wait for each other."""
+from herringbone.core.one_thread import one_blas_thread
+
 GROWTH = 1e-6
 """Growth per macro step above which a step is called unstable: invisible in 1e5 steps."""
 RIGID = 1e-5
@@ -50,7 +49,7 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     """
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
-    with _BLAS.limit(limits=1, user_api="blas"):
+    with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
         found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
         if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less

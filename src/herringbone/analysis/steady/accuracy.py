@@ -10,9 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.balance import Balance, Motion, Orbit, Period
+from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.structure import Structure
 
+_THINNER = 0.03
+_MOST = 0.7
 _NOTHING = 1e-12
 """Alternating part of a group, over its size, that is none."""
 
@@ -22,10 +25,13 @@ class Accuracy(NamedTuple):
 
     Attributes:
         left_out: of what places twice as dense would add.
+        thinned: the part of it that harmonics give which the places tell apart, but which are not
+            in use.
         change: of the last correction of the iteration, whose square is about what is left.
     """
 
     left_out: Mapping[str, float]
+    thinned: Mapping[str, float]
     change: Mapping[str, float]
 
     @property
@@ -33,19 +39,29 @@ class Accuracy(NamedTuple):
         """The largest error."""
         return max(self.left_out.values(), default=0.0)
 
+    @property
+    def by_thinning(self) -> bool:
+        """True if harmonics that are not in use are most of the largest error."""
+        largest = max(self.left_out, key=self.left_out.__getitem__, default="")
+        return bool(largest) and self.thinned[largest] > _MOST * self.left_out[largest]
 
-def accuracy(structure: Structure, motion: Motion, orbit: Orbit) -> Accuracy:
-    """Errors of a motion."""
+
+def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit) -> Accuracy:
+    """Errors of a motion that was found with a period's resolution."""
     groups, rows = structure.groups
-    finer = Balance(structure.problem, Period(0, 2 * orbit.places), motion)
+    twice = period._replace(places=2 * period.places, thin=_THINNER * period.thin)
+    finer = Balance(structure.problem, twice, motion)
     response, missing = finer.missing(orbit)
     values = orbit.response.outputs(rows, orbit.q, orbit.channels)
     lacking = response.outputs(rows, response.coordinates(missing), missing)
     moved = orbit.response.outputs(rows, orbit.moved, orbit.step)
-    left_out, change = {}, {}
+    apart = ~np.isin(response.orders, orbit.response.orders)
+    apart &= response.orders < period.places // 2
+    left_out, thinned, change = {}, {}, {}
     for group, own in groups.items():
         alternating = float(np.linalg.norm(values[own, 1:]))
         if alternating > _NOTHING * np.abs(values[own, 0]).max(initial=0.0):
             left_out[group] = float(np.linalg.norm(lacking[own, 1:])) / alternating
+            thinned[group] = float(np.linalg.norm(lacking[own][:, apart])) / alternating
             change[group] = float(np.linalg.norm(moved[own, 1:])) / alternating
-    return Accuracy(left_out, change)
+    return Accuracy(left_out, thinned, change)

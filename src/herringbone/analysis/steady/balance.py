@@ -6,104 +6,39 @@ Unknown are harmonics of the stiff values of the laws, less mean tangents times 
     F(r) = r - P [f(z(r)) - tangent z(r)] = 0,    z(r) = H r + what is given
 
 with the exact answer H of the linear part and the projection P on harmonics. Newton takes the laws'
-own tangents at all places of the period, for harmonics up to `order`. Higher ones, which the linear
-part hardly answers to, and values without tangents are replaced by what the laws give.
+own tangents at all places of the period. Harmonics beyond its highest, which the linear part hardly
+answers to, and values without tangents are replaced by what the laws give. Of a period of many
+meshes those harmonics are in use that are not negligible.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.fourier import in_frequency, in_time
+from herringbone.analysis.steady.correction import correct_at_once
+from herringbone.analysis.steady.families import Families
+from herringbone.analysis.steady.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.krylov import correct_by_families
+from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.problem import Problem, Samples
 from herringbone.analysis.steady.response import Coordinates, Response
-from herringbone.kernels.balance.jacobian import fill_jacobian
 
 _ITERATIONS = 40
 _HALVINGS = 6
+_SMALL = 0.03
+"""Change so small that it is taken whatever the residual: what the laws' harmonics that Newton does
+not solve for give makes it rise a little."""
 _ROUNDING = 1e-13
 _SAME_SPEED = 1e-10
-
-
-class Period(NamedTuple):
-    """How a period is resolved.
-
-    Attributes:
-        order: highest harmonic that Newton solves for.
-        places: in time, a power of 2, more than twice the order.
-    """
-
-    order: int
-    places: int
-
-    @property
-    def harmonics(self) -> np.ndarray:
-        """Orders of all harmonics that the places tell apart."""
-        return np.arange(self.places // 2)
-
-
-class Orbit(NamedTuple):
-    """A periodic motion.
-
-    Attributes:
-        channels: (channels, harmonics) coefficients.
-        response: of the linear part, at the frequency and speed of the motion.
-        q: modal coordinates.
-        moved: the part of them that the last correction made.
-        step: (channels, harmonics) the last correction.
-        angle: (harmonics,) coefficients of theta less its mean growth.
-        samples: of the laws.
-        change: what the last correction changed the alternating part of the stiff arguments by.
-        residual: of the laws' values before the last correction, over their size.
-        iterations: evaluations of the laws at all places.
-        converged: whether the change fell below what was asked for.
-    """
-
-    channels: np.ndarray
-    response: Response
-    q: Coordinates
-    moved: Coordinates
-    step: np.ndarray
-    angle: np.ndarray
-    samples: Samples
-    change: float
-    residual: float
-    iterations: int
-    converged: bool
-
-    @property
-    def places(self) -> int:
-        """Points in time of the period."""
-        return len(self.samples.f)
-
-    @property
-    def period(self) -> float:
-        """Time after which the motion repeats [s]."""
-        return 2.0 * np.pi / self.response.frequency
-
-
-class Motion(NamedTuple):
-    """What is given of a periodic motion.
-
-    Attributes:
-        given: (channels without the laws' values, harmonics) coefficients.
-        turn: angle theta over a period [rad], with its sign; 0: the frequency is given.
-        speed: d theta / dt [rad/s]: where nothing decides on it it stays so, else a first guess.
-        frequency: of the period [rad/s], if theta does not tell it.
-        angle: theta at the start of the period [rad].
-    """
-
-    given: np.ndarray
-    turn: float = 0.0
-    speed: float = 0.0
-    frequency: float = 0.0
-    angle: float = 0.0
+_INEXACT = 0.03
+"""Residual of the linear equations of a step of Newton, of many meshes."""
 
 
 class _Answered(NamedTuple):
     """What the linear part does under channels; z: (arguments, harmonics)."""
 
     response: Response
+    channels: np.ndarray
     q: Coordinates
     angle: np.ndarray
     z: np.ndarray
@@ -120,19 +55,18 @@ class Balance:
 
     def __init__(self, problem: Problem, period: Period, motion: Motion) -> None:
         self.problem, self.period, self.motion = problem, period, motion
-        self._orders = period.harmonics
         self._share = np.arange(period.places) / period.places
-        self._channels = problem.inputs.shape[1]
-        self._along = problem.directions @ problem.arguments
-        self._along_angle = problem.directions @ problem.of_angle
+        highest = period.places // 2 - 1 if period.order else period.meshes // 2
+        self._every = np.arange(highest + 1)
 
-    def start(self, values: np.ndarray) -> np.ndarray:
-        """Channels (channels, harmonics) from those of values (values, any harmonics)."""
-        found = np.zeros((self._channels, self._orders.size), dtype=complex)
-        for first, rows in ((0, values), (self.problem.values, self.motion.given)):
-            kept = min(rows.shape[1], self._orders.size)
-            found[first : first + len(rows), :kept] = rows[:, :kept]
-        return found
+    def _channels(self, orders: np.ndarray, values: np.ndarray, known: np.ndarray) -> np.ndarray:
+        """Channels (channels, harmonics) from values (values, harmonics) of known orders."""
+        given = self.motion.given
+        return np.vstack([on(orders, values, known), on(orders, given, np.arange(given.shape[1]))])
+
+    def with_given(self, channels: np.ndarray) -> np.ndarray:
+        """Channels (channels, harmonics) of all harmonics, with what is given of this motion."""
+        return self._channels(self._every, channels[: self.problem.values], self._every)
 
     def _response(self, speed: float, orders: np.ndarray) -> Response:
         """The linear part at a speed."""
@@ -145,7 +79,7 @@ class Balance:
         """d theta / dt [rad/s] under the means of the channels."""
         if not self.motion.turn:
             return 0.0
-        still = Response(self.problem, 0.0, self._orders[:1], self.motion.speed)
+        still = Response(self.problem, 0.0, self._every[:1], self.motion.speed)
         return still.turning(still.coordinates(channels[:, :1]))[0]
 
     def _answered(self, answer: Response, channels: np.ndarray) -> _Answered:
@@ -153,49 +87,117 @@ class Balance:
         q = answer.coordinates(channels)
         speed, angle = answer.turning(q)
         if self.motion.turn and abs(speed - answer.speed) > _SAME_SPEED * abs(speed):
-            answer = self._response(speed, self._orders)
+            answer = self._response(speed, answer.orders)
             q = answer.coordinates(channels)
             _, angle = answer.turning(q)
         problem = self.problem
         z = answer.of(problem.arguments, q)
         z += problem.of_angle[:, None] * angle
         z += problem.of_channels @ channels
-        return _Answered(answer, q, angle, z)
+        return _Answered(answer, channels, q, angle, z)
 
-    def solve(self, values: np.ndarray, close: float) -> Orbit:
+    def _begun(self, values: np.ndarray, known: np.ndarray) -> _Answered:
+        """The motion of a guess."""
+        orders = self._every
+        speed = self._first_speed(self._channels(orders[:1], values[:, :1], known[:1]))
+        if self.period.meshes > 1:
+            used = self._in_use(self._response(speed, orders[:1]), values, known)
+            orders = used[used < orders.size]
+        channels = self._channels(orders, values, known)
+        return self._answered(self._response(speed, orders), channels)
+
+    def solve(self, values: np.ndarray, known: np.ndarray, close: float) -> Orbit:
         """The periodic motion from a guess of the laws' values, less mean tangents.
 
         Args:
-            values: (values, any harmonics) coefficients.
+            values: (values, harmonics) coefficients.
+            known: (harmonics,) their orders, the first is 0.
             close: change of the alternating part of the stiff arguments at which it ends.
         """
         problem = self.problem
-        channels = self.start(values)
-        speed = self._first_speed(channels)
-        now = self._answered(self._response(speed, self._orders), channels)
-        step, part, merit, change, iterations = None, 1.0, np.inf, np.inf, 0
+        now, count = self._begun(values, known), problem.values
+        part, merit, change, iterations = 1.0, np.inf, np.inf, 0
+        stepped = now.response.orders
+        step = np.zeros((count, stepped.size))
         while iterations < _ITERATIONS:
             samples = problem.laws(self._arguments(now))
             iterations += 1
-            off = self._harmonics(samples) - channels[: problem.values]
-            before, merit = merit, self._size(samples, off)
-            if step is not None and merit > before and part > 0.5**_HALVINGS and merit > _ROUNDING:
+            now, laws = self._with_orders(now, samples)
+            off = laws - now.channels[:count]
+            before, merit = merit, self._size(samples, off, now.response.orders)
+            if merit > before and change > _SMALL and part > 0.5**_HALVINGS:
                 part *= 0.5  # not as far
-                channels[: problem.values] -= part * step
-                now, merit = self._answered(now.response, channels), before
+                step = on(now.response.orders, step, stepped)
+                stepped = now.response.orders
+                now, merit = self._moved(now, -part * step), before
                 continue
             step, part = self._correction(now.response, samples, off), 1.0
-            channels[: problem.values] += step
-            last, now = now, self._answered(now.response, channels)
+            last, now, stepped = now, self._moved(now, step), now.response.orders
             change = self._change(last.z, now.z)
             if change <= close or merit <= _ROUNDING:
                 break
-        moved = np.zeros_like(channels)
-        moved[: problem.values] = step
+        moved = np.zeros_like(now.channels)
+        moved[:count] = step
         return Orbit(
-            channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples, change,
-            merit, iterations, change <= close or merit <= _ROUNDING,
+            now.channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples,
+            change, merit, iterations, change <= close or merit <= _ROUNDING,
         )  # fmt: skip
+
+    def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
+        """A motion of given channels, of one mesh, and what the laws give and it lacks.
+
+        Args:
+            channels: (channels, harmonics), all harmonics that the places tell apart.
+        """
+        speed = self._first_speed(channels)
+        now = self._answered(self._response(speed, self._every), channels)
+        samples = self.problem.laws(self._arguments(now))
+        _, laws = self._with_orders(now, samples)
+        off = laws - channels[: len(laws)]
+        nothing = np.zeros_like(channels)
+        still = _less(now.q, now.q)
+        return Orbit(
+            channels, now.response, now.q, still, nothing, now.angle, samples, 0.0,
+            self._size(samples, off, self._every), 1, converged=False,
+        ), off  # fmt: skip
+
+    def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:
+        """The motion with values changed by a step (values, harmonics)."""
+        channels = now.channels.copy()
+        channels[: len(step)] += step
+        return self._answered(now.response, channels)
+
+    def _with_orders(self, now: _Answered, samples: Samples) -> tuple[_Answered, np.ndarray]:
+        """The motion on all orders that are in use, and the laws' values there."""
+        rest = (samples.f - samples.z @ self.problem.tangent.T).T
+        if self.period.meshes == 1:
+            return now, in_frequency(rest, self._every)
+        every = in_frequency(rest, self._every)
+        used = self._in_use(now.response, every, self._every)
+        wanted = np.union1d(now.response.orders, used)
+        if wanted.size > now.response.orders.size:
+            own = now.channels[: self.problem.values]
+            channels = self._channels(wanted, own, now.response.orders)
+            now = self._answered(self._response(now.response.speed, wanted), channels)
+        return now, every[:, wanted]
+
+    def _in_use(self, answer: Response, values: np.ndarray, orders: np.ndarray) -> np.ndarray:
+        """Orders without which the values (values, harmonics) lose a share of their alternation.
+
+        Values count by what they move the stiff arguments by, at the mesh frequency.
+        """
+        problem = self.problem
+        mesh = answer.at(np.array([0, self.period.meshes]))
+        gains = mesh.gain(problem.along, problem.along_angle, np.arange(len(values)), 2)[:, :, 1]
+        weights = np.abs(problem.mean[:, None] * gains).sum(axis=0)
+        energy = ((weights[:, None] * np.abs(values)) ** 2).sum(axis=0)
+        energy[0] = 0.0
+        ascending = np.argsort(energy)
+        left_out = np.cumsum(energy[ascending]) <= self.period.thin**2 * energy.sum()
+        used = np.ones(energy.size, dtype=bool)
+        used[ascending[left_out]] = False
+        used[0] = True
+        return orders[used]
 
     def missing(self, orbit: Orbit) -> tuple[Response, np.ndarray]:
         """What the laws give at these places, and an orbit at fewer of them lacks.
@@ -203,57 +205,36 @@ class Balance:
         Returns:
             The linear part, and channels (channels, harmonics).
         """
-        channels = self.start(orbit.channels[: self.problem.values])
-        now = self._answered(self._response(orbit.response.speed, self._orders), channels)
-        found = np.zeros_like(channels)
-        values = self.problem.values
-        found[:values] = self._harmonics(self.problem.laws(self._arguments(now)))
-        found[:values] -= channels[:values]
+        now = self._begun(orbit.channels[: self.problem.values], orbit.response.orders)
+        samples = self.problem.laws(self._arguments(now))
+        now, laws = self._with_orders(now, samples)
+        found = np.zeros_like(now.channels)
+        found[: len(laws)] = laws - now.channels[: len(laws)]
         return now.response, found
 
     def _arguments(self, now: _Answered) -> np.ndarray:
         """Arguments (places, arguments) in time."""
-        z = in_time(now.z, self.period.places)
+        z = in_time(now.z, now.response.orders, self.period.places)
         if self.motion.turn:
             turn = np.sign(now.response.speed) * abs(self.motion.turn)
             turned = self.motion.angle + turn * self._share
             z += self.problem.of_angle[:, None] * turned
         return np.ascontiguousarray(z.T)
 
-    def _size(self, samples: Samples, off: np.ndarray) -> float:
+    def _size(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
         """How far stiff values are off, over their sizes."""
         stiff = self.problem.stiff
         size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0) + np.finfo(float).tiny
-        return float(np.linalg.norm(off[stiff, : self.period.order + 1] / size[:, None]))
-
-    def _harmonics(self, samples: Samples) -> np.ndarray:
-        """The laws' values less mean tangents times arguments, (values, harmonics)."""
-        rest = samples.f - samples.z @ self.problem.tangent.T
-        return in_frequency(rest.T, self._orders.size)
+        low = orders <= self.period.order * self.period.meshes
+        return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
 
     def _correction(self, answer: Response, samples: Samples, off: np.ndarray) -> np.ndarray:
         """Changes of the values (values, harmonics) by one step of Newton."""
-        problem, n = self.problem, self.period.order
-        bends = samples.k - problem.mean
-        stiff = problem.stiff
-        bent = np.array([bends[:, problem.owner == value].any() for value in stiff], dtype=bool)
-        unknown = stiff[bent]
-        step = off.copy()
-        if not unknown.size:
-            return step
-        place = np.full(problem.values, -1)
-        place[unknown] = np.arange(unknown.size)
-        gains = answer.gain(self._along, self._along_angle, unknown, n + 1)
-        size = 2 * n + 1
-        jacobian = np.empty((unknown.size * size, unknown.size * size))
-        products = np.ascontiguousarray(in_frequency(bends.T, self._orders.size))
-        fill_jacobian(products, place[problem.owner], gains, n, jacobian)
-        right = off[unknown, : n + 1]
-        wanted = np.hstack([right.real, right[:, 1:].imag]).ravel()
-        found = np.linalg.solve(jacobian, wanted).reshape(unknown.size, size)
-        step[unknown, : n + 1] = found[:, : n + 1]
-        step[unknown, 1 : n + 1] += 1j * found[:, n + 1 :]
-        return step
+        period = self.period
+        if period.meshes == 1:
+            return correct_at_once(self.problem, answer, samples, off, period.order)
+        families = Families(answer.orders, period.meshes, period.order)
+        return correct_by_families(self.problem, answer, samples, off, families, _INEXACT)
 
     def _change(self, before: np.ndarray, after: np.ndarray) -> float:
         """What a correction changes the stiff arguments by, over their alternating part."""

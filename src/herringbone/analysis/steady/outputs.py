@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.balance import Orbit
 from herringbone.analysis.steady.fourier import in_frequency, in_time
+from herringbone.analysis.steady.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
 
 
@@ -14,16 +14,18 @@ class Harmonics(NamedTuple):
     """Outputs over a period: slope t + the sum of coefficients exp(i k w t) over all k.
 
     Attributes:
-        coefficients: (columns, harmonics) c_k, k = 0, 1, ...; c_-k is the conjugate.
+        coefficients: (columns, harmonics) c_k of ascending orders k from 0; c_-k is the conjugate.
+        orders: (harmonics,) these.
         slope: (columns,) per second, of angles.
     """
 
     coefficients: np.ndarray
+    orders: np.ndarray
     slope: np.ndarray
 
     def at(self, times: np.ndarray, frequency: float) -> np.ndarray:
         """Values (times, columns) at times [s], for w [rad/s]."""
-        k = np.arange(self.coefficients.shape[1])
+        k = self.orders
         weights = np.where(k > 0, 2.0, 1.0)
         turning = np.exp(1j * np.outer(times * frequency, k)) * weights
         return (turning @ self.coefficients.T).real + np.outer(times, self.slope)
@@ -51,20 +53,23 @@ def harmonics(structure: Structure, orbit: Orbit, columns: Sequence[str]) -> Har
         if wanted.whole:
             computed = wanted.observed(times, states(structure, orbit))
         else:
-            given = in_time(found[count:], orbit.places)
+            given = in_time(found[count:], response.orders, orbit.places)
             given += slope[count:, None] * (times - structure.late)
             computed = wanted.computed(times, given.T)
-        values[wanted.there] = in_frequency(computed.T, found.shape[1])
-    return Harmonics(values, slopes)
+        values[wanted.there] = in_frequency(computed.T, response.orders)
+    return Harmonics(values, response.orders, slopes)
 
 
 def states(structure: Structure, orbit: Orbit) -> np.ndarray:
     """All states (n, places) of the system over a period."""
     modes = structure.core.condensed.modes
-    found = in_time(orbit.response.of(modes.shapes, orbit.q), orbit.places)
+    found = in_time(orbit.response.of(modes.shapes, orbit.q), orbit.response.orders, orbit.places)
     found += modes.constant[:, None] + (modes.rigid @ modes.angles)[:, None]
     if modes.angles.size:
         times = np.arange(orbit.places) / orbit.places * orbit.period
-        turned = in_time(orbit.angle[None, :], orbit.places)[0] + times * orbit.response.speed
+        turned = (
+            in_time(orbit.angle[None, :], orbit.response.orders, orbit.places)[0]
+            + times * orbit.response.speed
+        )
         found += np.outer(modes.rigid[:, 0], turned)
     return found

@@ -83,6 +83,16 @@ class Problem:
         return np.unique(self.owner)
 
     @cached_property
+    def along(self) -> np.ndarray:
+        """(tangents, modes): what the tangents are along."""
+        return self.directions @ self.arguments
+
+    @cached_property
+    def along_angle(self) -> np.ndarray:
+        """(tangents,): how theta moves that."""
+        return self.directions @ self.of_angle
+
+    @cached_property
     def free(self) -> int | None:
         """The mode that turns at any speed by itself; None: something decides on the speed."""
         still = np.abs(self.rates) <= _STILL * np.abs(self.rates).max(initial=0.0)

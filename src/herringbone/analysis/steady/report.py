@@ -75,7 +75,7 @@ def _group(state: SteadyState, group: str) -> list[str]:
         f"{group.replace('_', ' ')}: {state.level(group):.5g} {unit} rms over {len(columns)} "
         f"channels, most {state.level(loudest):.5g} {unit} at {loudest}",
         *(
-            f"  mesh order {state.mesh_orders[k]:<8.5g} {k * state.frequency:9.5g} Hz "
+            f"  mesh order {state.mesh_orders[k]:<8.5g} {state.frequencies[k]:9.5g} Hz "
             f"{sizes[k]:11.5g} {unit} rms"
             for k in sorted(largest)
         ),

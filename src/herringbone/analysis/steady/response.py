@@ -58,6 +58,10 @@ class Response:
         self._per_turning = np.zeros(orders.size, dtype=complex)
         self._per_turning[1:] = 1.0 / turning[1:]
 
+    def at(self, orders: np.ndarray) -> "Response":
+        """The same of other harmonics; the first is 0."""
+        return Response(self._problem, self.frequency, orders, self.speed)
+
     def coordinates(self, channels: np.ndarray) -> Coordinates:
         """Modal coordinates under channels (channels, harmonics)."""
         inputs = self._problem.inputs

@@ -7,8 +7,10 @@ import numpy as np
 
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.declaring.variable import Causality
 from herringbone.cosim.structure.system import System
 
 
@@ -29,8 +31,9 @@ class Point(NamedTuple):
 class SetPoints:
     """What speed and torque stand for in a system.
 
-    A controller that declares set points gives both. A gear pair with nothing at its flanges has
-    them itself: its speed, which nothing changes, and its torques, which are values.
+    An output that commands, as of a controller, is a signal; an input that nothing is joined to
+    is a value. A gear pair with nothing at its flanges has both itself: its speed, which nothing
+    changes, and its torques, which are values.
 
     Args:
         system: whose they are.
@@ -38,11 +41,14 @@ class SetPoints:
 
     def __init__(self, system: System) -> None:
         self._system, self._known = system, anatomy(system)
-        self._controllers = {
+        fed = {system.split(path) for pair in system.connections for path in pair}
+        self._declared = {
             quantity: [
-                column
-                for part in self._known.with_role(Role.CONTROLLER)
-                for column in self._known.columns(part, quantity)
+                (f"{part.name}.{v.name}", v.causality is Causality.INPUT)
+                for part in system.parts
+                if part.component
+                for v in component(part.component).declaration.offered(quantity)
+                if v.causality is Causality.OUTPUT or (part.name, v.name) not in fed
             ]
             for quantity in (Quantity.SPEED_SETPOINT, Quantity.TORQUE_SETPOINT)
         }
@@ -70,7 +76,9 @@ class SetPoints:
         ):
             if wanted is None or self._open is not None:
                 continue
-            column = self._set_point(quantity)
+            column, given = self._set_point(quantity)
+            if given:
+                continue
             place = twin.index(column)
             if place not in places:
                 raise ParameterError(f"{column} is joined to nothing; set what drives by values")
@@ -92,15 +100,24 @@ class SetPoints:
                 f"{pair}.{ports[1]}.tau": -point.torque * radii[1] / radii[0],
                 **found,
             }
+        elif pair is None:
+            for quantity, wanted in (
+                (Quantity.SPEED_SETPOINT, point.speed),
+                (Quantity.TORQUE_SETPOINT, point.torque),
+            ):
+                if wanted is not None:
+                    column, given = self._set_point(quantity)
+                    found |= {column: wanted} if given else {}
         return found
 
-    def _set_point(self, quantity: Quantity) -> str:
-        columns = self._controllers[quantity]
-        if len(columns) == 1:
-            return columns[0]
+    def _set_point(self, quantity: Quantity) -> tuple[str, bool]:
+        """The variable, and whether it is an input that takes a value."""
+        declared = self._declared[quantity]
+        if len(declared) == 1:
+            return declared[0]
         what = "speed" if quantity is Quantity.SPEED_SETPOINT else "torque"
         raise ParameterError(
-            f"{what}: system '{self._system.name}' declares {len(columns) or 'no'} set points of "
+            f"{what}: system '{self._system.name}' declares {len(declared) or 'no'} set points of "
             f"it; the {what} follows from what drives and loads it, set that by values"
         )
 

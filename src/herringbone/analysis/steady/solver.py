@@ -3,21 +3,28 @@
 from collections.abc import Mapping
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy, accuracy
-from herringbone.analysis.steady.balance import Balance, Motion, Orbit, Period
+from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.marched import marched
+from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3
 AS_IT_IS = Point()
-_BLAS = ThreadpoolController()
 _PLACES, _MOST_PLACES = 64, 2048
 """Points in time of a mesh period: at first, and at most."""
+_SLOW, _SLOW_THIN, _SAME = 6, 1e-3, 1e-2
+"""Of a first guess: points in time for each mesh, alternation that is not in use, last change."""
+_THIN = 0.05
+"""Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
+at first, of many meshes."""
+_THINNER = 0.3
 
 
 class SteadySolver:
@@ -57,10 +64,11 @@ class SteadySolver:
         Raises:
             ParameterError: the system declares no such set point.
         """
-        with _BLAS.limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             structure = self._at(point)
-            orbit, errors = self._resolved(structure, point, near)
-        return SteadyState(structure, point, orbit, errors, self.tolerance)
+            motion = _motion(structure, point)
+            orbit, errors = self._resolved(structure, motion, near)
+        return SteadyState(structure, point, motion, orbit, errors, self.tolerance)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -71,23 +79,47 @@ class SteadySolver:
         return self._structure
 
     def _resolved(
-        self, structure: Structure, point: Point, near: SteadyState | None
+        self, structure: Structure, motion: Motion, near: SteadyState | None
     ) -> tuple[Orbit, Accuracy]:
         """A motion with as many harmonics as the tolerance needs."""
-        motion, places, start = _motion(structure, point), _PLACES, structure.start
-        if near is not None and near.meshes == structure.meshes:
-            start, places = _values_of(near.orbit, structure), near.orbit.places
+        meshes, problem = structure.meshes, structure.problem
+        per_mesh = _PLACES
+        if near is not None and near.meshes == meshes:
+            start, known = near.orbit.channels[: problem.values], near.orbit.response.orders
+            per_mesh = near.orbit.places // meshes
+        else:
+            start, known = _begun(structure, motion, per_mesh)
+        thin = _THIN * self.tolerance
         while True:
-            balance = Balance(structure.problem, Period(places // 4, places), motion)
-            orbit = balance.solve(start, self.tolerance)
-            errors = accuracy(structure, motion, orbit)
-            if not orbit.converged or errors.worst <= self.tolerance or places >= _MOST_PLACES:
+            period = Period(per_mesh // 4, meshes * per_mesh, meshes, thin)
+            orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
+            errors = accuracy(structure, period, motion, orbit)
+            if not orbit.converged or errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
                 return orbit, errors
-            start, places = _values_of(orbit, structure), 2 * places
+            start, known = orbit.channels[: problem.values], orbit.response.orders
+            if errors.by_thinning:
+                thin *= _THINNER * self.tolerance / errors.worst
+            else:
+                per_mesh *= 2
 
 
-def _values_of(orbit: Orbit, structure: Structure) -> np.ndarray:
-    return orbit.channels[: structure.problem.values]
+def _begun(structure: Structure, motion: Motion, per_mesh: int) -> tuple[np.ndarray, np.ndarray]:
+    """A first guess of the values' harmonics, and their orders."""
+    meshes, problem = structure.meshes, structure.problem
+    still = Balance(problem, Period(0, 1), motion)
+    found = still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
+    if meshes == 1:
+        return found.channels[: problem.values], found.response.orders
+    places = _slow_places(meshes)
+    values = marched(structure, motion, found, 1, places)
+    slow = Balance(problem, Period(0, places, meshes, _SLOW_THIN), motion)
+    found = slow.solve(values, np.arange(values.shape[1]), _SAME)
+    return found.channels[: problem.values], found.response.orders
+
+
+def _slow_places(meshes: int) -> int:
+    """Points in time of a period that meet the mesh at ever new phases."""
+    return 1 << int(np.ceil(np.log2(_SLOW * meshes)))
 
 
 def _motion(structure: Structure, point: Point) -> Motion:

@@ -6,10 +6,12 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
+from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy
-from herringbone.analysis.steady.balance import Orbit
 from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.floquet import Multipliers, multipliers
+from herringbone.analysis.steady.orbit import Motion, Orbit
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
@@ -19,6 +21,9 @@ from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import matches_any
 
 _R_MIN = 30.0 / np.pi
+_BLAS = ThreadpoolController()
+_STEPS = 32
+"""Of a mesh period, at least, in which deviations are followed."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -31,6 +36,7 @@ class SteadyState(Facts):
     Attributes:
         structure: the system, prepared.
         point: operating point that was asked for.
+        motion: what is given of the motion there.
         orbit: the motion as it was solved for.
         errors: of harmonics left out, and of the last correction.
         tolerance: that was asked for.
@@ -39,6 +45,7 @@ class SteadyState(Facts):
 
     structure: Structure
     point: Point
+    motion: Motion
     orbit: Orbit
     errors: Accuracy
     tolerance: float
@@ -94,6 +101,21 @@ class SteadyState(Facts):
         """Parts whose laws bend within the period, as teeth that separate do."""
         return bending_parts(self.structure, self.orbit)
 
+    @cached_property
+    def multipliers(self) -> Multipliers:
+        """Floquet multipliers: what a small deviation is multiplied by in a period.
+
+        Takes some ten milliseconds for each mesh of the period.
+        """
+        steps = max(_STEPS, self.orbit.places // self.meshes // 2) * self.meshes
+        with _BLAS.limit(limits=1, user_api="blas"):
+            return multipliers(self.structure.problem, self.motion, self.orbit, steps)
+
+    @property
+    def stable(self) -> bool:
+        """True if small deviations die out; else a run would not stay on the state."""
+        return self.multipliers.largest < 1.0
+
     @property
     def orders(self) -> np.ndarray:
         """Periods per turn of the first pinion, of all harmonics."""
@@ -103,6 +125,11 @@ class SteadyState(Facts):
     def mesh_orders(self) -> np.ndarray:
         """Periods per mesh period, of all harmonics."""
         return self.orbit.response.orders / self.meshes
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Frequencies [Hz] of all harmonics."""
+        return self.orbit.response.orders * self.frequency
 
     def chosen(self, *names: str) -> list[str]:
         """Columns of groups of channels, and those that match a pattern (`*`, `?`).
@@ -158,7 +185,7 @@ class SteadyState(Facts):
             "unit": np.repeat([self.structure.core.unit(c) for c in columns], count),
             "order": np.tile(self.orders, len(columns)),
             "mesh_order": np.tile(self.mesh_orders, len(columns)),
-            "frequency": np.tile(self.orbit.response.orders * self.frequency, len(columns)),
+            "frequency": np.tile(self.frequencies, len(columns)),
             "amplitude": np.abs(found).ravel(),
             "phase": np.angle(found).ravel(),
         })  # fmt: skip

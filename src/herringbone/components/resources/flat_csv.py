@@ -7,13 +7,19 @@ left,56.306,0.0,8.22e8
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
 from herringbone.core import ResourceError
+from herringbone.core.caching.remembered import Remembered, content_key
+from herringbone.core.places.files import is_file
 from herringbone.core.reading.numbers import number
-from herringbone.core.reading.texts import AnyPath, lines_of, read_text
+from herringbone.core.reading.texts import LARGEST_TEXT, AnyPath, lines_of, read_text
 
+_Table = tuple[dict[str, np.ndarray], dict[str, str]]
+_tables: Remembered[_Table] = Remembered(64)
+_headers: Remembered[np.ndarray] = Remembered(64)
 _BLANK = " \t\v\f"
 _QUOTED = re.compile(r'"((?:[^"]++|"")*+)"([^,]*)')
 _PLAIN = re.compile(r"()([^,]*)")
@@ -60,19 +66,26 @@ def read_flat_csv(
     Raises:
         ResourceError: not readable, wrong unit, missing column, or a value that is not finite.
     """
-    return parse_flat_csv(read_text(file), file, texts, numbers, more=more)
+    key = _content(file)
+    if not key:
+        return _read(file, texts, numbers, more)
+    asked = key, texts, tuple(numbers.items()), more
+    columns, units = _tables(asked, lambda: _read(file, texts, numbers, more))
+    return {name: values.copy() for name, values in columns.items()}, dict(units)
 
 
-def parse_flat_csv(
-    text: str,
-    file: AnyPath,
-    texts: tuple[str, ...],
-    numbers: Mapping[str, tuple[str, ...]],
-    *,
-    more: str = "",
-) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """As `read_flat_csv`, of the text of the file."""
-    lines = lines_of(text)
+def _content(file: AnyPath) -> str:
+    """What tells a file's content from others; "" if it is not known, or is refused."""
+    if not isinstance(file, Path) or not is_file(file) or file.stat().st_size > LARGEST_TEXT:
+        return ""
+    return content_key(file)
+
+
+def _read(
+    file: AnyPath, texts: tuple[str, ...], numbers: Mapping[str, tuple[str, ...]], more: str
+) -> _Table:
+    """See `read_flat_csv`."""
+    lines = lines_of(read_text(file))
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
     rows = [
@@ -98,9 +111,9 @@ def parse_flat_csv(
     for line, row in rows[1:]:
         if len(row) != len(header):
             raise ResourceError(f"{file}, line {line}: {len(row)} fields, {len(header)} expected")
-        for name, field in zip(header, row, strict=True):
+        for name, text in zip(header, row, strict=True):
             columns[name].append(
-                field.strip(_BLANK) if name in texts else _number(field, name, file, line)
+                text.strip(_BLANK) if name in texts else _number(text, name, file, line)
             )
     return {name: np.array(values) for name, values in columns.items()}, units
 
@@ -114,15 +127,18 @@ def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
     Raises:
         ResourceError: it has not that many finite numbers.
     """
-    return parse_header(read_text(file) if count else "", file, name, count)
+    key = _content(file)
+    if not (key and count):
+        return _read_header(file, name, count)
+    return _headers((key, name, count), lambda: _read_header(file, name, count)).copy()
 
 
-def parse_header(text: str, file: AnyPath, name: str, count: int) -> np.ndarray:
-    """As `read_header`, of the text of the file."""
+def _read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
+    """See `read_header`."""
     mark, last = f"# {name}:", 0
-    lines = lines_of(text) if count else []
-    for line, said in enumerate(lines, 1):
-        last = line if said.startswith(mark) else last
+    lines = lines_of(read_text(file)) if count else []
+    for line, text in enumerate(lines, 1):
+        last = line if text.startswith(mark) else last
     if last == 0:
         return np.full(count, np.nan)
     try:

@@ -6,25 +6,22 @@ same files with the same words.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from herringbone.components.resources.flat_csv import (
     check_units,
-    parse_flat_csv,
-    parse_header,
+    read_flat_csv,
+    read_header,
 )
 from herringbone.core import Column, ResourceError, Text
-from herringbone.core.reading.texts import AnyPath, read_text
+from herringbone.core.reading.texts import AnyPath
 
 REPORT = 12
 """Numbers that a refusal may show."""
 
 NO_FILE = -1
-_REMEMBERED = 64
-"""Files whose numbers are remembered: the start of a system asks for each many times."""
 
 LoadKernel = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], int]
 CheckKernel = Callable[[np.ndarray, np.ndarray], int]
@@ -109,20 +106,10 @@ def read_numbers(
     Raises:
         ResourceError: see `read_flat_csv` and `read_header`; or a word that a column does not take.
     """
-    values, shape = _numbers(read_text(file), str(file), columns, header, header_count)
-    return values.copy(), shape
-
-
-@lru_cache(_REMEMBERED)
-def _numbers(
-    text: str, file: str, columns: tuple[Column, ...], header: str, header_count: int
-) -> tuple[np.ndarray, tuple[int, int]]:
-    """As `read_numbers`, of the text of a file; nobody changes what it gives."""
     words = tuple(c for c in columns if c.words)
     rest = next((c.name for c in columns if c.rest), "")
     wanted = {c.name: c.units for c in columns if c.units and not c.rest}
-    names = tuple(c.name for c in words)
-    table, units = parse_flat_csv(text, file, names, wanted, more=rest)
+    table, units = read_flat_csv(file, tuple(c.name for c in words), wanted, more=rest)
     check_units(units, {c.name: c.units for c in columns if c.units}, file)
     for column in words:
         table[column.name] = _numbered(column, table[column.name], file)
@@ -130,7 +117,7 @@ def _numbers(
     order = [*declared, *(name for name in table if name not in declared)]
     rows = np.column_stack([table[name] for name in order])
     used = [float(c.units.index(units[c.name].strip())) if c.units else 0.0 for c in columns]
-    given = parse_header(text, file, header, header_count)
+    given = read_header(file, header, header_count)
     return np.concatenate([used, given, rows.ravel()]), rows.shape
 
 

@@ -19,7 +19,8 @@ def note_built(content: bytes) -> None:
 def content_of(file: Path) -> str:
     """What tells a file's content from others; "" if it cannot be read."""
     try:
-        return hashlib.sha256(file.read_bytes()).hexdigest()
+        with file.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError:
         return ""
 

@@ -43,6 +43,7 @@ def digest_of(*texts: str | bytes) -> str:
     return digest.hexdigest()[:_LENGTH]
 
 
+@cache
 def kernels_key(*modules: str) -> str:
     """Key of what is compiled from modules: their import closure, as syntax."""
     return digest_of(*(f"{m} {_MODULES[m].digest}" for m in sorted(_closure(modules))))

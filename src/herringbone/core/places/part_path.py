@@ -6,6 +6,7 @@ any ending of it that is not ambiguous.
 """
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Self
 
 from herringbone.core.errors import ParameterError, StructureError
@@ -80,7 +81,12 @@ def split_variable(parts: Iterable[PartPath], text: str, where: str) -> tuple[Pa
         ParameterError: it has no dot.
         StructureError: there is no such part, or there are several.
     """
-    known = list(parts)
+    return _split(tuple(parts), text, where)
+
+
+@lru_cache(maxsize=4096)
+def _split(known: tuple[PartPath, ...], text: str, where: str) -> tuple[PartPath, str]:
+    """See `split_variable`."""
     dots = [i for i, c in enumerate(text) if c == "." and 0 < i < len(text) - 1]
     if not dots:
         raise ParameterError(f"{shown(text)} must be INSTANCE.VARIABLE")

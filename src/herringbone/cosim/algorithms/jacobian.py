@@ -1,9 +1,9 @@
 """The interface Jacobian of the iterated algorithms, and the correction that follows from it."""
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.core import HerringboneError
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.layouts.layout import Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.cosim.loops.node_jacobian import sensitivity
@@ -14,7 +14,6 @@ PREDICTION = 2
 ALIKE = 1e-6
 """A repeated step may differ by this share of the largest signal of the same unit."""
 _CHANGE = 1e-4
-_BLAS = ThreadpoolController()
 
 
 class CouplingError(HerringboneError):
@@ -98,7 +97,7 @@ def correction_matrix(jacobian: np.ndarray, t: float, h: float) -> np.ndarray:
         CouplingError: the matrix is singular.
     """
     try:
-        with _BLAS.limit(limits=1, user_api="blas"):  # threads wait for each other far longer
+        with one_blas_thread():  # threads wait for each other far longer
             return np.linalg.inv(np.eye(len(jacobian)) - jacobian)
     except np.linalg.LinAlgError:
         raise CouplingError(

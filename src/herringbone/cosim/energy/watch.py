@@ -119,6 +119,7 @@ class EnergyWatch:
     ) -> None:
         self._network, self._prepared, self._step = network, prepared, step
         self._window = window_length(step, frequency)
+        self._outputs = connected_outputs(network)
         self._pairs = tuple(p for p in power_pairs(network) if p.force.source not in network.mixed)
         self.monitor = NOTHING_WATCHED
 
@@ -160,7 +161,7 @@ class EnergyWatch:
 
     def _output(self, c: Connection) -> int:
         """Index of a connection's output."""
-        names = connected_outputs(self._network)[c.source]
+        names = self._outputs[c.source]
         return int(self._prepared.layout.output_first[c.source]) + names.index(c.output)
 
     def _input(self, c: Connection) -> int:

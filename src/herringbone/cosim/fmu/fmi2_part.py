@@ -3,6 +3,7 @@
 import atexit
 import ctypes
 import itertools
+from copy import copy
 
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
@@ -55,7 +56,11 @@ class Fmu2Part(FmuPart):
     def _load(self, **options: str) -> FMU2Slave:
         self._key = next(_keys)
         self._callbacks = _callbacks(self._key)
-        return FMU2Slave(**options)
+        if self._alike is None:
+            return FMU2Slave(**options)
+        slave = copy(self._alike.slave)  # finding its functions takes longer than all the rest
+        slave.dll, slave.instanceName = ctypes.CDLL(slave.dll._name), options["instanceName"]
+        return slave
 
     def _instantiate(self) -> None:
         _logs[self._key] = self._log

@@ -10,7 +10,11 @@ from herringbone.cosim.fmu.part import FmuPart
 
 
 def new_part(
-    name: str, file: Path, folder: Path | None = None, model: ModelDescription | None = None
+    name: str,
+    file: Path,
+    folder: Path | None = None,
+    model: ModelDescription | None = None,
+    alike: FmuPart | None = None,
 ) -> FmuPart:
     """Instantiate an FMU 2.0 or 3.0 for co-simulation.
 
@@ -19,13 +23,14 @@ def new_part(
         file: the FMU.
         folder: where it is extracted already, and stays; None: to a folder of its own.
         model: its model description, if it has been read.
+        alike: see `FmuPart`; of FMI 2.0.
 
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
     model = model or read_fmu(file)
     if not is_fmi3(model):
-        return Fmu2Part(name, file, model, folder)
-    from herringbone.cosim.fmu.fmi3_part import Fmu3Part  # noqa: PLC0415 (compiled adapters)
+        return Fmu2Part(name, file, model, folder, alike)
+    from herringbone.cosim.fmu.fmi3.part import Fmu3Part  # noqa: PLC0415 (compiled adapters)
 
     return Fmu3Part(name, file, model, folder)

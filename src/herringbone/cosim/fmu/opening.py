@@ -17,22 +17,30 @@ from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
+from herringbone.cosim.fmu.unpacked import unpacked
 
 T = TypeVar("T")
 
 
-def open_fmu(name: str, file: str | Path, *, own: bool = False) -> FmuPart | CellPart:
+def open_fmu(
+    name: str, file: str | Path, *, own: bool = False, shared: bool = False
+) -> FmuPart | CellPart:
     """Instantiate an FMU 2.0 or 3.0 for co-simulation.
 
     Args:
         name: instance name.
         file: the FMU.
         own: this installation built it; else its content tells.
+        shared: of an own one: its instances may have one folder, which stays there unpacked.
 
     Raises:
         FmuError: the file cannot be used, or does not instantiate.
     """
     file = Path(file)
+    if own and shared:
+        part = unpacked(file).instance(name)
+        part.own = True
+        return part
     model = read_fmu(file)
     if own or not _needs_cell(name, file):
         part = new_part(name, file, model=model)

@@ -42,6 +42,7 @@ class FmuPart(ABC):
         file: the FMU, of the class's FMI version.
         model: its model description, if it has been read.
         folder: where it is extracted already, and stays; None: to a folder of its own.
+        alike: an instance of the same model and folder, whose library is not unloaded.
 
     Attributes:
         own: this installation built the FMU, so that its state is known to be whole.
@@ -59,14 +60,17 @@ class FmuPart(ABC):
         file: Path,
         model: ModelDescription | None = None,
         folder: Path | None = None,
+        alike: "FmuPart | None" = None,
     ) -> None:
-        self.name, self.file = name, file
+        self.name, self.file, self._alike = name, file, alike
         self.has_states: bool | None = None
         self.signature: Signature | None = None
         self._running = False
         self.model = model or read_fmu(file)
         try:
-            self.variables: Mapping[str, PartVariable] = read_variables(self.model)
+            self.variables: Mapping[str, PartVariable] = (
+                alike.variables if alike else read_variables(self.model)
+            )
             self._others = OtherValues(self.model)
         except FmuError as error:
             raise FmuError(f"{file}: {error}") from error
@@ -129,8 +133,10 @@ class FmuPart(ABC):
             ParameterError: unknown name, wrong type or size, not finite, or refused by the FMU.
         """
         what = f"{self.name}.{name} = {value!r}"
-        names = [n for n, v in self.variables.items() if v.array == name] or [name]
-        if name not in self.variables and names == [name]:
+        known = name in self.variables
+        names = [] if known else [n for n, v in self.variables.items() if v.array == name]
+        names = names or [name]
+        if not known and names == [name]:
             raise ParameterError(
                 f"{self.name}: {self.file.name} has no variable '{name}'; {self._near(name)}"
             )

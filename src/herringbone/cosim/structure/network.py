@@ -155,12 +155,13 @@ def _split(
     part = parts[index[name]]
     if inner in part.variables or _elements(part, inner):
         return part, inner, []
+    port = f"{inner}."
     suffixes = [
-        v[len(inner) + 1 :]
+        v[len(port) :]
         for v, found in part.variables.items()
-        if v.startswith(f"{inner}.")
+        if v.startswith(port)
         and found.causality in {"input", "output"}
-        and "." not in v[len(inner) + 1 :]
+        and "." not in v[len(port) :]
     ]
     if not suffixes:
         raise StructureError(

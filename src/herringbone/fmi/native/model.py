@@ -10,9 +10,13 @@ import numpy as np
 from herringbone.components.registry import component
 from herringbone.core import Component, ParameterError
 from herringbone.core.caching.keys import digest_of, kernels_key, packed_key, wrapper_key
+from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.fmi.native import compiler, objects
 from herringbone.fmi.native.component_source import component_source
 from herringbone.fmi.used_states import UsedStates, used_states
+
+_shipped: "Remembered[Model]" = Remembered(64)
+"""Models, and with them their keys, by component and content of its files."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,8 @@ def registered_model(name: str, files: Mapping[str, Path] | None = None) -> Mode
     folder = found.resources
     if not files:
         shipped = {file.name: file for file in sorted(folder.glob("*.csv"))}
-        return Model(found, modules, shipped, shipped=True)
+        content = name, *((file, content_key(file)) for file in shipped.values())
+        return _shipped(content, lambda: Model(found, modules, shipped, shipped=True))
     own = {text.name: folder / text.start for text in found.declaration.texts}
     if unknown := sorted(files.keys() - own.keys()):
         known = f"it has {', '.join(own)}" if own else "it has none"

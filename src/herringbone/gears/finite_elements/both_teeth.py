@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import (
     ToothCompliance,
@@ -43,7 +43,7 @@ def both_teeth(pair: GearPair, resolution: Resolution, ahead: int, progress: Don
         progress(of_pinion * done_pinion + (1.0 - of_pinion) * done_wheel)
 
     jobs = [(pair, gear, resolution, ahead) for gear in range(2)]
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         if pinion + wheel < _LARGE:
             first = tooth_compliance(*jobs[0], lambda done: told(done, 0.0))
             return first, tooth_compliance(*jobs[1], lambda done: told(1.0, done))

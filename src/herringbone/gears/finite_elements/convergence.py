@@ -13,8 +13,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.shipped_table import GEAR_FILE
 from herringbone.gears.finite_elements.blocks import Resolution
@@ -42,7 +42,7 @@ def doubled(resolution: Resolution, layers: int) -> Resolution:
 
 def solved(mesh: FiniteElementMesh, loads: Sequence[float], phases: int = PHASES) -> MeshStiffness:
     """As tables are made: at more phases, and reduced to those of the table."""
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         return mesh.solve(loads, OVERSAMPLING * phases).resampled(phases)
 
 

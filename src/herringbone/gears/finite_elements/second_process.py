@@ -13,8 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
 
-from threadpoolctl import threadpool_limits
-
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.paths import PACKAGE
 from herringbone.gears.finite_elements.blocks import Resolution
 from herringbone.gears.finite_elements.compliance import ToothCompliance, tooth_compliance
@@ -94,7 +93,7 @@ def _send(content: object) -> None:
 def main() -> None:
     """What the process does."""
     job: Job = pickle.load(sys.stdin.buffer)
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         _send(tooth_compliance(*job, _send))
 
 

@@ -8,8 +8,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.flank_load import contact_pressure
@@ -55,7 +55,7 @@ def deviating_load(job: GearJob, deviations: GivenDeviations) -> DeviatingLoad:
     phases = np.arange(_PHASES * pair.number_of_teeth[1]) / _PHASES
     force, normal = pair.tooth_forces(job.pinion_torque).normal, math.cos(pair.base_helix_angle)
     errors, loads, pressures = [], [], []
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         for half in deviations.of_halves(pair)[: pair.halves]:
             teeth = DeviatingTeeth(mesh, half)
             errors.append(teeth.deflections(phases, force) / normal)

@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.stiffness.calibration import default_calibration
@@ -176,7 +176,7 @@ def mesh_stiffness(
         ParameterError: the method is unknown, or see the method.
     """
     name = chosen_method(method)
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         found, solved = _table(task, name, progress or silent)
         bounds = METHODS[name].accuracy.of_harmonics(found)
         if name == "slices":

@@ -28,6 +28,8 @@ def unfed(system: System, parts: Sequence[Part]) -> list[str]:
         system: of the parts, in the same order.
         parts: as the coupling takes them.
     """
+    if not system.foreign_parts:
+        return []
     connections = build_network(system, parts).every_connection
     lines = []
     for p, (spec, part) in enumerate(zip(system.parts, parts, strict=True)):

@@ -3,14 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from threadpoolctl import threadpool_limits
-
 from herringbone.analysis.accuracy.apart import apart
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness, endings_of
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.activity import activity
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.files import same_folder
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
@@ -88,7 +87,7 @@ def fused(
         ParameterError: no step reaches the tolerance, or what is to be recorded is not there.
         HerringboneError: rows cannot be written.
     """
-    with same_folder(), threadpool_limits(limits=1, user_api="blas"):
+    with same_folder(), one_blas_thread():
         with activity(f"fusing the parts of {system.name}"):
             core = Core(system)
             columns = core.chosen(asked.record)
@@ -151,7 +150,7 @@ def verified_by_half(
     taken = result.info.core or {}
     step = 0.5 * taken["step"]
     steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or TOLERANCE))
-    with same_folder(), threadpool_limits(limits=1, user_api="blas"):
+    with same_folder(), one_blas_thread():
         core = Core(system)
         columns = core.chosen(asked.record)
         system = _with_channels(system, columns)

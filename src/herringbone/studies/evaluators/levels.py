@@ -48,8 +48,8 @@ def levels_over_time(result: Result, columns: Sequence[str]) -> dict[str, Figure
         values = even.data[names].to_numpy(float)[part.rows]
         unit = even.units[names[0]]
         figures |= prefixed(name, moments(values), unit)
-        orders = None if frequency is None else order_amplitudes(time, values, frequency)
-        figures |= order_figures(name, orders, unit)
+        sizes = order_amplitudes(time, values, frequency)
+        figures |= order_figures(name, np.arange(1.0, sizes.size + 1.0), sizes, unit)
     return figures
 
 
@@ -74,20 +74,20 @@ def prefixed(name: str, values: Mapping[str, float], unit: str) -> dict[str, Fig
     return {f"{name}.{kind}": Figure(value, unit) for kind, value in values.items()}
 
 
-def order_amplitudes(time: np.ndarray, values: np.ndarray, frequency: float) -> np.ndarray | None:
+def order_amplitudes(time: np.ndarray, values: np.ndarray, frequency: float | None) -> np.ndarray:
     """Amplitudes (orders,) of mesh orders 1, 2, ... up to half the sampling rate.
 
     Args:
         time: (n,), equidistant [s].
         values: (n, channels).
-        frequency: of the mesh [Hz].
+        frequency: of the mesh [Hz]; None: not known.
 
     Returns:
-        None where too few periods of the mesh are there.
+        None of them where too few periods of the mesh are there.
     """
     length = float(time[-1] - time[0])
-    if frequency * length < _FEWEST_PERIODS:
-        return None
+    if frequency is None or frequency * length < _FEWEST_PERIODS:
+        return np.zeros(0)
     count = min(_MOST_ORDERS, int(0.5 * (time.size - 1) / length / frequency - 1e-9))
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(time.size) / time.size)
     window /= window.sum()
@@ -101,23 +101,25 @@ def order_amplitudes(time: np.ndarray, values: np.ndarray, frequency: float) -> 
     return np.array(found)
 
 
-def order_figures(name: str, amplitudes: np.ndarray | None, unit: str) -> dict[str, Figure]:
+def order_figures(
+    name: str, orders: np.ndarray, amplitudes: np.ndarray, unit: str
+) -> dict[str, Figure]:
     """Amplitudes of the first mesh orders, and the largest ones.
 
     Args:
         name: of a group or column.
-        amplitudes: (orders,) of orders 1, 2, ...; None: not known.
-        unit: theirs.
+        orders: (n,) mesh orders, ascending; side bands are no whole numbers.
+        amplitudes: (n,) theirs; none if they are not known.
+        unit: of the amplitudes.
     """
-    known = np.zeros(0) if amplitudes is None else amplitudes
+    known = dict(zip(orders.tolist(), amplitudes.tolist(), strict=True))
     figures = {
-        f"{name}.order_{k}": Figure(known[k - 1] if k <= known.size else np.nan, unit)
-        for k in range(1, ORDERS + 1)
+        f"{name}.order_{k}": Figure(known.get(float(k), np.nan), unit) for k in range(1, ORDERS + 1)
     }
-    largest = np.argsort(-known, kind="stable")[:LARGEST]
+    largest = np.argsort(-amplitudes, kind="stable")[:LARGEST]
     for k in range(LARGEST):
         there = k < largest.size
-        order, size = (largest[k] + 1.0, known[largest[k]]) if there else (np.nan, np.nan)
+        order, size = (orders[largest[k]], amplitudes[largest[k]]) if there else (np.nan, np.nan)
         figures[f"{name}.largest_{k + 1}"] = Figure(order, "1")
         figures[f"{name}.largest_{k + 1}_amplitude"] = Figure(size, unit)
     return figures

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.stability.surrogates.identification import (
     LinearModel,
@@ -20,6 +19,7 @@ from herringbone.analysis.stability.surrogates.identification import (
     in_continuous_time,
     realised,
 )
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.laboratory import Laboratory
@@ -27,7 +27,6 @@ from herringbone.cosim.signature.rotation import Given
 from herringbone.cosim.signature.signature import Signature
 from herringbone.cosim.signature.trial import Refused
 
-_BLAS = ThreadpoolController()
 PROMISED = 0.01
 """Residual on trials that were not fitted, above which nothing is promised."""
 _GOOD, _ENOUGH = 1e-8, 3.0
@@ -98,7 +97,7 @@ class Surrogate:
         self._residuals, self._steps = {}, {}
         self.why = ""
         try:
-            with _BLAS.limit(limits=1, user_api="blas"):
+            with one_blas_thread():
                 self._identify(h)
         except Refused as error:
             self.why = f"trials are not possible: {error}"
@@ -114,7 +113,7 @@ class Surrogate:
         """A step of the model of length h [s]; there is a model."""
         assert self.model is not None
         if h not in self._steps:
-            with _BLAS.limit(limits=1, user_api="blas"):
+            with one_blas_thread():
                 self._steps[h] = self.model.over(h)
         return self._steps[h]
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from copy import copy
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
@@ -16,6 +15,7 @@ from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core.activity import activity
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 STEP = 5e-6
@@ -43,7 +43,7 @@ class CondensedTwin:
         self.twin = twin = Twin(system)
         self._step, self._degree = step, degree
         equations = take_apart(twin)
-        with threadpool_limits(limits=1, user_api="blas"):
+        with one_blas_thread():
             self._system = Condensed(twin, equations, make_modes(twin, equations))
         self.counts = np.zeros(4, dtype=np.int64)
 
@@ -74,7 +74,7 @@ class CondensedTwin:
         t0, row = 0.0, 0
         values = np.empty((times.size, len(columns)))
         what = f"solving {self.twin.system.name} by its condensed core"
-        one_thread = threadpool_limits(limits=1, user_api="blas")
+        one_thread = one_blas_thread()
         with one_thread, activity(what, shown=progress is not None):
             for t1 in [*self.twin.breakpoints(t_end), t_end]:
                 last = t1 == t_end

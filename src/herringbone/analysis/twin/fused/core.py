@@ -1,10 +1,10 @@
 """A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.modes import make_modes
@@ -20,6 +20,7 @@ from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
@@ -108,6 +109,10 @@ class Core:
 
     def groups(self) -> dict[str, list[str]]:
         """Outputs by group of channels; of a system without channels all of a unit."""
+        return self._groups
+
+    @cached_property
+    def _groups(self) -> dict[str, list[str]]:
         channels = self.twin.system.channels
         found = {
             group: [n for n in self.names if matches_any(endings_of(n), patterns)]
@@ -144,7 +149,7 @@ def endings_of(name: str) -> tuple[str, ...]:
 def _condensed(twin: Twin, like: Condensed | None) -> Condensed:
     equations = take_apart(twin, places_seen(twin))
     modes = renewed(twin, equations, like.equations, like.modes) if like else None
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         found = Condensed(twin, equations, modes or make_modes(twin, equations))
     if not np.isfinite(found.modes.start).all():
         raise StructureError(f"{twin.system.name}: its start values are not finite")

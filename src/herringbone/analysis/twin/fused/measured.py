@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.accuracy.apart import differences
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.one_thread import one_blas_thread
 
 WINDOW = 0.02
 """Time over which steps are tried [s]."""
@@ -117,7 +117,7 @@ def values_at(core: Core, times: np.ndarray, steps: Steps, columns: Sequence[str
     """
     course = Course(core, times, steps, columns)
     rows = []
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         while not course.ended:
             rows.append(course.advance()[1])
     return np.concatenate(rows)

@@ -22,7 +22,7 @@ from herringbone.cosim.cell.inside.surroundings import surroundings
 from herringbone.cosim.cell.sides import Side
 from herringbone.cosim.cell.wire import packed, unpacked
 from herringbone.cosim.fmu.float_modes import leave_modes
-from herringbone.cosim.fmu.fmi3_adapters import ADAPTERS, use_adapters
+from herringbone.cosim.fmu.fmi3.adapters import ADAPTERS, use_adapters
 from herringbone.cosim.fmu.instance import new_part
 from herringbone.cosim.fmu.part import FmuPart
 

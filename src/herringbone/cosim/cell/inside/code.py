@@ -15,8 +15,8 @@ from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import kernels_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.inside import serving
-from herringbone.cosim.fmu import fmi3_calls
-from herringbone.cosim.fmu.fmi3_adapters import adapters
+from herringbone.cosim.fmu.fmi3 import calls, within
+from herringbone.cosim.fmu.fmi3.adapters import adapters
 from herringbone.kernels.compiling.jit import c_code
 
 _OPTIMISATION = 3
@@ -28,7 +28,7 @@ _ANY_NAME = "k"  # LLVM appends a number
 
 def code_file() -> Path:
     """Object file with the functions, from the cache if it is there; raises FmuError."""
-    key = kernels_key(serving.__name__, fmi3_calls.__name__, __name__)
+    key = kernels_key(serving.__name__, calls.__name__, within.__name__, __name__)
     file = cache_folder("cells") / f"{key}-{llvm.get_process_triple()}.o"
     if not is_stored(file):
         with activity("compiling what runs in cells", "only when its code has changed"):

@@ -1,4 +1,4 @@
-"""What the FMI 2.0 functions in front of an FMU 3.0 know of it, see `fmi3_calls`."""
+"""What the FMI 2.0 functions in front of an FMU 3.0 know of it, see `calls`."""
 
 import numpy as np
 
@@ -28,6 +28,13 @@ MEMORY = np.dtype(
         ("update", np.int64),
         ("enter_steps", np.int64),
         ("flags", np.int64),
+        ("bent", np.int64),
+        ("bent_inputs", np.int64),
+        ("slopes", np.int64),
+        ("starts", np.int64),
+        ("began", np.float64),
+        ("steps_bent", np.int64),
+        ("asked", np.int64),
     ]
 )
 """What an FMU 3.0 is for its adapters.
@@ -39,7 +46,13 @@ calls; ended: why no step follows, see `ENDED`; saved: the same, of the state sa
 the time reached by the last step (float64); events: 1 in step mode if event mode is used; addresses
 of fmi3EnterEventMode, fmi3UpdateDiscreteStates and fmi3EnterStepMode; address of the flags that
 they return (uint8 and, from the eighth on, float64).
+
+Of inputs that change within the next step: their number; addresses of their elements (uint32), and,
+for all elements, of the derivatives (ORDERS each) and values (float64) at the start of the step;
+when the step began [s]; number of steps with such inputs; how often the FMU asked for inputs.
 """
+ORDERS = 4
+"""Highest order of derivatives of an input."""
 ELEMENT = np.dtype(
     [
         ("reference", np.int64),

@@ -1,4 +1,4 @@
-"""Steps and events of an FMU 3.0 behind an FMI 2.0 function, at C addresses; see `fmi3_calls`.
+"""Steps and events of an FMU 3.0 behind an FMI 2.0 function, at C addresses; see `calls`.
 
 An FMU with event mode stops for an event, at the end of a step or by an early return. The event is
 handled here, and the rest of the step follows.
@@ -6,18 +6,17 @@ handled here, and the rest of the step follows.
 
 import numpy as np
 from llvmlite import ir
-from numba import carray, from_dtype, types
+from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from herringbone.cosim.fmu.fmi3_memory import EARLY, ELEMENT, ENDED, MEMORY, RUNS, STUCK
+from herringbone.cosim.fmu.fmi3.memory import EARLY, ELEMENT, ENDED, RUNS, STUCK
+from herringbone.cosim.fmu.fmi3.within import POINTER, begin_step
 from herringbone.cosim.loops.calls import at_address, c_call
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.compiling.jit import allocating, c_function
 from herringbone.kernels.fmi_calls import DISCARD
 
-POINTER = types.CPointer(from_dtype(MEMORY))
-"""Of the memory, in the functions' signatures."""
 _STEP = types.int32(POINTER, types.float64, types.float64, types.int32)
 _EVENT, _TERMINATE, _EARLY = 256, 512, 1024  # added to the status of a step
 _MOST_EVENTS = 1000
@@ -138,12 +137,14 @@ def do_step(memory, time, step, no_set_before):  # noqa: ANN001, ANN201 (typed b
     last = carray(at_address(part.reached), 1, np.float64)
     if part.ended != RUNS:
         return types.int32(DISCARD)
+    begin_step(whole, time, step)
     status, left = _advance(whole, time, step, no_set_before)
     stops = 1
     while left and status <= LAST_GOOD and part.ended == RUNS and stops < _MOST_EVENTS:
         at = last[0]
         status, left = _advance(whole, at, time + step - at, no_set_before)
         stops += 1
+    part.bent = 0
     if left and part.ended == RUNS:
         part.ended = EARLY
     return types.int32(max(status, DISCARD) if left else status)

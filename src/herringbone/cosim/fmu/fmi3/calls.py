@@ -1,7 +1,7 @@
 """FMI 2.0 functions in front of the FMI 3.0 functions of a part, at C addresses.
 
 So the compiled loop treats an FMU 3.0 as it treats an FMU 2.0. The component pointer is the address
-of the part's memory, a record of type `fmi3_memory.MEMORY`; steps are taken in `fmi3_steps`. The
+of the part's memory, a record of type `memory.MEMORY`; steps are taken in `steps`. The
 loop knows scalars only: it sees the elements of an array, which FMI 3.0 sets and gets as a whole.
 Therefore the part remembers the last value of every element, and a call exchanges all elements of
 the variables that it touches. What is remembered of inputs is what the FMU holds: a restored state
@@ -13,8 +13,10 @@ The kernels view memory as arrays of given types, which numba compiles with coun
 import numpy as np
 from numba import carray, types
 
-from herringbone.cosim.fmu.fmi3_memory import ELEMENT
-from herringbone.cosim.fmu.fmi3_steps import POINTER, any_discrete, enter_events, leave_events
+from herringbone.cosim.fmu.fmi3.memory import ELEMENT
+from herringbone.cosim.fmu.fmi3.packing import exchange, pack, unpack
+from herringbone.cosim.fmu.fmi3.steps import any_discrete, enter_events, leave_events
+from herringbone.cosim.fmu.fmi3.within import POINTER
 from herringbone.cosim.loops.calls import at_address, c_call, of_state
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.compiling.jit import allocating, c_function
@@ -30,60 +32,19 @@ _DERIVATIVES = types.int32(
 _UNKNOWN_SIZE = 1  # bounds are not checked
 
 
-_exchange = c_call("address", "address", "count", "address", "count")
-"""fmi3SetFloat64 or fmi3GetFloat64."""
 _derivatives = c_call("address", "address", "count", "address", "address", "count")
 """fmi3GetOutputDerivatives."""
-
-
-@allocating
-def _pack(memory: np.ndarray, references: np.ndarray, count: int) -> tuple[int, int]:
-    """Variables of these elements and their last values, to the current call; how many of each."""
-    part = memory[0]
-    part.calls += 1
-    element = carray(at_address(part.elements), part.count, ELEMENT)
-    value = carray(at_address(part.values), part.count, np.float64)
-    reference = carray(at_address(part.references), part.count, np.uint32)
-    packed = carray(at_address(part.packed), part.count, np.float64)
-    variables, total = 0, 0
-    for i in range(count):
-        first = element[references[i]].first
-        if element[first].call != part.calls:
-            element[first].call = part.calls
-            reference[variables] = element[first].reference
-            variables += 1
-            for k in range(first, first + element[first].size):
-                packed[total] = value[k]
-                total += 1
-    return variables, total
-
-
-@allocating
-def _unpack(memory: np.ndarray, references: np.ndarray, count: int) -> None:
-    """Values of the current call, to the elements of the variables in the order of `_pack`."""
-    part = memory[0]
-    element = carray(at_address(part.elements), part.count, ELEMENT)
-    value = carray(at_address(part.values), part.count, np.float64)
-    packed = carray(at_address(part.packed), part.count, np.float64)
-    total = 0
-    for i in range(count):
-        first = element[references[i]].first
-        if element[first].call == part.calls:
-            element[first].call = 0
-            for k in range(first, first + element[first].size):
-                value[k] = packed[total]
-                total += 1
 
 
 @allocating
 def _update(memory: np.ndarray, references: np.ndarray, count: int) -> int:
     """Get the variables of these elements from the FMU; FMI status."""
     part = memory[0]
-    variables, total = _pack(memory, references, count)
-    status = _exchange(
+    variables, total = pack(memory, references, count)
+    status = exchange(
         part.get_float64, (part.instance, part.references, variables, part.packed, total)
     )
-    _unpack(memory, references, count)
+    unpack(memory, references, count)
     return status
 
 
@@ -96,13 +57,13 @@ def set_real(memory, references, count, values):  # noqa: ANN001, ANN201 (typed 
     last = carray(at_address(part.values), part.count, np.float64)
     for i in range(count):
         last[reference[i]] = given[i]
-    variables, total = _pack(whole, reference, count)
+    variables, total = pack(whole, reference, count)
     event = any_discrete(whole, reference, count)
     if event:
         status = enter_events(whole)
         if status > LAST_GOOD:
             return types.int32(status)
-    status = _exchange(
+    status = exchange(
         part.set_float64, (part.instance, part.references, variables, part.packed, total)
     )
     if event and status <= LAST_GOOD:
@@ -137,7 +98,7 @@ def set_state(memory, state):  # noqa: ANN001, ANN201 (typed by _STATE)
     whole = carray(memory, 1)
     part = whole[0]
     status = of_state(part.set_state, (part.instance, state))
-    part.ended = part.saved
+    part.ended, part.bent = part.saved, 0
     if status == OK and part.array_count > 0:
         arrays = carray(at_address(part.arrays), part.array_count, np.uint32)
         return _update(whole, arrays, part.array_count)

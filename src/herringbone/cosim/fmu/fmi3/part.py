@@ -1,23 +1,32 @@
 """An FMU 3.0 as participant."""
 
+import os
 from collections.abc import Mapping
-from ctypes import CFUNCTYPE, POINTER, Array, c_double, c_int, c_size_t, c_uint32, c_void_p
+from ctypes import CFUNCTYPE, POINTER, Array, c_double, c_int, c_size_t, c_uint32, c_void_p, cast
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi3 import (
+    FMU3Slave,
+    fmi3Boolean,
+    fmi3IntermediateUpdateCallback,
+    fmi3LogMessageCallback,
+)
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import STRUCTURE, Addresses, Given, Value
-from herringbone.cosim.fmu import fmi3_memory
 from herringbone.cosim.fmu.float_modes import keeping_modes
-from herringbone.cosim.fmu.fmi3_adapters import adapter
+from herringbone.cosim.fmu.fmi3 import memory
+from herringbone.cosim.fmu.fmi3.adapters import adapter
+from herringbone.cosim.fmu.fmi3.updates import inputs_within
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.variables import Element, read_elements, resized
 
 _WARNING = 1
+_CALLBACK = fmi3IntermediateUpdateCallback
 _MOST_EVENTS = 1000
 """Iterations of one event."""
 _FUNCTIONS = {
@@ -33,10 +42,10 @@ _FUNCTIONS = {
     "enter_steps": "fmi3EnterStepMode",
 }
 _ENDS = {
-    fmi3_memory.ENDED: "it asks to end the simulation",
-    fmi3_memory.EARLY: "it ended its step early, which it may not without event mode, or again and "
+    memory.ENDED: "it asks to end the simulation",
+    memory.EARLY: "it ended its step early, which it may not without event mode, or again and "
     "again",
-    fmi3_memory.STUCK: "its discrete states do not settle: fmi3UpdateDiscreteStates wants one more "
+    memory.STUCK: "its discrete states do not settle: fmi3UpdateDiscreteStates wants one more "
     "call again and again",
 }
 """Why no step follows."""
@@ -46,9 +55,9 @@ _EXCHANGE = CFUNCTYPE(c_int, c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_do
 class Fmu3Part(FmuPart):
     """An instantiated FMU 3.0 for co-simulation.
 
-    It is instantiated with event mode and early return if it declares them, without intermediate
-    updates. Values are exchanged through the adapters of `fmi3_calls`, by the compiled loop and
-    from Python alike.
+    It is instantiated with event mode and early return if it declares them, and with intermediate
+    update if it declares that of inputs, and has no signal nodes. Values are exchanged through the
+    adapters of `calls`, by the compiled loop and from Python alike.
 
     Attributes:
         with_events: event mode and early return are used where the FMU declares them.
@@ -58,7 +67,9 @@ class Fmu3Part(FmuPart):
     with_events: ClassVar[bool] = True
 
     def _load(self, **options: str) -> FMU3Slave:
-        self._initialised = False
+        self._initialised = self._told = False
+        self._memory = np.zeros(1, memory.MEMORY)
+        self._within = inputs_within(self.model, Path(options["unzipDirectory"]))
         self._make_memory(read_elements(self.model))
         return FMU3Slave(**options)
 
@@ -76,14 +87,14 @@ class Fmu3Part(FmuPart):
                 )
                 for e in elements
             ],
-            fmi3_memory.ELEMENT,
+            memory.ELEMENT,
         )
         self._values = np.array([_start(e) for e in elements], np.float64)
         self._references = np.zeros(count, np.uint32)
         self._packed = np.zeros(count)
         arrays = {e.first for e in elements if e.size > 1 and e.variable.causality == "input"}
         self._arrays = np.array(sorted(arrays), np.uint32)
-        self._memory = np.zeros(1, fmi3_memory.MEMORY)
+        self._memory[...] = np.zeros(1, memory.MEMORY)  # its address stays: the FMU may know it
         self._memory["count"] = count
         self._memory["elements"] = self._elements.ctypes.data
         self._memory["values"] = self._values.ctypes.data
@@ -91,6 +102,13 @@ class Fmu3Part(FmuPart):
         self._memory["packed"] = self._packed.ctypes.data
         self._memory["arrays"] = self._arrays.ctypes.data
         self._memory["array_count"] = self._arrays.size
+        self._bent: dict[str, np.ndarray] = {
+            "bent_inputs": np.zeros(count, np.uint32),
+            "slopes": np.zeros(count * memory.ORDERS),
+            "starts": np.zeros(count),
+        }
+        for name, array in self._bent.items():
+            self._memory[name] = array.ctypes.data
         self._reached, self._flags = np.zeros(1), np.zeros(2)
         self._memory["reached"] = self._reached.ctypes.data
         self._memory["flags"] = self._flags.ctypes.data
@@ -99,22 +117,34 @@ class Fmu3Part(FmuPart):
         self._events = self.with_events and bool(self.model.coSimulation.hasEventMode)
         try:
             self._make_instance()
-        except Exception:  # fmpy raises bare Exception
-            if not self._events:
+        except FmuError:
+            if not (self._events or self._within):
                 raise
-            self._events = False  # some declare event mode and do not know it
+            self._events, self._within = False, []  # some declare them and do not know them
             self._make_instance()
             self.messages()
         self._connect_memory()
 
     def _make_instance(self) -> None:
-        early = self.model.coSimulation.mightReturnEarlyFromDoStep
-        self.slave.instantiate(
-            loggingOn=True,
-            eventModeUsed=self._events,
-            earlyReturnAllowed=self._events and bool(early),
-            logMessage=lambda _environment, status, _category, text: self._log.add(status, text),
+        """fmpy's own call has no environment, which the intermediate update needs."""
+        slave, within = self.slave, self._within
+        early = self._events and bool(self.model.coSimulation.mightReturnEarlyFromDoStep)
+        slave.logMessage = fmi3LogMessageCallback(
+            lambda _environment, status, _category, text: self._log.add(status, text)
         )
+        callback = cast(c_void_p(adapter("update") if within else None), _CALLBACK)
+        resources = str(Path(slave.unzipDirectory) / "resources") + os.path.sep
+        slave.component = slave.fmi3InstantiateCoSimulation(
+            *(text.encode() for text in (slave.instanceName, slave.guid, resources)),
+            *(fmi3Boolean(on) for on in (False, True, self._events, early)),
+            (c_uint32 * len(within))(*within),
+            len(within),
+            c_void_p(self._memory.ctypes.data),
+            slave.logMessage,
+            callback,
+        )
+        if not slave.component:
+            raise FmuError("fmi3InstantiateCoSimulation gives nothing")
 
     def _connect_memory(self) -> None:
         """Let the memory of the adapters know the instance and its functions."""
@@ -126,7 +156,7 @@ class Fmu3Part(FmuPart):
     def addresses(self) -> Addresses:
         """Addresses of the adapters; the component is their memory.
 
-        FMI 3.0 has no input derivatives.
+        FMI 3.0 has no input derivatives; intermediate update stands for them.
         """
         functions = ["set_real", "get_real", "do_step"]
         if self.model.coSimulation.canGetAndSetFMUstate:
@@ -134,6 +164,8 @@ class Fmu3Part(FmuPart):
         found = Addresses(self._memory.ctypes.data, *map(adapter, functions))
         if int(self.model.coSimulation.maxOutputDerivativeOrder) > 0:
             found = found._replace(get_derivatives=adapter("get_derivatives"))
+        if self._within:
+            found = found._replace(set_derivatives=adapter("set_derivatives"))
         return found
 
     def set(self, name: str, value: Given) -> None:
@@ -182,12 +214,12 @@ class Fmu3Part(FmuPart):
         for _ in range(_MOST_EVENTS):
             more, ends, *_ = self.slave.updateDiscreteStates()
             if ends:
-                self._memory["ended"] = fmi3_memory.ENDED
+                self._memory["ended"] = memory.ENDED
             if ends or not more:
                 self.slave.enterStepMode()
                 self._memory["events"] = 1
                 return
-        raise FmuError(f"{self.name}: {_ENDS[fmi3_memory.STUCK]}")
+        raise FmuError(f"{self.name}: {_ENDS[memory.STUCK]}")
 
     def _write(self, references: list[int], values: list[float]) -> None:
         numbers = (c_uint32 * len(references))(*references)
@@ -234,12 +266,20 @@ class Fmu3Part(FmuPart):
 
     def ended(self) -> float | None:
         """Time at which the FMU asked to end the simulation [s]; None if it did not."""
-        return float(self._reached[0]) if self._memory["ended"][0] == fmi3_memory.ENDED else None
+        return float(self._reached[0]) if self._memory["ended"][0] == memory.ENDED else None
 
     def messages(self) -> list[str]:
         """Warnings and errors logged since the last call, and why no step follows."""
         why = _ENDS.get(int(self._memory["ended"][0]))
-        return super().messages() + ([why] if why else [])
+        said = super().messages() + ([why] if why else [])
+        steps = int(self._memory["steps_bent"][0])
+        if steps and not self._memory["asked"][0] and not self._told:
+            self._told = True
+            said.append(
+                f"it declares intermediate update, and asked for no input in {steps} steps: inputs "
+                "were held at their means, which makes the coupling second order in the step"
+            )
+        return said
 
 
 def _start(element: Element) -> float:

@@ -1,4 +1,4 @@
-"""Where the FMI 2.0 functions in front of FMUs 3.0 are; see `fmi3_calls`.
+"""Where the FMI 2.0 functions in front of FMUs 3.0 are; see `calls`.
 
 They are compiled by numba at their first use, or come from whoever has them compiled already: a
 process that takes those starts without numba.
@@ -11,25 +11,28 @@ if TYPE_CHECKING:
 
 ADAPTERS = (
     "set_real", "get_real", "do_step", "get_state", "set_state", "free_state", "get_derivatives",
+    "set_derivatives", "update",
 )  # fmt: skip
-"""What they stand for in `Addresses`."""
+"""What they stand for in `Addresses`; update: for fmi3IntermediateUpdateCallback."""
 _addresses: dict[str, int] = {}
 
 
 def adapters() -> "dict[str, CFunction]":
     """The functions by what they stand for."""
-    from herringbone.cosim.fmu import fmi3_calls, fmi3_steps  # noqa: PLC0415 (numba)
+    from herringbone.cosim.fmu.fmi3 import calls, steps, within  # noqa: PLC0415 (numba)
 
-    calls = (
-        fmi3_calls.set_real,
-        fmi3_calls.get_real,
-        fmi3_steps.do_step,
-        fmi3_calls.get_state,
-        fmi3_calls.set_state,
-        fmi3_calls.free_state,
-        fmi3_calls.get_derivatives,
+    found = (
+        calls.set_real,
+        calls.get_real,
+        steps.do_step,
+        calls.get_state,
+        calls.set_state,
+        calls.free_state,
+        calls.get_derivatives,
+        within.set_derivatives,
+        within.update,
     )
-    return dict(zip(ADAPTERS, calls, strict=True))
+    return dict(zip(ADAPTERS, found, strict=True))
 
 
 def adapter(name: str) -> int:

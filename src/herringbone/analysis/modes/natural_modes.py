@@ -1,0 +1,191 @@
+"""Natural modes: x' = a x with right vectors r_k and left vectors l_k, l_k^H r_k = 1.
+
+    f_k = |lambda_k| / (2 pi),   zeta_k = -Re(lambda_k) / |lambda_k|
+    participation of a part p in mode k:  Re sum over states i of p of conj(l_ki) r_ki
+
+The participations of all parts add up to 1, whatever units the states have; of an undamped
+mechanical system they are shares of the kinetic energy. The answer of a mode to the mesh is the
+largest deflection of a mesh at the mode's resonance over a transmission error that all meshes have,
+
+    max_m |mesh_out_m r_k| |l_k^H sum_m mesh_in_m| / |Re(lambda_k)|
+
+in phase, or in the worst phases to each other (the sum of magnitudes instead). Modes with a small
+answer are not heard, wherever a mesh order crosses them.
+
+Source: I. J. Perez-Arriaga, G. C. Verghese, F. C. Schweppe, Selective modal analysis with
+applications to electric power systems, IEEE Trans. PAS 101 (1982), for participation.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+from scipy.linalg import eig, matrix_balance
+from threadpoolctl import threadpool_limits
+
+from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
+from herringbone.core import ParameterError
+from herringbone.core.declaring.facts import Facts
+from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.cosim.structure.system import System
+
+_SLOWEST = 1e-6
+"""Oscillation over the fastest rate below which it is rounding of rigid rotation."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class NaturalModes(Facts):
+    """The oscillating modes of a system, slowest first.
+
+    Attributes:
+        linear: the system about its equilibrium.
+        rates: (n,) eigenvalues, imaginary part positive [1/s].
+        shapes: (states, n) right vectors.
+        participation: one row per mode, one column per part that has states; rows add up to 1.
+        mesh_answer: (n, 2) see above: in phase, in the worst phases; 0 without gear pair.
+        others: how many eigenvalues do not oscillate.
+        notes: lines that the user should read.
+    """
+
+    linear: Linearised
+    rates: np.ndarray
+    shapes: np.ndarray
+    participation: pd.DataFrame
+    mesh_answer: np.ndarray
+    others: int
+    notes: tuple[str, ...] = ()
+
+    @property
+    def system(self) -> System:
+        """As it was linearised."""
+        return self.linear.core.twin.system
+
+    @property
+    def frequency_hz(self) -> np.ndarray:
+        """(n,) |lambda| / (2 pi) [Hz]."""
+        return np.abs(self.rates) / (2.0 * math.pi)
+
+    @property
+    def damping_ratio(self) -> np.ndarray:
+        """(n,) [1]."""
+        return -self.rates.real / np.abs(self.rates)
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row per mode.
+
+        "mode" from 1, "frequency" [Hz], "damping_ratio", "mesh_answer", "mesh_answer_any_phase",
+        and "share.PART" of each part.
+        """
+        first = pd.DataFrame({
+            "mode": np.arange(1, self.rates.size + 1),
+            "frequency": self.frequency_hz,
+            "damping_ratio": self.damping_ratio,
+            "mesh_answer": self.mesh_answer[:, 0],
+            "mesh_answer_any_phase": self.mesh_answer[:, 1],
+        })  # fmt: skip
+        return pd.concat([first, self.participation.add_prefix("share.")], axis=1)
+
+    def motion(self, column: str) -> np.ndarray:
+        """(n,) complex motion of an output in each mode, in the scale of `shapes`.
+
+        Raises:
+            ParameterError: there is no such output.
+        """
+        row = seen_row(self.linear, column)
+        if row is None:
+            raise ParameterError(f"system '{self.system.name}' has no output {column}")
+        return row @ self.shapes
+
+    def largest(self, count: int, highest: float) -> list[int]:
+        """Modes up to a frequency [Hz] with the largest answers in phase, slowest first.
+
+        Without a gear pair the first ones.
+        """
+        below = np.flatnonzero(self.frequency_hz <= highest)
+        order = np.argsort(-self.mesh_answer[below, 0], kind="stable")[:count]
+        return sorted(int(k) for k in below[order])
+
+    def crossings(self, orders: Sequence[int], highest_speed: float) -> pd.DataFrame:
+        """Pinion speeds at which mesh orders meet natural frequencies.
+
+        Args:
+            orders: of the mesh.
+            highest_speed: [r/min].
+
+        Returns:
+            "speed" [r/min], "order", "mode" from 1, "frequency" [Hz], "mesh_answer"; the largest
+            answers first. Empty without a gear pair.
+        """
+        names = ["speed", "order", "mode", "frequency", "mesh_answer"]
+        teeth = self.teeth
+        if teeth is None:
+            return pd.DataFrame(columns=names, dtype=float)
+        rows = [
+            (60.0 * f / (order * teeth), order, k + 1, f, self.mesh_answer[k, 0])
+            for order in orders
+            for k, f in enumerate(self.frequency_hz)
+            if 60.0 * f / (order * teeth) <= highest_speed
+        ]
+        found = pd.DataFrame(rows, columns=names, dtype=float)
+        found[["order", "mode"]] = found[["order", "mode"]].astype(int)
+        return found.sort_values("mesh_answer", ascending=False, ignore_index=True)
+
+    @property
+    def teeth(self) -> float | None:
+        """Of the first pinion; None without a gear pair that tells them."""
+        known = anatomy(self.system)
+        for pair in known.with_role(Role.GEAR_PAIR):
+            column = known.column(pair, Quantity.NUMBER_OF_TEETH, GEARS[0])
+            if column is not None:
+                return value_at(self.system, column)
+        return None
+
+    def _facts(self) -> dict[str, str]:
+        low, high = self.frequency_hz.min(initial=0.0), self.frequency_hz.max(initial=0.0)
+        return {
+            "system": self.system.name,
+            "modes": f"{self.rates.size}, {low:.4g} to {high:.4g} Hz",
+            "not oscillating": str(self.others),
+            "parts": ", ".join(self.participation.columns),
+            "notes": "; ".join(self.notes),
+        }
+
+
+def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
+    """Modes of a system about its start values.
+
+    Args:
+        system: its parts are all components of this package; its start values are an equilibrium.
+        notes: lines on how it was prepared.
+
+    Raises:
+        StructureError: it cannot be taken apart.
+    """
+    found = linearised(system)
+    with threadpool_limits(limits=1, user_api="blas"):
+        balanced, (scale, _) = matrix_balance(found.a, permute=False, separate=True)
+        rates, left, right = eig(balanced, left=True, right=True)
+    fastest = np.abs(rates).max(initial=0.0)
+    kept = np.flatnonzero(rates.imag > _SLOWEST * fastest)
+    kept = kept[np.argsort(np.abs(rates[kept]), kind="stable")]
+    rates, others = rates[kept], int(rates.size - 2 * kept.size)
+    left, right = left[:, kept] / scale[:, None], right[:, kept] * scale[:, None]
+    left = left / np.conj((left.conj() * right).sum(axis=0))
+    shares = (left.conj() * right).real
+    twin = found.core.twin
+    firsts = twin.layout.state_first
+    participation = pd.DataFrame({
+        str(instance.name): shares[firsts[p] : firsts[p + 1]].sum(axis=0)
+        for p, instance in enumerate(twin.instances)
+        if firsts[p + 1] > firsts[p]
+    })  # fmt: skip
+    each = left.conj().T @ found.mesh_in
+    answers = np.column_stack([np.abs(each.sum(axis=1)), np.abs(each).sum(axis=1)])
+    largest = np.abs(found.mesh_out @ right).max(axis=0, initial=0.0) / np.abs(rates.real)
+    answer = answers * largest[:, None]
+    return NaturalModes(found, rates, right, participation, answer, others, tuple(notes))

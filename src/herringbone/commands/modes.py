@@ -1,0 +1,127 @@
+"""The command `modes`: natural frequencies, participation, Campbell diagram and shapes."""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from herringbone.commands.options import (
+    add_scene,
+    add_start_values,
+    files_of_parts,
+    start_values,
+)
+from herringbone.commands.output import check_writable, say, show
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.errors import reason
+from herringbone.core.places.files import write_whole
+
+if TYPE_CHECKING:
+    from herringbone.analysis.modes.natural_modes import NaturalModes
+
+FILES = "modes.csv", "campbell.png", "shapes.png"
+_HIGHEST = 3000.0
+_SHARES = 3
+_LEAST_SHARE = 0.01
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    add_scene(sub)
+    add_start_values(sub)
+    sub.add_argument(
+        "--highest",
+        type=float,
+        default=_HIGHEST,
+        help="frequency up to which modes are shown in Hz",
+    )
+    sub.add_argument(
+        "--speed", type=float, default=_HIGHEST, help="end of the Campbell diagram in r/min"
+    )
+    sub.add_argument(
+        "--shapes", type=int, nargs="+", default=[], metavar="MODE",
+        help="modes whose shapes are drawn; those that answer most to the mesh if not given",
+    )  # fmt: skip
+    sub.add_argument(
+        "--animate", type=int, nargs="+", default=[], metavar="MODE",
+        help="modes of which a GIF is written, too",
+    )  # fmt: skip
+    sub.add_argument("-o", "--output", type=Path, help=f"folder for {', '.join(FILES)}")
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Find the modes, write files if a folder is given, and show a table.
+
+    Raises:
+        HerringboneError: something about the input is wrong, or files cannot be written.
+    """
+    from herringbone.running.modes import modes  # noqa: PLC0415 (numba: only when something runs)
+
+    if (options.shapes or options.animate) and options.output is None:
+        raise ParameterError("--shapes and --animate draw; add -o FOLDER")
+    if options.highest <= 0.0 or options.speed <= 0.0:
+        raise ParameterError("--highest and --speed must be positive, in Hz and r/min")
+    if options.output:
+        check_writable(options.output)
+    files = files_of_parts(options)
+    found = modes(
+        options.system,
+        scene=options.scene,
+        values=start_values(options.set),
+        gear=files.gear,
+        housing=files.housing,
+    )
+    for note in found.notes:
+        say(f"note: {note}")
+    written = _write(found, options) if options.output else []
+    if options.json:
+        show(found.table.to_json(orient="records"))
+    else:
+        tail = ["", f"Files: {', '.join(map(str, written))}"] if written else []
+        show("\n".join([*lines(found, options.highest), *tail]))
+    return 0
+
+
+def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
+    from herringbone.plotting.campbell import campbell  # noqa: PLC0415 (matplotlib: lazy)
+    from herringbone.plotting.mode_shapes import animate_mode, mode_shapes  # noqa: PLC0415
+
+    folder: Path = options.output
+    table, diagram, shapes = (folder / name for name in FILES)
+    gifs = {mode: folder / f"mode_{mode}.gif" for mode in options.animate}
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_whole(table, found.table.to_csv(index=False))
+        campbell(found, highest=options.highest, speed=options.speed).savefig(diagram)
+        written = [table, diagram]
+        try:
+            mode_shapes(found, options.shapes).savefig(shapes)
+        except ParameterError as error:  # a system without gears and housing
+            say(f"note: no shapes: {error}")
+        else:
+            written.append(shapes)
+        for mode, file in gifs.items():
+            animate_mode(found, mode, file)
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {reason(error)}; choose another folder with -o"
+        ) from error
+    return [*written, *gifs.values()]
+
+
+def lines(found: "NaturalModes", highest: float) -> Iterator[str]:
+    """The modes up to a frequency [Hz], for people."""
+    shown = int((found.frequency_hz <= highest).sum())
+    total = found.rates.size
+    yield (f"{found.system.name}: {total} oscillating modes, {shown} up to {highest:g} Hz; "
+           f"{found.others} eigenvalues do not oscillate")  # fmt: skip
+    yield "frequencies do not depend on speed; the mesh has its mean stiffness at the scene's load"
+    yield ""
+    yield (f"{'mode':>5}{'frequency':>13}{'damping':>10}{'answer to the mesh':>21}  shares of "
+           "the parts")  # fmt: skip
+    for k in range(shown):
+        shares = found.participation.iloc[k].sort_values(ascending=False)[:_SHARES]
+        told = ", ".join(f"{n} {100 * s:.0f} %" for n, s in shares.items() if s >= _LEAST_SHARE)
+        yield (f"{k + 1:>5}{found.frequency_hz[k]:>10.2f} Hz{100 * found.damping_ratio[k]:>8.2f} %"
+               f"{found.mesh_answer[k, 0]:>21.3g}  {told}")  # fmt: skip

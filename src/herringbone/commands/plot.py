@@ -1,0 +1,82 @@
+"""The command `plot`: pictures of a run or of a study that is in a folder."""
+
+import argparse
+import csv
+from pathlib import Path
+
+from herringbone.commands.output import check_writable, show
+from herringbone.core import HerringboneError, ParameterError, ResourceError
+from herringbone.core.errors import reason
+from herringbone.core.places.files import is_file
+from herringbone.result.folder.names import UNITS
+
+_STUDY = "table.csv"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    sub.add_argument("folder", type=Path, help="folder of a run or of a sweep")
+    sub.add_argument(
+        "--highest", type=float, help="end of spectra and waterfalls in Hz; 3000 if not given"
+    )
+    sub.add_argument(
+        "--columns", nargs="+", default=[], metavar="PATTERN",
+        help="columns (*, ?) over time, and of a run-up their orders, in place of all pictures",
+    )  # fmt: skip
+    sub.add_argument("-o", "--output", type=Path, help="folder for the pictures; FOLDER itself")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw, and tell the files.
+
+    Raises:
+        HerringboneError: the folder holds no results, or files cannot be written.
+    """
+    output = options.output or options.folder
+    if options.highest is not None and not options.highest > 0.0:
+        raise ParameterError(f"--highest {options.highest:g}: it must be positive, in Hz")
+    study = is_file(options.folder / _STUDY)
+    if study and (options.columns or options.highest):
+        raise ParameterError("--columns and --highest are of runs; this is the folder of a sweep")
+    check_writable(output)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        files = _study(options.folder, output) if study else _run(options, output)
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {output}: {reason(error)}; choose another folder with -o"
+        ) from error
+    show("Files: " + (", ".join(map(str, files)) or "none: there is nothing to draw"))
+    return 0
+
+
+def _run(options: argparse.Namespace, output: Path) -> list[Path]:
+    from herringbone.analysis.figures.runup import speed_changes  # noqa: PLC0415
+    from herringbone.plotting import plot_columns, write_pictures  # noqa: PLC0415 (lazy)
+    from herringbone.plotting.runup import run_up  # noqa: PLC0415
+    from herringbone.result.folder.load import load  # noqa: PLC0415
+
+    result = load(options.folder)
+    if not options.columns:
+        return write_pictures(result, output, options.highest)
+    figures = {"columns": plot_columns(result, *options.columns)}
+    if speed_changes(result):
+        figures["run_up"] = run_up(result, *options.columns, highest=options.highest)
+    files = [output / f"{name}.png" for name in figures]
+    for file, figure in zip(files, figures.values(), strict=True):
+        figure.savefig(file)
+    return files
+
+
+def _study(folder: Path, output: Path) -> list[Path]:
+    import pandas as pd  # noqa: PLC0415 (lazy)
+
+    from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
+
+    try:
+        table = pd.read_csv(folder / _STUDY)
+        with (folder / UNITS).open(encoding="utf-8", newline="") as stream:
+            units = {row[0]: row[1] for row in csv.reader(stream) if len(row) == 2}
+    except (OSError, ValueError) as error:
+        raise ResourceError(f"{folder}: its table is damaged: {error}") from error
+    return write_study_pictures(table, units, output, folder.name)

@@ -1,0 +1,1 @@
+"""FMUs 3.0 as participants, behind the functions of FMI 2.0."""

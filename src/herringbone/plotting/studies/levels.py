@@ -1,0 +1,223 @@
+"""Levels and order cuts over a parameter of a study, with its resonances."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scipy.signal import find_peaks
+
+from herringbone.core import ParameterError
+from herringbone.plotting.studies.table import MESH, SPEED, Points, thinned
+from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, new_figure, styled
+
+_PROMINENCE = 1.15
+"""Ratio of a peak's level to the higher one of the valleys beside it, from which it is marked."""
+_MOST_MARKS = 12
+_ORDERS = 6
+
+
+class Band:
+    """Levels between which a figure may lie, see `levels`.
+
+    Args:
+        across: (n,) values of the abscissa, ascending.
+        low, high: (n,) of the figure, its SI unit.
+        label: what it stands for.
+    """
+
+    def __init__(self, across: np.ndarray, low: np.ndarray, high: np.ndarray, label: str) -> None:
+        self.across, self.low, self.high, self.label = across, low, high, label
+
+
+@styled
+def levels(
+    points: Points,
+    across: str | None = None,
+    groups: Sequence[str] = (),
+    bands: dict[str, Band] | None = None,
+    resonances: pd.DataFrame | None = None,
+) -> Figure:
+    """Level (rms) of each group, and its mesh orders, over a parameter; one row per group.
+
+    Left: the rms, one curve per combination of the other parameters. Right: rms and mesh orders of
+    the last combination. Peaks of the rms are marked with their place, and resonances that are
+    given by triangles in the colour of their order. Points without figures are gaps, and told in
+    the title.
+
+    Args:
+        points: of a study.
+        across: parameter of the abscissa; speed, or the first number, if not given.
+        groups: that are shown; all if none are given.
+        bands: by group, shaded around the curves.
+        resonances: "speed" [r/min] and "order", see `NaturalModes.crossings`; those worth showing.
+
+    Raises:
+        ParameterError: the table has no such parameter or group, or no levels.
+    """
+    across = points.across(across)
+    shown = _checked(points, groups)
+    curves = points.curves(across)
+    kept = thinned(curves)
+    hidden = f"; {len(kept)} of {len(curves)} curves" if len(kept) < len(curves) else ""
+    title = f"Levels{hidden}{points.told_lost}: {points.title}"
+    figure = new_figure(title, len(shown), 2, width=14.5)
+    panels = figure.subplots(len(shown), 2, squeeze=False, sharex=True)
+    for (left, right), group in zip(panels, shown, strict=True):
+        _rms(left, points, group, across, kept)
+        if bands and group in bands:
+            _shade(left, points, group, bands[group])
+        _orders(right, points, group, across, *kept[-1])
+        if resonances is not None and across == SPEED:
+            _triangles(right, resonances)
+        for axes in (left, right):
+            axes.set_xlabel(points.label(across))
+            _logarithmic(axes)
+    return figure
+
+
+def _checked(points: Points, groups: Sequence[str]) -> Sequence[str]:
+    if wrong := [g for g in groups if g not in points.groups]:
+        known = ", ".join(points.groups) or "none"
+        raise ParameterError(f"the table has no level of '{wrong[0]}'; there are: {known}")
+    if not points.groups:
+        raise ParameterError("the table has no levels: there is no column that ends in .rms")
+    return groups or points.groups
+
+
+def _rms(
+    axes: Axes,
+    points: Points,
+    group: str,
+    across: str,
+    curves: Sequence[tuple[str, pd.DataFrame]],
+) -> None:
+    column = f"{group}.rms"
+    factor, unit = points.scale(column)
+    for i, (label, rows) in enumerate(curves):
+        x, y = rows[across].to_numpy(float), factor * rows[column].to_numpy(float)
+        line = "-" if i < len(COLOURS) else "--"
+        axes.plot(x, y, marker="o", markersize=2.2, linestyle=line, label=label or None)
+    _, rows = curves[-1]
+    mark_peaks(axes, rows[across].to_numpy(float), factor * rows[column].to_numpy(float))
+    axes.set_ylabel(f"{group.replace('_', ' ')}, rms [{unit}]")
+    if len(curves) > 1:
+        legend(axes, min(len(curves), 4))
+
+
+def _orders(
+    axes: Axes, points: Points, group: str, across: str, label: str, rows: pd.DataFrame
+) -> None:
+    """Mesh orders and rms of one curve."""
+    column = f"{group}.rms"
+    factor, unit = points.scale(column)
+    x = rows[across].to_numpy(float)
+    axes.plot(x, factor * rows[column], color="black", linewidth=1.6, label="rms")
+    for order in points.orders(group)[:_ORDERS]:
+        text = "$f_m$" if order == 1 else f"${order} f_m$"
+        colour = COLOURS[(order - 1) % len(COLOURS)]
+        axes.plot(x, factor * rows[f"{group}.order_{order}"], label=text, color=colour)
+    axes.set_ylabel(f"{group.replace('_', ' ')}, amplitude [{unit}]")
+    if label:
+        axes.set_title(label, fontsize=8.5)
+    legend(axes, 7)
+
+
+def _triangles(axes: Axes, resonances: pd.DataFrame) -> None:
+    left, right = axes.get_xlim()
+    for row in resonances.itertuples():
+        if left <= row.speed <= right and 1 <= row.order <= _ORDERS:
+            axes.plot([row.speed], [0.015], marker="^", markersize=5.0, linestyle="", clip_on=False,
+                      color=COLOURS[int(row.order) - 1],
+                      transform=axes.get_xaxis_transform())  # fmt: skip
+    axes.set_xlim(left, right)
+
+
+def _shade(axes: Axes, points: Points, group: str, band: Band) -> None:
+    factor, _ = points.scale(f"{group}.rms")
+    axes.fill_between(band.across, factor * band.low, factor * band.high, color=MARKER_COLOUR,
+                      alpha=0.25, linewidth=0.0, label=band.label)  # fmt: skip
+    legend(axes, 3)
+
+
+def _logarithmic(axes: Axes) -> None:
+    """A logarithmic ordinate over three decades, if anything is positive."""
+    drawn = [np.asarray(x.get_ydata(), float) for x in axes.lines if x.get_linestyle() != "None"]
+    values = np.concatenate([*drawn, np.empty(0)])
+    positive = values[np.isfinite(values) & (values > 0.0)]
+    if positive.size:
+        axes.set_yscale("log")
+        axes.set_ylim(max(positive.min() * 0.7, positive.max() * 1e-3), positive.max() * 1.8)
+
+
+def peaks(across: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """Places (n,) of the peaks of a level, the highest first.
+
+    Args:
+        across: (k,) ascending.
+        level: (k,) positive; NaN where there is none.
+    """
+    known = np.isfinite(level) & (level > 0.0)
+    found, _ = find_peaks(np.log(level[known]), prominence=np.log(_PROMINENCE))
+    found = found[np.argsort(-level[known][found], kind="stable")]
+    return across[known][found]
+
+
+def mark_peaks(axes: Axes, across: np.ndarray, level: np.ndarray) -> None:
+    """Mark the highest peaks with their places."""
+    for at in peaks(across, level)[:_MOST_MARKS]:
+        height = float(level[across == at][0])
+        axes.axvline(at, color=MARKER_COLOUR, linewidth=0.7, linestyle=":", zorder=0.5)
+        axes.text(at, height, f"{at:.4g}", fontsize=7.0, ha="center", va="bottom",
+                  color=MARKER_COLOUR)  # fmt: skip
+
+
+@styled
+def waterfall(points: Points, group: str | None = None) -> Figure:
+    """Mesh orders of steady states over speed and frequency, as coloured squares.
+
+    Args:
+        points: of a study over speed.
+        group: that is shown; the first one if not given.
+
+    Raises:
+        ParameterError: the table has no mesh frequency, no such group, or none of its orders.
+    """
+    across = points.across(SPEED)
+    (shown, *_) = _checked(points, [group] if group else ())
+    orders = points.orders(shown)
+    if MESH not in points.table or not orders:
+        raise ParameterError(f"the table has no mesh frequency or no mesh orders of '{shown}'")
+    figure = new_figure(f"Mesh orders of {shown}{points.told_lost}: {points.title}", 1, width=10.0)
+    figure.set_figheight(6.5)
+    axes = figure.subplots()
+    rows = list(_cells(points, shown, across, orders))
+    x, y, amplitude = (np.concatenate(column) for column in zip(*rows, strict=True))
+    known = np.isfinite(amplitude) & (amplitude > 0.0) & np.isfinite(y)
+    factor, unit = points.scale(f"{shown}.rms")
+    if not known.any():
+        raise ParameterError(f"nothing moves in '{shown}': no map")
+    level = 20.0 * np.log10(amplitude[known] / amplitude[known].max())
+    order = np.argsort(level)
+    drawn = axes.scatter(x[known][order], y[known][order], c=level[order], s=36.0, vmin=-60.0,
+                         cmap="viridis", marker="s")  # fmt: skip
+    bar = figure.colorbar(drawn, ax=axes, pad=0.015)
+    bar.set_label(f"dB re {factor * amplitude[known].max():.3g} {unit}")
+    axes.set_xlabel(points.label(across))
+    axes.set_ylabel("frequency [Hz]")
+    axes.set_ylim(bottom=0.0)
+    return figure
+
+
+def _cells(
+    points: Points, group: str, across: str, orders: Sequence[int]
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Speed, frequency and amplitude of all points, by order."""
+    table = points.table
+    for order in orders:
+        yield (
+            table[across].to_numpy(float),
+            order * table[MESH].to_numpy(float),
+            table[f"{group}.order_{order}"].to_numpy(float),
+        )

@@ -1,0 +1,50 @@
+"""What follows from a system alone, found once in a process: steady rotation, bonds, stability."""
+
+from collections.abc import Callable
+
+from herringbone.analysis.stability.instability import warn_if_unstable
+from herringbone.analysis.stability.limits import fastest_bond
+from herringbone.core.caching.keys import digest_of
+from herringbone.core.caching.remembered import Remembered
+from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.structure.system import System, Values
+from herringbone.running.content import contents_of_system
+from herringbone.running.pairs.carrying_flank import loaded_start
+
+_MOST = 256
+_starts: Remembered[tuple[Values, tuple[str, ...]]] = Remembered(_MOST)
+_bonds: Remembered[float | None] = Remembered(_MOST)
+_warnings: Remembered[str | None] = Remembered(_MOST)
+
+
+def start_of_known(system: System) -> tuple[Values, tuple[str, ...]]:
+    """See `loaded_start`."""
+    values, lines = _starts(_key(system), lambda: loaded_start(system))
+    return dict(values), lines
+
+
+def bond_of(system: System) -> float | None:
+    """See `fastest_bond`."""
+    return _bonds(_key(system), lambda: fastest_bond(system))
+
+
+def stability_warning(
+    system: System,
+    algorithm: Algorithm,
+    step: float,
+    t_end: float,
+    loaded: Callable[[System], System],
+) -> str | None:
+    """See `warn_if_unstable`, of a system without foreign parts.
+
+    Args:
+        system: at its start.
+        algorithm, step, t_end: of the run.
+        loaded: makes the system to which the prediction applies.
+    """
+    key = _key(system), repr(algorithm), step, t_end
+    return _warnings(key, lambda: warn_if_unstable(loaded(system), algorithm, step, t_end))
+
+
+def _key(system: System) -> str:
+    return digest_of(system.name, *contents_of_system(system))

@@ -1,0 +1,166 @@
+"""Pictures of studies: axes, peaks, what is missing; sensitivities of a level that is known."""
+
+import itertools
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from herringbone.analysis.figures.sensitivity import sensitivities
+from herringbone.core import ParameterError
+from herringbone.plotting.studies.levels import levels, peaks, waterfall
+from herringbone.plotting.studies.maps import level_map
+from herringbone.plotting.studies.pictures import write_study_pictures
+from herringbone.plotting.studies.sensitivities import band, changes, tornado
+from herringbone.plotting.studies.table import Points
+
+SPEEDS, TORQUES, ZETAS, BACKLASHES = (
+    np.linspace(800.0, 1500.0, 36), (100.0, 200.0), (0.01, 0.02, 0.04), (1e-4, 2e-4)
+)  # fmt: skip
+ZETA, BACKLASH = "housing.damping_ratio", "gear_mesh.backlash"
+PEAK = 1100.0
+UNITS = {
+    "speed": "r/min", "torque": "N.m", ZETA: "1", BACKLASH: "m", "mesh_frequency": "Hz",
+    "force.rms": "N", "force.order_1": "N", "force.order_2": "N",
+}  # fmt: skip
+
+
+def level(speed, torque, zeta, backlash):
+    """One resonance; goes with 1 / zeta and the root of the backlash everywhere."""
+    return torque / (1.0 + ((speed - PEAK) / 60.0) ** 2) / zeta * np.sqrt(backlash)
+
+
+@pytest.fixture(scope="module")
+def table():
+    rows = [
+        {"point": i, "torque": t, "speed": n, ZETA: z, BACKLASH: b, "outcome": "completed",
+         "message": "", "mesh_frequency": 0.45 * n, "force.rms": level(n, t, z, b),
+         "force.order_1": level(n, t, z, b), "force.order_2": 0.3 * level(n, t, z, b)}
+        for i, (t, n, z, b) in enumerate(itertools.product(TORQUES, SPEEDS, ZETAS, BACKLASHES))
+    ]  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def shipped(table, **kept):
+    for name, value in kept.items():
+        table = table[table[{"zeta": ZETA, "backlash": BACKLASH}.get(name, name)] == value]
+    return table.reset_index(drop=True)
+
+
+def test_sensitivities_are_the_exponents(table):
+    found = sensitivities(shipped(table, torque=200.0), "force.rms", [ZETA, BACKLASH], "speed")
+    assert len(found) == 2 * SPEEDS.size
+    by_name = found.groupby("parameter")["sensitivity"]
+    assert by_name.get_group(ZETA).to_numpy() == pytest.approx(-1.0, rel=1e-12)
+    assert by_name.get_group(BACKLASH).to_numpy() == pytest.approx(0.5, rel=1e-12)
+    spreads = found.groupby("parameter")["spread"].first()
+    assert spreads[ZETA] == pytest.approx(1.0)  # 0.01 to 0.04: a factor of 2 about 0.02
+    assert spreads[BACKLASH] == pytest.approx(np.sqrt(2.0) - 1.0)
+
+
+def test_points_without_figures_count_for_no_sensitivity(table):
+    broken = shipped(table, torque=200.0, backlash=1e-4)
+    broken.loc[broken[ZETA] != 0.02, "force.rms"] = np.nan
+    assert not len(sensitivities(broken, "force.rms", [ZETA], "speed"))
+    with pytest.raises(ParameterError, match=r"no column 'force\.peak'"):
+        sensitivities(broken, "force.peak", [ZETA])
+    with pytest.raises(ParameterError, match="not positive"):
+        sensitivities(broken.assign(**{ZETA: 0.0}), "force.rms", [ZETA])
+
+
+def test_tornado_shows_what_spreads_make_of_a_level(table):
+    found = sensitivities(shipped(table, torque=200.0), "force.rms", [ZETA, BACKLASH])
+    ends = changes(found).set_index("parameter")
+    assert ends.loc[ZETA, ["low", "high"]].tolist() == pytest.approx([-0.5, 1.0])
+    axes = tornado(found, "force.rms").axes[0]
+    assert axes.get_xlabel() == "change of the level [%]"
+    widths = [bar.get_width() for bar in axes.patches]
+    assert widths[-1] == pytest.approx(150.0)  # the largest is on top
+    assert axes.get_yticklabels()[-1].get_text() == f"{ZETA} (factor 2, p^-1.00)"
+
+
+def test_band_adds_logarithms_by_their_squares(table):
+    here = shipped(table, torque=200.0)
+    found = sensitivities(here, "force.rms", [ZETA, BACKLASH], "speed")
+    middle = level(SPEEDS, 200.0, 0.02, 1e-4)
+    lies = band(SPEEDS, middle, found, "speed")
+    width = np.hypot(np.log(2.0), 0.25 * np.log(2.0))
+    assert lies.high / middle == pytest.approx(np.exp(width))
+    assert lies.low / middle == pytest.approx(np.exp(-width))
+
+
+def test_levels_have_a_curve_per_combination_and_mark_the_peak(table):
+    kept = shipped(table, zeta=0.02, backlash=1e-4)
+    figure = levels(Points(kept, UNITS, "rig"))
+    left, right = figure.axes
+    assert left.get_xlabel() == "pinion speed [r/min]"
+    assert left.get_ylabel() == "force, rms [N]"
+    entries = [text.get_text() for text in left.get_legend().get_texts()]
+    assert entries == ["torque 100 N m", "torque 200 N m"]
+    assert "1100" in [text.get_text() for text in left.texts]
+    assert [line.get_label() for line in right.lines] == ["rms", "$f_m$", "$2 f_m$"]
+
+
+def test_peaks_are_found_highest_first():
+    across = np.linspace(0.0, 10.0, 201)
+    two = 1.0 / (0.01 + (across - 3.0) ** 2) + 3.0 / (0.01 + (across - 7.0) ** 2)
+    assert peaks(across, two) == pytest.approx([7.0, 3.0])
+    two[:10] = np.nan
+    assert peaks(across, two) == pytest.approx([7.0, 3.0])
+
+
+def test_points_without_figures_are_told_and_leave_a_gap(table):
+    kept = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
+    lost = [c for c in kept if c.startswith("force.")]
+    kept.loc[3:4, lost] = np.nan
+    kept.loc[3:4, "outcome"] = "diverged"
+    figure = levels(Points(kept, UNITS, "rig"))
+    title = "Levels; 2 of 36 points have no figures (2 diverged): rig"
+    assert figure.get_suptitle() == title
+    assert np.isnan(figure.axes[0].lines[0].get_ydata()).sum() == 2
+
+
+def test_map_and_waterfall_have_units(table):
+    points = Points(shipped(table, zeta=0.02, backlash=1e-4), UNITS)
+    axes, bar = level_map(points).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (
+        "pinion speed [r/min]", "pinion torque [N m]"
+    )  # fmt: skip
+    assert bar.get_ylabel() == "force.rms [kN]" or bar.get_ylabel().endswith("[N]")
+    axes, bar = waterfall(points).axes
+    assert axes.get_ylabel() == "frequency [Hz]"
+    offsets = axes.collections[0].get_offsets()
+    assert len(offsets) == 2 * 2 * SPEEDS.size
+    assert bar.get_ylabel().startswith("dB re ")
+
+
+def test_map_says_that_it_shows_the_largest_of_several(table):
+    title = level_map(Points(table, UNITS), across="speed", up="torque").get_suptitle()
+    assert "largest of the further parameters" in title
+
+
+def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):
+    names = {file.name for file in write_study_pictures(table, UNITS, tmp_path)}
+    assert names == {"levels.png", "map.png", "waterfall.force.png", "tornado.force.png"}
+    single = shipped(table, zeta=0.02, backlash=1e-4).iloc[:1]
+    assert write_study_pictures(single, UNITS, tmp_path) == []
+    with pytest.raises(ParameterError, match="several numbers of: speed"):
+        one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
+        levels(Points(one, UNITS), across="torque")
+
+
+def test_many_curves_are_thinned_and_said(table):
+    many = pd.concat([table.assign(torque=t) for t in range(100, 120)], ignore_index=True)
+    figure = levels(Points(many, UNITS, "rig"))
+    assert "12 of 120 curves" in figure.get_suptitle()
+    assert len(figure.axes[0].get_legend().get_texts()) == 12
+
+
+def test_resonances_are_triangles_in_the_colour_of_their_order(table):
+    points = Points(shipped(table, torque=200.0, zeta=0.02, backlash=1e-4), UNITS)
+    given = pd.DataFrame({"speed": [1100.0, 9999.0], "order": [2, 1]})
+    right = levels(points, resonances=given).axes[1]
+    marks = [line for line in right.lines if line.get_marker() == "^"]
+    second = next(line for line in right.lines if line.get_label() == "$2 f_m$")
+    assert len(marks) == 1
+    assert marks[0].get_color() == second.get_color()
