@@ -84,6 +84,7 @@ def known_parts(system: System) -> System:
             for pair in system.connections
             if not foreign & {system.split(path)[0] for path in pair}
         ),
+        sensors={name: s for name, s in system.sensors.items() if s.part not in foreign},
     )
 
 
