@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.anatomy import value_at
 from herringbone.analysis.steady.balance import Balance
@@ -22,6 +21,7 @@ from herringbone.analysis.steady.response import Rows
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
 
 _STEP = 1e-3
 """Of a parameter, over its value."""
@@ -61,7 +61,7 @@ def sensitivities(
             "run-outs and deviations of teeth off"
         )
     columns = state.chosen(level)
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         size, found, adjoint = _adjoint(state, columns)
         return {name: _of(state, columns, size, found, adjoint, name) for name in parameters}
 
