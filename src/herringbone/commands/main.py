@@ -17,7 +17,6 @@ from herringbone.commands import compare as compare_command
 from herringbone.commands import export as export_command
 from herringbone.commands import modes as modes_command
 from herringbone.commands import plot as plot_command
-from herringbone.commands import run as run_command
 from herringbone.commands import stability as stability_command
 from herringbone.commands import steady as steady_command
 from herringbone.commands import sweep as sweep_command
@@ -36,6 +35,8 @@ from herringbone.commands.options import (
     start_values,
 )
 from herringbone.commands.output import as_command, check_writable, say, show
+from herringbone.commands.run import command as run_command
+from herringbone.commands.run import options as run_options
 from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
@@ -98,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", check_command.run, "check an FMU: is it sound, and what is it")
     check_command.add_options(sub)
-    run_command.add_options(add("run", _run, "run a system"))
+    run_options.add_options(add("run", _run, "run a system"))
     sub = add("compare", compare_command.run, "compare two results folders")
     compare_command.add_options(sub)
     sub = add("sweep", sweep_command.run, "run a system at many operating points")

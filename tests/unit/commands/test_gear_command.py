@@ -106,10 +106,22 @@ def test_bad_input(tmp_path, capsys, arguments, message):
     assert not folder.exists()
 
 
-def test_table_is_that_of_the_method(tmp_path):
+@pytest.fixture
+def thin(tmp_path):
+    """Gear file of a small pair, of the method that is taken if none is given."""
+    file = tmp_path / "thin.toml"
+    file.write_text(
+        "[gear_pair]\nnumber_of_teeth = [30, 40]\nnormal_module = '2 mm'\nface_width = '3 mm'\n"
+        "halves = 1\n",
+        encoding="utf-8",
+    )
+    return file
+
+
+def test_table_is_that_of_the_method(thin, tmp_path):
     """The mesh that carries the load on the flanks is the one of the table."""
-    gear(THESIS, tmp_path)
-    job = read_gear_file(THESIS)
+    gear(thin, tmp_path)
+    job = read_gear_file(thin)
     expected = table_text(stiffness_for(job))
     assert (tmp_path / "mesh_stiffness.csv").read_text(encoding="utf-8") == expected
 
@@ -161,17 +173,11 @@ def test_rigid_and_floating_pinion(tmp_path, capsys):
         assert share == pytest.approx(1.0 if held else 0.5, abs=1e-6)
 
 
-def test_gear_outside_the_standard_has_no_dynamic_factor(tmp_path, capsys):
+def test_gear_outside_the_standard_has_no_dynamic_factor(thin, tmp_path, capsys):
     """Faces below 4 mm have no ISO 1328-1 class: said in the table, refused if a class is asked."""
-    file = tmp_path / "thin.toml"
-    file.write_text(
-        "[gear_pair]\nnumber_of_teeth = [30, 40]\nnormal_module = '2 mm'\nface_width = '3 mm'\n"
-        "halves = 1\n",
-        encoding="utf-8",
-    )
-    assert main(["gear", str(file), "-o", str(tmp_path)]) == 0
+    assert main(["gear", str(thin), "-o", str(tmp_path)]) == 0
     assert "face width 3 mm is outside the scope of ISO 1328-1" in capsys.readouterr().out
-    assert main(["gear", str(file), "-o", str(tmp_path), "--accuracy", "7"]) == 2
+    assert main(["gear", str(thin), "-o", str(tmp_path), "--accuracy", "7"]) == 2
     assert "face width 3 mm is outside the scope" in capsys.readouterr().err
 
 

@@ -1,0 +1,73 @@
+"""Options of the command `run`."""
+
+import argparse
+from pathlib import Path
+
+from herringbone.commands.options import (
+    add_cells,
+    add_kind,
+    add_replacements,
+    add_scene,
+    add_start_values,
+)
+
+SLOW = "INSTANCE=N,..."
+"""How bodies that step less often are given."""
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    add_scene(sub, optional=True)
+    sub.add_argument(
+        "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
+    )
+    sub.add_argument(
+        "--step", type=float, help="communication step size in s; the largest, with --tolerance"
+    )
+    sub.add_argument(
+        "--tolerance",
+        type=float,
+        help="relative error, e.g. 1e-3: li adapts its step; with foreign FMUs it is found by runs",
+    )
+    sub.add_argument(
+        "--slow", metavar=SLOW, help="heavy bodies that step once in N communication steps"
+    )
+    sub.add_argument("--t-end", type=float, help="duration in s")
+    sub.add_argument("--record-step", type=float, help="time between records in s")
+    sub.add_argument("--start", help="equilibrium, ramp or rest; the scene's if not given")
+    add_kind(sub)
+    add_replacements(sub)
+    add_cells(sub)
+    add_start_values(sub)
+    sub.add_argument(
+        "--no-probe", action="store_true",
+        help="take foreign FMUs by what they declare, without trial steps on further instances",
+    )  # fmt: skip
+    sub.add_argument(
+        "--fuse", action="store_true",
+        help="condense all own parts into one core, marched by steps that --tolerance chooses, or "
+        "coupled with foreign FMUs",
+    )  # fmt: skip
+    sub.add_argument(
+        "--record", action="append", default=[], metavar="OUTPUTS",
+        help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
+    )  # fmt: skip
+    memory = "memory grows with the duration"
+    sub.add_argument(
+        "--reference", action="store_true", help=f"errors against the monolithic twin; {memory}"
+    )
+    sub.add_argument(
+        "--verify", action="store_true", help=f"errors against a run with half the step; {memory}"
+    )
+    sub.add_argument("--parquet", action="store_true", help="also write results.parquet")
+    sub.add_argument(
+        "-o", "--output", type=Path,
+        help="folder; results/SYSTEM-SCENE if not given, with a number if that holds another run",
+    )  # fmt: skip
+    sub.add_argument(
+        "--overwrite", action="store_true", help="overwrite results of other settings in the folder"
+    )
+    sub.add_argument(
+        "--resume", type=Path, metavar="FOLDER", help="go on with a run that was cut off"
+    )
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
