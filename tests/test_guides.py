@@ -186,3 +186,17 @@ def test_foreign_fmus(tmp_path, monkeypatch, capsys):
     )
     assert run.outcome.completed
     assert max(run.verification.groups.values()) < 1e-3
+
+
+def test_sweeps():
+    """The examples of a sweep, the second one on a cluster of threads."""
+    first, second = (blocks("sweeps", "python")[k] for k in (0, 1))
+    names: dict = {}
+    exec(compile(first, "sweeps.md", "exec"), names)
+    assert names["found"].table["outcome"].tolist() == ["steady"] * 3
+    distributed = pytest.importorskip("distributed", reason="the extra cluster is not installed")
+    exec(compile(second, "sweeps.md", "exec"), names)
+    with distributed.LocalCluster(
+        n_workers=1, processes=False, dashboard_address=None, threads_per_worker=1
+    ) as cluster:
+        assert len(names["main"](cluster.scheduler_address).table) == 4

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 _RUN = """
@@ -125,7 +126,8 @@ def kills(folder: Path, count: int = 50, seed: int = 1) -> int:
         if process.poll() is not None:
             victim = "was through"
         for pid in killed[: chance.randint(1, 2)]:
-            os.kill(pid, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # it has ended since
+                os.kill(pid, signal.SIGKILL)
         victims[victim] += 1
         process.wait()
         assert _started(_KILLED, place).wait() == 0

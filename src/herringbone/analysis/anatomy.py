@@ -10,9 +10,11 @@ from dataclasses import replace
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core.anatomy import Anatomy, Joint, PartInfo, part_info
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.declaring.roles import Port, PortKind, Role
 from herringbone.cosim.structure.system import PartSpec, System
 
+_known: Remembered[Anatomy] = Remembered(64)
 _ROLE_OF_PORTS = {
     frozenset({PortKind.SEAT}): Role.HOUSING,
     frozenset({PortKind.SEAT, PortKind.JOURNAL}): Role.BEARING,
@@ -23,6 +25,12 @@ _ROLE_OF_PORTS = {
 
 def anatomy(system: System) -> Anatomy:
     """Roles, ports and quantities of a system's parts, and what is joined to what."""
+    kinds = tuple((part.name, part.component, part.stands_for) for part in system.parts)
+    return _known((kinds, system.connections), lambda: _anatomy(system))
+
+
+def _anatomy(system: System) -> Anatomy:
+    """See `anatomy`."""
     parts = {part.name: _declared(part) for part in system.parts}
     joints: dict[Joint, None] = {}
     for pair in system.connections:

@@ -161,6 +161,16 @@ def closing_all(parts: Sequence[Part]) -> Iterator[Sequence[Part]]:
             part.close()
 
 
+def of_parts(part: Part) -> bool:
+    """True if a part stands for several ones of this package: its inputs are polynomials."""
+    return bool(getattr(part, "of_parts", False))
+
+
+def column(part: Part, name: str) -> str:
+    """`instance.variable`, as an output is recorded; a part of parts has such names itself."""
+    return name if of_parts(part) else f"{part.name}.{name}"
+
+
 def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:
     """True if these inputs of a part take polynomial signals of that degree."""
     return degree == 0 or (

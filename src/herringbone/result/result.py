@@ -83,6 +83,11 @@ class RunInfo:
     anatomy: Anatomy = field(default_factory=Anatomy, repr=False)
     sensors: Mapping[str, SensorSpec] = field(default_factory=dict, repr=False)
 
+    @property
+    def all_fused(self) -> bool:
+        """True if all parts made one core, so that nothing was coupled."""
+        return self.core is not None and not self.passes
+
 
 @dataclass(frozen=True, repr=False)
 class Result(Facts):

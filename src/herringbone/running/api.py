@@ -22,9 +22,9 @@ from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,
+    check_kind,
     check_record,
     fused,
-    refuse_strangers,
     verified_by_half,
 )
 from herringbone.running.output.run_output import RunOutput
@@ -106,9 +106,10 @@ def run(
         reference: also solve the monolithic twin, and report the errors against it.
         verify: also run with half the macro step and half the inner steps, and report how far
             apart both are, see `running.steps.verification`; for systems that have no twin.
-        fuse: condense all parts, which must be components of this package, into one core and march
-            that; `step` is its base step then, and `tolerance`, 1e-3 if neither is given, the error
-            for which it is chosen, see `docs/fused.md`.
+        fuse: condense all parts that are components of this package into one core. Without others
+            it is marched alone; `step` is its base step then, and `tolerance`, 1e-3 if neither is
+            given, the error for which it is chosen, see `docs/fused.md`. Beside foreign FMUs it is
+            a part that is coupled with them.
         record: of a fused run, groups of channels and patterns of outputs (`*`, `?`) to be
             recorded; all if none is given.
         progress: True for a bar; or called with the simulated time reached and its end [s].
@@ -125,8 +126,7 @@ def run(
         HerringboneError: something about the input is wrong.
     """
     check_record(record, fuse=fuse)
-    if fuse:
-        check_coupling(algorithm=algorithm, slow=slow, fmu=fmu != AUTO_FMU, probe=probe)
+    check_kind(fmu=fuse and fmu != AUTO_FMU)
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
@@ -141,7 +141,8 @@ def run(
             wishes,
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
-        if fuse:
+        if fuse and not structure.foreign_parts:
+            check_coupling(algorithm=algorithm, slow=slow, probe=probe)
             wanted = FusedAsked(step, tolerance, tuple(record), notes=notes)
             return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
         adapts = tolerance is not None or (coupling is not None and coupling.adaptive)
@@ -161,6 +162,8 @@ def run(
             record_step=record_step,
             all_points=reference,
             notes=said,
+            fuse=fuse,
+            record=tuple(record),
         )
         aim = searched_tolerance(structure, asked)
         if verify and aim is None:
@@ -184,7 +187,7 @@ def run(
 
 def _explained(result: Result, system: System, found: Coupled) -> Result:
     """The result with what grows in it and what helps, if it is unstable."""
-    if not _unstable(found.recording):
+    if not _unstable(found.recording) or found.recording.core is not None:
         return result
     with activity(f"looking for what grows in {system.name}, and for remedies"):
         why_unstable = diagnose(system, found.algorithm, found.recording.step)
@@ -202,7 +205,6 @@ def _fused(
     verify: bool,
 ) -> Result:
     """A fused run, and what is found out about it after that."""
-    refuse_strangers(system)
     if output is not None:
         output.claim(system, scene, replace(asked, notes=()))
     result = fused(system, scene, asked, progress, recorded, output)

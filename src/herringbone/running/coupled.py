@@ -1,7 +1,8 @@
 """One co-simulation of a prepared system: parts understood, algorithm chosen, stepped."""
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -27,6 +28,14 @@ from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
 from herringbone.running.foreign.surrogates import surrogates_of, under_load
+from herringbone.running.fused.beside import (
+    KIND,
+    fused_beside,
+    strangers_of,
+    suit,
+    with_core_steps,
+    with_recorded_channels,
+)
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -62,6 +71,9 @@ class Asked:
         notes: lines that are known already.
         inner_step: longest of the own parts [s], of which an adaptive step takes account.
         part_tolerance: that parts are told; None: none.
+        fuse: condense all parts of this package into one, which is coupled with the others.
+        record: of a fused run, patterns of outputs, or groups of channels, that are recorded.
+        core_step: longest base step of the condensed parts [s].
         judge: make the error budget, and lines on what does not fit together; False for runs that
             only tell the error of another.
     """
@@ -78,6 +90,9 @@ class Asked:
     notes: Sequence[str] = field(default=())
     inner_step: float = 0.0
     part_tolerance: float | None = None
+    fuse: bool = False
+    record: tuple[str, ...] = ()
+    core_step: float | None = None
     judge: bool = True
 
 
@@ -137,16 +152,19 @@ def _coupled(
 ) -> Coupled:
     """See `coupled`; without what is found out when the parts are closed."""
     lines, algorithm = list(asked.notes), asked.algorithm
-    with same_folder(), exit_guard(), closing_all(open_parts(system, asked.fmu)) as opened:
+    with same_folder(), exit_guard(), _opened(system, asked) as (exchanging, opened, said):
         parts: Sequence[Part] = opened
+        lines += said
+        if asked.record:
+            system = with_recorded_channels(system, opened)
         if not system.connections and algorithm is None:
             asked = replace(asked, step=asked.step or min(scene.record_step, scene.t_end))
             algorithm = Jacobi(order=0)
             lines.append(f"auto: {algorithm}, once per record, because nothing is connected")
         elif asked.probe and system.connections:
             trial = asked.step or (algorithm or LI()).start_step
-            parts, said = understood(system, opened, instances, trial)
-            lines += [*said, *unfed(system, parts)]
+            parts, found = understood(exchanging, opened, instances, trial)
+            lines += [*found, *unfed(exchanging, parts)]
         if algorithm is None:
             algorithm, why = choose_algorithm(parts, asked.step)
             lines.append(why)
@@ -159,18 +177,23 @@ def _coupled(
             )
         if asked.warn:
             lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
+        suit(opened, step)
         grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
-        start = start_of(system, scene, algorithm, asked.fmu, grid, lines)
-        streaming = _streaming(output, start, scene, step, asked) if output else None
+        kind = KIND if asked.fuse else asked.fmu
+        streaming = None
+        if output is not None:
+            start = start_of(system, scene, algorithm, kind, grid, lines)
+            streaming = _streaming(output, start, scene, step, asked)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
-                system, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
+                exchanging, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
                 inner_step=asked.inner_step, tolerance=asked.part_tolerance, streaming=streaming,
             )  # fmt: skip
+        recording = with_core_steps(recording, opened)
         lines += _step_notes(asked.step, algorithm, recording)
-        every = make_result(system, scene, algorithm, asked.fmu, recording, lines)
+        every = make_result(system, scene, algorithm, kind, recording, lines)
         if asked.judge:
             every = judged(every, bond)
         _log_end(recording)
@@ -181,8 +204,19 @@ def _coupled(
         if recorded:
             recorded(result)
         once = any(part.once for part in opened)
-        exchanged = exchanged_outputs(system, parts)
+        exchanged = exchanged_outputs(exchanging, parts)
     return Coupled(result, every, recording, algorithm, once, exchanged)
+
+
+@contextmanager
+def _opened(system: System, asked: Asked) -> Iterator[tuple[System, list[Part], list[str]]]:
+    """The system as it is coupled, its parts, and lines on how it came about."""
+    if not asked.fuse:
+        with closing_all(open_parts(system, asked.fmu)) as opened:
+            yield system, list(opened), []
+        return
+    with closing_all(open_parts(strangers_of(system), asked.fmu)) as strangers:
+        yield fused_beside(system, strangers, asked.record, asked.core_step)
 
 
 def _streaming(
@@ -208,6 +242,8 @@ def _stability_notes(
     known = not system.foreign_parts or (asked.probe and system.connections)
     if algorithm.adaptive or asked.slow or not known:
         return []
+    if asked.fuse:
+        return ["whether the step is stable is not known: that of fused parts is not predicted"]
     what = f"predicting whether {system.name} is stable"
     if not system.foreign_parts:
         with activity(what):

@@ -84,6 +84,7 @@ def known_parts(system: System) -> System:
             for pair in system.connections
             if not foreign & {system.split(path)[0] for path in pair}
         ),
+        sensors={k: spec for k, spec in system.sensors.items() if spec.part not in foreign},
     )
 
 

@@ -95,9 +95,11 @@ def test_levels_have_a_curve_per_combination_and_mark_the_peak(table):
     left, right = figure.axes
     assert left.get_xlabel() == "pinion speed [r/min]"
     assert left.get_ylabel() == "force, rms [N]"
-    entries = [text.get_text() for text in left.get_legend().get_texts()]
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
     assert entries == ["torque 100 N m", "torque 200 N m"]
     assert "1100" in [text.get_text() for text in left.texts]
+    largest = level(PEAK, 200.0, 0.02, 1e-4)
+    assert largest < left.get_ylim()[1] < 2.0 * largest
     assert [line.get_label() for line in right.lines] == ["rms", "$f_m$", "$2 f_m$"]
 
 
@@ -153,7 +155,7 @@ def test_many_curves_are_thinned_and_said(table):
     many = pd.concat([table.assign(torque=t) for t in range(100, 120)], ignore_index=True)
     figure = levels(Points(many, UNITS, "rig"))
     assert "12 of 120 curves" in figure.get_suptitle()
-    assert len(figure.axes[0].get_legend().get_texts()) == 12
+    assert len(figure.legends[0].get_texts()) == 12
 
 
 def test_resonances_are_triangles_in_the_colour_of_their_order(table):

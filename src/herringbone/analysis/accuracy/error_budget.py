@@ -112,7 +112,7 @@ def _lines(result: Result, gear: str, count: int) -> np.ndarray | None:
 
 def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
     """What the coupling errs, of a fused run its steps; see `error_budget`."""
-    source = "coupling" if result.info.core is None else "steps of the core"
+    source = "steps of the core" if result.info.all_fused else "coupling"
     if result.error:
         name, value = max(result.error.items(), key=lambda item: item[1])
         quantity = f"{name.replace('_', ' ')}, alternating part"
@@ -122,7 +122,7 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
         name, value = max(result.verification.groups.items(), key=lambda item: item[1])
         quantity = f"{name.replace('_', ' ')}, alternating part"
         return BudgetRow(source, quantity, value, Known.ESTIMATED, result.verification.how)
-    if result.info.core is not None:
+    if result.info.all_fused:
         return BudgetRow(source, _FORCE, None, Known.UNKNOWN, "nothing varies")
     if (estimate := result.info.estimate) is not None:
         how = "by the differences of the forces in each step; --reference measures"

@@ -8,13 +8,13 @@ is at the start. What varies over the period (parametric excitation) is left out
 from typing import NamedTuple
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.of_system import SystemLaws
 from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core.declaring.roles import Role
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _PLACES = 2048
@@ -53,7 +53,7 @@ def linearised(system: System) -> Linearised:
     condensed = core.condensed
     equations, calls = condensed.equations, condensed.calls()
     values = int(calls.value[-1])
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         tangents = _tangents(core)
         along = tangents[:, None] * condensed.directions
         owner = condensed.table(calls).value

@@ -24,13 +24,13 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 from scipy.linalg import eig, matrix_balance
-from threadpoolctl import threadpool_limits
 
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _SLOWEST = 1e-6
@@ -167,7 +167,7 @@ def natural_modes(system: System, notes: Sequence[str] = ()) -> NaturalModes:
         StructureError: it cannot be taken apart.
     """
     found = linearised(system)
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_blas_thread():
         balanced, (scale, _) = matrix_balance(found.a, permute=False, separate=True)
         rates, left, right = eig(balanced, left=True, right=True)
     fastest = np.abs(rates).max(initial=0.0)

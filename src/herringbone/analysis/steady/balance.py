@@ -24,6 +24,8 @@ from herringbone.analysis.steady.problem import Problem, Samples
 from herringbone.analysis.steady.response import Coordinates, Response
 
 _ITERATIONS = 40
+_EASY = 8
+"""Iterations after which the laws' whole slopes are taken."""
 _HALVINGS = 6
 _SMALL = 0.03
 """Change so small that it is taken whatever the residual: what the laws' harmonics that Newton does
@@ -116,7 +118,7 @@ class Balance:
         """
         problem = self.problem
         now, count = self._begun(values, known), problem.values
-        part, merit, change, iterations = 1.0, np.inf, np.inf, 0
+        part, merit, change, iterations, last = 1.0, np.inf, np.inf, 0, now
         stepped = now.response.orders
         step = np.zeros((count, stepped.size))
         while iterations < _ITERATIONS:
@@ -125,13 +127,16 @@ class Balance:
             now, laws = self._with_orders(now, samples)
             off = laws - now.channels[:count]
             before, merit = merit, self._size(samples, off, now.response.orders)
-            if merit > before and change > _SMALL and part > 0.5**_HALVINGS:
+            if not merit <= before and change > _SMALL and part > 0.5**_HALVINGS:
                 part *= 0.5  # not as far
                 step = on(now.response.orders, step, stepped)
                 stepped = now.response.orders
                 now, merit = self._moved(now, -part * step), before
                 continue
-            step, part = self._correction(now.response, samples, off), 1.0
+            if not np.isfinite(merit):
+                break
+            hard = iterations > _EASY
+            step, part = self._correction(now.response, samples, off, whole=hard), 1.0
             last, now, stepped = now, self._moved(now, step), now.response.orders
             change = self._change(last.z, now.z)
             if change <= close or merit <= _ROUNDING:
@@ -228,11 +233,13 @@ class Balance:
         low = orders <= self.period.order * self.period.meshes
         return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
 
-    def _correction(self, answer: Response, samples: Samples, off: np.ndarray) -> np.ndarray:
+    def _correction(
+        self, answer: Response, samples: Samples, off: np.ndarray, *, whole: bool
+    ) -> np.ndarray:
         """Changes of the values (values, harmonics) by one step of Newton."""
         period = self.period
         if period.meshes == 1:
-            return correct_at_once(self.problem, answer, samples, off, period.order)
+            return correct_at_once(self.problem, answer, samples, off, period.order, whole=whole)
         families = Families(answer.orders, period.meshes, period.order)
         return correct_by_families(self.problem, answer, samples, off, families, _INEXACT)
 

@@ -40,18 +40,33 @@ def bent(problem: Problem, samples: Samples) -> Bent:
     return Bent(unknown, place[problem.owner], bends, problem.along, problem.along_angle)
 
 
-def sloped(problem: Problem, samples: Samples) -> Bent:
-    """All stiff values, with their whole slopes over all arguments, by differences."""
-    stiff, found = problem.stiff, slopes(problem, samples.z)[:, problem.stiff]
+def sloped(problem: Problem, samples: Samples, *, every: bool = False) -> Bent:
+    """Stiff values, with their whole slopes over all arguments, by differences.
+
+    Args:
+        problem: linear part and laws.
+        samples: of the laws.
+        every: all values that have slopes, stiff or not.
+    """
+    found = slopes(problem, samples.z)
+    changing = np.flatnonzero(np.abs(found).max(axis=(0, 2)))
+    unknown = changing if every else problem.stiff
+    found = found[:, unknown]
     value, argument = np.nonzero(np.abs(found).max(axis=0))
     return Bent(
-        stiff, value, found[:, value, argument], problem.arguments[argument],
+        unknown, value, found[:, value, argument], problem.arguments[argument],
         problem.of_angle[argument],
     )  # fmt: skip
 
 
 def correct_at_once(
-    problem: Problem, answer: Response, samples: Samples, off: np.ndarray, order: int
+    problem: Problem,
+    answer: Response,
+    samples: Samples,
+    off: np.ndarray,
+    order: int,
+    *,
+    whole: bool = False,
 ) -> np.ndarray:
     """Changes of the values (values, harmonics).
 
@@ -61,8 +76,10 @@ def correct_at_once(
         samples: of the laws.
         off: (values, harmonics) what the laws give and the motion lacks.
         order: highest harmonic that is solved for; others change by what is off.
+        whole: take the slopes of the laws over all arguments, not their tangents: many times the
+            cost, for laws whose tangents leave out too much.
     """
-    found = bent(problem, samples)
+    found = sloped(problem, samples) if whole else bent(problem, samples)
     step = off.copy()
     if not found.unknown.size:
         return step

@@ -5,6 +5,7 @@ Newton from a motion at rest may go astray. A march does not, and takes millisec
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from herringbone.analysis.twin.condensed.system import Condensed
 _DEGREE, _CLOSE = 3, 1e-3
 _LONGEST = 100e-6
 """Longest base step [s]."""
+_MOST_TIMES = 4
+"""Most periods after which a march may repeat."""
 
 
 @dataclass(frozen=True)
@@ -54,20 +57,66 @@ def start_of(orbit: Orbit) -> np.ndarray:
     return np.concatenate([q.real, q.imag, [angle]])
 
 
+class March(NamedTuple):
+    """The laws' values, less mean tangents, over the last periods of a march.
+
+    Attributes:
+        values: (values, kept places) at equal times.
+        places: of a period.
+        turned: theta at the first of them, less that at the start of a period [rad].
+        speed, frequency: of the motion that it began from [rad/s].
+    """
+
+    values: np.ndarray
+    places: int
+    turned: float
+    speed: float
+    frequency: float
+
+    def harmonics(self, periods: int) -> np.ndarray:
+        """Coefficients (values, harmonics) over the last periods."""
+        size, skipped = periods * self.places, self.values.shape[1] - periods * self.places
+        found = np.fft.rfft(self.values[:, skipped:], axis=1)[:, : size // 2] / size
+        begun = self.turned / self.speed + 2.0 * np.pi * skipped / (self.places * self.frequency)
+        turning = np.arange(size // 2) * self.frequency / periods
+        return found * np.exp(-1j * turning * begun)
+
+    def change(self, periods: int) -> float:
+        """How far the last period is from the one some periods before, over its alternation."""
+        size = self.values.shape[1]
+        last = self.values[:, size - self.places :]
+        shift = periods * self.places
+        earlier = self.values[:, size - self.places - shift : size - shift]
+        spread = np.linalg.norm(last - last.mean(axis=1, keepdims=True))
+        return float(np.linalg.norm(last - earlier) / spread) if spread else 0.0
+
+    def likely(self, least: float) -> list[int]:
+        """Numbers of periods after which it may repeat, the likeliest first.
+
+        Args:
+            least: change that counts as none.
+        """
+        changes = {times: self.change(times) for times in range(1, _MOST_TIMES + 1)}
+        return sorted(changes, key=lambda times: (changes[times] > least, times))
+
+    @property
+    def least(self) -> float:
+        """The smallest change from one period to a later one."""
+        return min(self.change(times) for times in range(1, _MOST_TIMES + 1))
+
+
 def marched(
-    structure: Structure, motion: Motion, begin: Orbit, periods: int, places: int
-) -> np.ndarray:
-    """Harmonics of the laws' values, less mean tangents, over the last period of a march.
+    structure: Structure, motion: Motion, begin: Orbit, periods: int, places: int, kept: int = 1
+) -> March:
+    """March for a while.
 
     Args:
         structure: the system.
         motion: what is given.
         begin: where it begins.
         periods: its length.
-        places: points in time of the period.
-
-    Returns:
-        (values, places // 2) coefficients.
+        places: points in time of a period.
+        kept: periods that are kept.
 
     Raises:
         CoreStopped: the march fails.
@@ -81,15 +130,14 @@ def marched(
     run.state.q[: own.size] = own
     gap = begin.period / places
     step = gap / np.ceil(gap / _LONGEST)
-    times = structure.late + (np.arange(places) + (periods - 1) * places) * gap
+    times = structure.late + (np.arange(kept * places) + (periods - kept) * places) * gap
     end = structure.late + periods * places * gap
-    found, angle = [], None
+    found: list[np.ndarray] = []
+    angle = 0.0
     for part in run.piece(structure.late, end, step, times):
-        if angle is None:
+        if not found:
             angle = float(part.held[0, 2 * condensed.modes.rates.size])
         inputs = part.held[:, run.state.q.size :: _DEGREE + 1]
         found.append(inputs[:, :values].copy())
-    harmonics = np.fft.rfft(np.concatenate(found), axis=0)[: places // 2].T / places
-    turned = (angle or 0.0) / begin.response.speed  # it does not begin at the angle of a period
-    k = np.arange(places // 2)
-    return harmonics * np.exp(-1j * k * begin.response.frequency * turned)
+    series = np.concatenate(found).T
+    return March(series, places, angle, begin.response.speed, begin.response.frequency)

@@ -80,9 +80,14 @@ def problem_of(system: Condensed, late: float) -> Problem:
         modes.tangent,
         system.directions,
         table.value,
-        table.mean,
+        _means(modes.tangent[table.value], system.directions),
         SystemLaws(system, late),
     )
+
+
+def _means(tangent: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Mean tangents (tangents,) along directions, of which those of one value are orthogonal."""
+    return (tangent * directions).sum(axis=1) / (directions * directions).sum(axis=1)
 
 
 def turn_of(system: Condensed, of_angle: np.ndarray) -> Fraction:

@@ -11,6 +11,8 @@ from herringbone.core.places.files import replacing
 from herringbone.result.tables import pieces_of, write_csv
 
 _R_MIN = 30.0 / math.pi
+_FEW = 10
+"""Meshes of a period whose multipliers take no second."""
 _LINES = 5
 """Largest lines of a group that are told."""
 ORDERS, SUMMARY = "orders.csv", "steady.json"
@@ -35,6 +37,9 @@ def steady_summary(state: SteadyState) -> dict:
         "iterations": state.orbit.iterations,
         "places": state.orbit.places,
         "drift": state.drift,
+        "largest_multiplier": (
+            state.multipliers.largest if state.converged and state.meshes <= _FEW else None
+        ),
         "bends": list(state.bends),
         "levels": {group: state.level(group) for group in state.channels},
         "notes": list(state.notes),
@@ -55,6 +60,10 @@ def steady_text(state: SteadyState) -> list[str]:
     ]
     if state.bends:
         lines.append(f"  laws bend within the period: {', '.join(state.bends)}")
+    if state.converged and state.meshes <= _FEW:
+        largest = state.multipliers.largest
+        word = "stable" if state.stable else "UNSTABLE: a run would leave it"
+        lines.append(f"  {word}: deviations are multiplied by {largest:.4g} in a period")
     if state.structure.problem.free is not None:
         lines.append(
             f"  nothing holds the speed: it would change by {state.drift:.3g} rad/s2, which is left"

@@ -1,12 +1,22 @@
 """Steady states of one system at many operating points."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.marched import marched
+from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.floquet import multipliers
+from herringbone.analysis.steady.guess import (
+    SETTLING,
+    Guess,
+    begun,
+    settling,
+    several,
+    standing,
+)
 from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
@@ -19,12 +29,35 @@ TOLERANCE = 1e-3
 AS_IT_IS = Point()
 _PLACES, _MOST_PLACES = 64, 2048
 """Points in time of a mesh period: at first, and at most."""
-_SLOW, _SLOW_THIN, _SAME = 6, 1e-3, 1e-2
-"""Of a first guess: points in time for each mesh, alternation that is not in use, last change."""
 _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3
+_TRIED, _REPEATS = 2, 0.1
+"""Of a march: how many periods of repetition are tried; a change over the alternation that is none.
+"""
+_STEPS, _NEUTRAL = 256, 1e-3
+"""Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
+
+
+class Found(NamedTuple):
+    """A motion, what is given of it, and its errors."""
+
+    motion: Motion
+    orbit: Orbit
+    errors: Accuracy
+
+    def good(self, tolerance: float) -> bool:
+        """True if it is a motion, with all harmonics that a tolerance needs."""
+        return self.orbit.converged and self.errors.worst <= tolerance
+
+    def grows(self, structure: Structure, times: int) -> bool:
+        """True if small deviations grow; of many meshes that is not asked for."""
+        if structure.meshes > 1:
+            return False
+        steps = max(_STEPS, self.orbit.places // (2 * times)) * times
+        largest = multipliers(structure.problem, self.motion, self.orbit, steps).largest
+        return largest > 1.0 + _NEUTRAL
 
 
 class SteadySolver:
@@ -64,11 +97,10 @@ class SteadySolver:
         Raises:
             ParameterError: the system declares no such set point.
         """
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
-            motion = _motion(structure, point)
-            orbit, errors = self._resolved(structure, motion, near)
-        return SteadyState(structure, point, motion, orbit, errors, self.tolerance)
+            (motion, orbit, errors), notes = self._found(structure, _motion(structure, point), near)
+        return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -78,24 +110,57 @@ class SteadySolver:
             self._values = values
         return self._structure
 
-    def _resolved(
+    def _found(
         self, structure: Structure, motion: Motion, near: SteadyState | None
-    ) -> tuple[Orbit, Accuracy]:
-        """A motion with as many harmonics as the tolerance needs."""
-        meshes, problem = structure.meshes, structure.problem
-        per_mesh = _PLACES
-        if near is not None and near.meshes == meshes:
-            start, known = near.orbit.channels[: problem.values], near.orbit.response.orders
-            per_mesh = near.orbit.places // meshes
-        else:
-            start, known = _begun(structure, motion, per_mesh)
-        thin = _THIN * self.tolerance
+    ) -> tuple[Found, tuple[str, ...]]:
+        """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
+        unstable = None
+        for times, guess in self._guesses(structure, motion, near):
+            found = self._resolved(structure, several(motion, times), times, guess)
+            if found.good(self.tolerance):
+                if not (bending_parts(structure, found.orbit) and found.grows(structure, times)):
+                    return found, _told(times)
+                unstable = unstable or found
+        still = standing(structure, motion)
+        march = settling(structure, motion, still, _PLACES)
+        if march is None:
+            return unstable or found, (*_grows(unstable), "a march from equilibrium fails, too")
+        for times in march.likely(_REPEATS)[:_TRIED]:
+            values = march.harmonics(times)
+            guess = Guess(values, np.arange(values.shape[1]), _PLACES)
+            tried = self._resolved(structure, several(motion, times), times, guess)
+            if tried.good(self.tolerance) and not tried.grows(structure, times):
+                return tried, _told(times)
+        return unstable or found, (
+            *_grows(unstable),
+            f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
+            f"changes by {100.0 * march.least:.2g} % from one period to later ones",
+        )
+
+    @staticmethod
+    def _guesses(
+        structure: Structure, motion: Motion, near: SteadyState | None
+    ) -> Iterator[tuple[int, Guess]]:
+        """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
+        if near is not None and near.meshes % structure.meshes == 0:
+            values = near.orbit.channels[: structure.problem.values]
+            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+            yield near.meshes // structure.meshes, guess
+        yield 1, begun(structure, motion, standing(structure, motion), _PLACES)
+
+    def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
+        """A motion over some periods with as many harmonics as the tolerance needs."""
+        meshes, problem = times * structure.meshes, structure.problem
+        per_mesh, thin = guess.per_mesh, _THIN * self.tolerance
+        start, known = guess.values, guess.orders
         while True:
             period = Period(per_mesh // 4, meshes * per_mesh, meshes, thin)
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
+            if not orbit.converged:
+                return Found(motion, orbit, Accuracy({}, {}, {}))
             errors = accuracy(structure, period, motion, orbit)
-            if not orbit.converged or errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
-                return orbit, errors
+            if errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
+                return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
             if errors.by_thinning:
                 thin *= _THINNER * self.tolerance / errors.worst
@@ -103,23 +168,13 @@ class SteadySolver:
                 per_mesh *= 2
 
 
-def _begun(structure: Structure, motion: Motion, per_mesh: int) -> tuple[np.ndarray, np.ndarray]:
-    """A first guess of the values' harmonics, and their orders."""
-    meshes, problem = structure.meshes, structure.problem
-    still = Balance(problem, Period(0, 1), motion)
-    found = still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
-    if meshes == 1:
-        return found.channels[: problem.values], found.response.orders
-    places = _slow_places(meshes)
-    values = marched(structure, motion, found, 1, places)
-    slow = Balance(problem, Period(0, places, meshes, _SLOW_THIN), motion)
-    found = slow.solve(values, np.arange(values.shape[1]), _SAME)
-    return found.channels[: problem.values], found.response.orders
+def _grows(unstable: Found | None) -> tuple[str, ...]:
+    """What is said of a motion that is not stable."""
+    return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
 
 
-def _slow_places(meshes: int) -> int:
-    """Points in time of a period that meet the mesh at ever new phases."""
-    return 1 << int(np.ceil(np.log2(_SLOW * meshes)))
+def _told(times: int) -> tuple[str, ...]:
+    return (f"subharmonic: it repeats after {times} periods",) if times > 1 else ()
 
 
 def _motion(structure: Structure, point: Point) -> Motion:

@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from threadpoolctl import ThreadpoolController
 
 from herringbone.analysis.steady.accuracy import Accuracy
 from herringbone.analysis.steady.bending import bending_parts
@@ -19,11 +18,11 @@ from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import matches_any
+from herringbone.core.one_thread import one_blas_thread
 
 _R_MIN = 30.0 / np.pi
-_BLAS = ThreadpoolController()
-_STEPS = 32
-"""Of a mesh period, at least, in which deviations are followed."""
+_STEPS, _BENT_STEPS = 32, 256
+"""Of a mesh period, at least, in which deviations are followed; where laws bend."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -73,13 +72,18 @@ class SteadyState(Facts):
     @property
     def meshes(self) -> int:
         """Mesh periods of the first gear pair in the period."""
-        return self.structure.meshes
+        return round(self.motion.turn / self.structure.turn) * self.structure.meshes
 
     @property
     def speed(self) -> float:
         """Mean speed of the first pinion [rad/s]."""
-        turned = 2.0 * np.pi * self.structure.turns_of_pinion / self.period
+        turned = 2.0 * np.pi * self._turns / self.period
         return float(np.copysign(turned, self.orbit.response.speed))
+
+    @property
+    def _turns(self) -> float:
+        """Turns of the first pinion in the period."""
+        return self.structure.turns_of_pinion * self.meshes / self.structure.meshes
 
     @property
     def drift(self) -> float:
@@ -107,8 +111,9 @@ class SteadyState(Facts):
 
         Takes some ten milliseconds for each mesh of the period.
         """
-        steps = max(_STEPS, self.orbit.places // self.meshes // 2) * self.meshes
-        with _BLAS.limit(limits=1, user_api="blas"):
+        per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
+        steps = max(per_mesh, self.orbit.places // self.meshes // 2) * self.meshes
+        with one_blas_thread():
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 
     @property
@@ -119,7 +124,7 @@ class SteadyState(Facts):
     @property
     def orders(self) -> np.ndarray:
         """Periods per turn of the first pinion, of all harmonics."""
-        return self.orbit.response.orders / self.structure.turns_of_pinion
+        return self.orbit.response.orders / self._turns
 
     @property
     def mesh_orders(self) -> np.ndarray:

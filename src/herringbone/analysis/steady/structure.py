@@ -27,6 +27,7 @@ class Structure:
         system: its parts are all components of this package; with start values near steady
             rotation.
         like: of the same structure; what is the same is taken from it.
+        same_tangents: see `Core`.
 
     Attributes:
         core: the system, condensed.
@@ -40,9 +41,11 @@ class Structure:
         StructureError: it cannot be taken apart, or its motion does not repeat.
     """
 
-    def __init__(self, system: System, like: "Structure | None" = None) -> None:
+    def __init__(
+        self, system: System, like: "Structure | None" = None, *, same_tangents: bool = False
+    ) -> None:
         self.system = system
-        self.core: Core = Core(system, like.core if like else None)
+        self.core: Core = Core(system, like.core if like else None, same_tangents=same_tangents)
         condensed, twin = self.core.condensed, self.core.twin
         self.late = max([0.0, *twin.breakpoints(_LATE)])
         self.problem: Problem = problem_of(condensed, self.late)

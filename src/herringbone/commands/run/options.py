@@ -45,7 +45,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     sub.add_argument(
         "--fuse", action="store_true",
-        help="condense all parts into one core, without coupling; the step follows --tolerance",
+        help="condense all own parts into one core, marched by steps that --tolerance chooses, or "
+        "coupled with foreign FMUs",
     )  # fmt: skip
     sub.add_argument(
         "--record", action="append", default=[], metavar="OUTPUTS",

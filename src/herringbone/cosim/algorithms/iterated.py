@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from herringbone.core import ParameterError
-from herringbone.core.part import Part
+from herringbone.core.part import Part, of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
@@ -28,6 +28,9 @@ REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
 SLOW = 0.1
 """Contraction of a correction above which the Jacobian is computed again."""
+SLOW_OF_PARTS = 5e-3
+"""The same where a part stands for several: their contacts are inside of it, and what they make of
+the interface changes when they do, while a step with one more pass costs as much as all of them."""
 SMALLEST = 1e-3
 """Size, in SI units, of a force that has not acted yet, for the differences of a Jacobian."""
 MOST_SWEEPS = 1000
@@ -119,6 +122,7 @@ class PreparedNodes(PreparedRun):
         self.jacobian = InterfaceJacobian(network, self.layout, self.nodes, self._outputs)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
+        self._slow = SLOW_OF_PARTS if any(map(of_parts, network.parts)) else SLOW
         self._next_refresh = 0
         self.jacobians = 0
         self._corrected = False
@@ -278,7 +282,7 @@ class PreparedNodes(PreparedRun):
         while True:
             patient = self.newton and done < self._next_refresh
             until = min(end, self._next_refresh) if patient else end
-            slow = SLOW if self.newton and not patient else np.inf
+            slow = self._slow if self.newton and not patient else np.inf
             status, done, culprit = run_iterated(
                 self.layout,
                 self.nodes,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fmpy.fmi1 import FMICallException
-from fmpy.model_description import ModelDescription
+from fmpy.model_description import ModelDescription, ModelVariable
 
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.part import Addresses, Given, PartVariable, Value
@@ -72,6 +72,9 @@ class FmuPart(ABC):
                 alike.variables if alike else read_variables(self.model)
             )
             self._others = OtherValues(self.model)
+            self._declared: Mapping[str, ModelVariable] = (
+                alike._declared if alike else {v.name: v for v in self.model.modelVariables}
+            )
         except FmuError as error:
             raise FmuError(f"{file}: {error}") from error
         abilities = self.model.coSimulation
@@ -155,7 +158,7 @@ class FmuPart(ABC):
 
     def _refuse_calculated(self, name: str, what: str) -> None:
         """Raises ParameterError: the FMU computes the variable, so that no value can be given."""
-        v = next((v for v in self.model.modelVariables if v.name == name), None)
+        v = self._declared.get(name)
         if v is None or v.causality not in _CALCULATED or v.initial in {"exact", "approx"}:
             return
         if v.initial == "calculated" or v.start is None:

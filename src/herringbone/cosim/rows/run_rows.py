@@ -4,6 +4,7 @@ import numpy as np
 
 from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.declaring.table import KeptRows
+from herringbone.core.part import column
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.divergence import is_sudden
 from herringbone.cosim.layouts.layout import record_names
@@ -41,7 +42,7 @@ class RunRows:
     ) -> None:
         self._parts, self._others = network.parts, others
         named = list(zip(network.parts, record_names(network), strict=True))
-        self.names = tuple(f"{part.name}.{n}" for part, names in named for n in names)
+        self.names = tuple(column(part, n) for part, names in named for n in names)
         self.recorded = [part.variables[n] for part, names in named for n in names]
         columns = len(self.names)
         self.record = prepared.record(grid, columns, streaming and streaming.window(columns))

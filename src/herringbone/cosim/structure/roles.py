@@ -8,7 +8,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import NamedTuple
 
 from herringbone.core import StructureError
-from herringbone.core.part import Part
+from herringbone.core.part import Part, of_parts
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.rates import motion_of_force
 
@@ -36,14 +36,16 @@ def find_roles(connections: Sequence[Connection], parts: Sequence[Part]) -> Role
 
     A circle of parts that pass inputs directly to outputs is cut where they pass forces: such a
     part is a body. A part whose dependencies are not declared counts as an element unless that
-    makes a circle. One that is known to have states is a body, whatever it passes.
+    makes a circle. One that is known to have states is a body, whatever it passes; a part of parts
+    is an element with motion of its own: it takes polynomials of what is stepped before it.
 
     Raises:
         StructureError: a circle in which no part passes forces alone.
     """
     fed = {i: {c.input for c in connections if c.target == i} for i in range(len(parts))}
     passed, undeclared, moving = _passed_inputs(connections, parts, fed)
-    moved = {p for p, inputs in passed.items() if inputs and parts[p].has_states}
+    several = {p for p, part in enumerate(parts) if of_parts(part)}
+    moved = {p for p, inputs in passed.items() if inputs and parts[p].has_states} - several
     elements = {p for p, inputs in passed.items() if inputs} - moved
     feedthrough = {p for p in moved if any(map(motion_of_force, passed[p]))}
     while circle := _circle(elements, passed, connections):
@@ -67,7 +69,7 @@ def find_roles(connections: Sequence[Connection], parts: Sequence[Part]) -> Role
             passed, kind = alone, "an element"
         notes.append(f"{parts[part].name} declares no output dependencies; taken as {kind}")
     order = tuple(_waiting(elements, passed, connections).static_order())
-    mixed = frozenset(moving & elements)
+    mixed = frozenset((moving | several) & elements)
     return Roles(order, mixed, frozenset(feedthrough), frozenset(bodies), tuple(notes))
 
 

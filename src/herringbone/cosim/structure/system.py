@@ -10,7 +10,7 @@ from herringbone.core.names import check_name, shown
 from herringbone.core.places.files import as_texts
 from herringbone.core.places.part_path import PartPath, find_part, split_variable
 from herringbone.core.sensor_spec import SensorSpec
-from herringbone.cosim.structure.sensors import placed, with_value
+from herringbone.cosim.structure.sensors import with_value
 
 Values = Mapping[str, float | str]
 
@@ -70,7 +70,7 @@ class System(Facts):
         notes: lines to read about how the system was read, such as names that were changed.
         gears: gear file by path of a gear pair's part, or of a system around it; "": the only one.
         housings: the same of housings: data, dimensions or FMU.
-        sensors: what is evaluated from the rows of a run, by name; no parts.
+        sensors: what is evaluated from the rows of a run, by name; no parts, but at whole paths.
 
     Raises:
         StructureError: a name is no identifier, or stands twice.
@@ -103,8 +103,6 @@ class System(Facts):
             raise StructureError(
                 f"system '{self.name}': instance name {', '.join(twice)} is used twice; rename one"
             )
-        sensors = placed(self.sensors, self.paths, f"system '{self.name}'") if self.sensors else {}
-        object.__setattr__(self, "sensors", sensors)
 
     def part(self, name: str) -> PartSpec:
         """The part of that path, or the only one whose path ends so.

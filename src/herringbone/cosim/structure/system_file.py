@@ -31,7 +31,7 @@ from herringbone.core.places.files import beside, is_file
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
-from herringbone.cosim.structure.sensors import read_sensors
+from herringbone.cosim.structure.sensors import placed, read_sensors
 from herringbone.cosim.structure.system import PartSpec, System
 
 FILE_NAME = "system.toml"
@@ -211,6 +211,7 @@ def _assemble(
     name = identifier_for(own_name)
     renamed = (f"{file}: the system is called {name} here",) if name != own_name else ()
     sensors = {k: v for inner in nested.values() for k, v in inner.sensors.items()}
+    sensors |= read_sensors(data.get("sensors", {}), file)
     inner_notes = tuple(note for inner in nested.values() for note in inner.notes)
     return System(
         name,
@@ -222,5 +223,5 @@ def _assemble(
         (*inner_notes, *renamed),
         gears,
         housings,
-        {**sensors, **read_sensors(data.get("sensors", {}), file)},
+        placed(sensors, [part.name for part in parts], str(file)),
     )

@@ -50,6 +50,13 @@ def allocating(function: Callable[P, T]) -> Callable[P, T]:
     )  # whoever calls it
 
 
+def finding(function: Callable[P, T]) -> Callable[P, T]:
+    """As `inlined`, for a function that finds arrays at addresses."""
+    return cached(
+        KernelDispatcher(function, {**_OPTIONS, "_nrt": True, "forceinline": True}), function
+    )
+
+
 def rare(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for what seldom happens: its callers call it, and keep their registers."""
     options = {**_OPTIONS, "_nrt": False}

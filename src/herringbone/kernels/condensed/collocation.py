@@ -12,6 +12,9 @@ import numpy as np
 from herringbone.kernels.compiling.jit import inlined
 from herringbone.kernels.condensed.modal import solve
 
+_ROUNDED = 1e-13
+"""Of an input: a residual below is rounding, as of a law that has given nothing but zero so far."""
+
 
 class Table(NamedTuple):
     """Where the laws' values and tangents lie, by value or tangent.
@@ -104,7 +107,7 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
         for i in range(inner):
             scale = max(scale, abs(nodes.f[i, value]))
             to[i] -= own[i]  # last, so that a solution leaves nothing, not even rounding
-            if not abs(to[i]) <= off:
+            if not abs(to[i]) <= max(off, _ROUNDED * abs(own[i])):
                 off = abs(to[i])
         table.scale[value] = scale
         if not off <= largest * scale:

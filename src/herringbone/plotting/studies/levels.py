@@ -16,6 +16,10 @@ _PROMINENCE = 1.15
 """Ratio of a peak's level to the higher one of the valleys beside it, from which it is marked."""
 _MOST_MARKS = 12
 _ORDERS = 6
+_OF_MARKS = 2
+"""Points of a line that is a mark and no curve, at most."""
+_ENTRY, _CHARACTER = 0.2, 0.062
+"""Height of an entry of the legend, and width of a character in it [inch]."""
 
 
 class Band:
@@ -74,7 +78,23 @@ def levels(
         for axes in (left, right):
             axes.set_xlabel(points.label(across))
             _logarithmic(axes)
+    _legend_below(figure, panels[0][0])
     return figure
+
+
+def _legend_below(figure: Figure, axes: Axes) -> None:
+    """One legend of the curves below all panels, which make room for it."""
+    handles, labels = axes.get_legend_handles_labels()
+    if not labels:
+        return
+    width, height = figure.get_size_inches()
+    columns = max(1, min(4, int(width / (0.6 + _CHARACTER * max(map(len, labels))))))
+    room = 0.15 + _ENTRY * -(-len(labels) // columns)
+    pars = figure.subplotpars
+    bottom, top = pars.bottom * height + room, (1.0 - pars.top) * height
+    figure.set_figheight(height + room)
+    figure.subplots_adjust(bottom=bottom / (height + room), top=1.0 - top / (height + room))
+    figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.05, 0.0), ncols=columns)
 
 
 def _checked(points: Points, groups: Sequence[str]) -> Sequence[str]:
@@ -102,8 +122,6 @@ def _rms(
     _, rows = curves[-1]
     mark_peaks(axes, rows[across].to_numpy(float), factor * rows[column].to_numpy(float))
     axes.set_ylabel(f"{group.replace('_', ' ')}, rms [{unit}]")
-    if len(curves) > 1:
-        legend(axes, min(len(curves), 4))
 
 
 def _orders(
@@ -120,7 +138,7 @@ def _orders(
         axes.plot(x, factor * rows[f"{group}.order_{order}"], label=text, color=colour)
     axes.set_ylabel(f"{group.replace('_', ' ')}, amplitude [{unit}]")
     if label:
-        axes.set_title(label, fontsize=8.5)
+        axes.set_title(label, fontsize=8.5, pad=18.0)
     legend(axes, 7)
 
 
@@ -138,12 +156,12 @@ def _shade(axes: Axes, points: Points, group: str, band: Band) -> None:
     factor, _ = points.scale(f"{group}.rms")
     axes.fill_between(band.across, factor * band.low, factor * band.high, color=MARKER_COLOUR,
                       alpha=0.25, linewidth=0.0, label=band.label)  # fmt: skip
-    legend(axes, 3)
 
 
 def _logarithmic(axes: Axes) -> None:
     """A logarithmic ordinate over three decades, if anything is positive."""
-    drawn = [np.asarray(x.get_ydata(), float) for x in axes.lines if x.get_linestyle() != "None"]
+    every = [np.asarray(line.get_ydata(), float) for line in axes.lines]
+    drawn = [y for y in every if y.size > _OF_MARKS]
     values = np.concatenate([*drawn, np.empty(0)])
     positive = values[np.isfinite(values) & (values > 0.0)]
     if positive.size:

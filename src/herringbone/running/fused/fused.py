@@ -4,11 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from herringbone.analysis.accuracy.apart import apart
-from herringbone.analysis.twin.fused.core import Core, Steps, closeness, endings_of
+from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.activity import activity
-from herringbone.core.names import matches_any
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.files import same_folder
 from herringbone.cosim.rows.record import Grid
@@ -18,6 +17,7 @@ from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
+from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
@@ -31,8 +31,6 @@ from herringbone.scenes import Scene
 
 TOLERANCE = 1e-3
 """Error of a run for which nothing else is asked."""
-KIND = "fused"
-"""What stands in place of the kind of FMUs."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ def refuse_strangers(system: System) -> None:
     if system.foreign_parts:
         raise StructureError(
             f"fuse: {', '.join(system.foreign_parts)}: the equations of foreign FMUs are not "
-            "known, so that they cannot be fused; run without fuse"
+            "known, so that they cannot be in the core"
         )
 
 
@@ -83,7 +81,7 @@ def fused(
         output: folder into which rows go while the run goes on; None: they stay in memory.
 
     Raises:
-        StructureError: a part is foreign, or cannot be condensed.
+        StructureError: a part cannot be condensed.
         ParameterError: no step reaches the tolerance, or what is to be recorded is not there.
         HerringboneError: rows cannot be written.
     """
@@ -92,7 +90,7 @@ def fused(
             core = Core(system)
             columns = core.chosen(asked.record)
             trial = _trial(core, asked, scene.t_end)
-        system = _with_channels(system, columns)
+        system = with_channels(system, columns)
         lines = [*asked.notes, *_lines(core, asked, trial)]
         streaming = None
         if output is not None:
@@ -125,15 +123,6 @@ def _grid(scene: Scene) -> Grid:
     return make_grid(scene.t_end, scene.record_step, scene.record_step)
 
 
-def _with_channels(system: System, columns: Sequence[str]) -> System:
-    """The system with the patterns of its channels that match recorded outputs."""
-    found = {
-        group: tuple(p for p in patterns if any(matches_any(endings_of(c), [p]) for c in columns))
-        for group, patterns in system.channels.items()
-    }
-    return replace(system, channels={group: own for group, own in found.items() if own})
-
-
 def verified_by_half(
     result: Result, system: System, scene: Scene, asked: FusedAsked, progress: bool | Progress
 ) -> Result:
@@ -153,7 +142,7 @@ def verified_by_half(
     with same_folder(), one_blas_thread():
         core = Core(system)
         columns = core.chosen(asked.record)
-        system = _with_channels(system, columns)
+        system = with_channels(system, columns)
         recording = _marched(core, steps, columns, system, scene, progress)
     found = apart(result, make_result(system, scene, KIND, KIND, recording, ()))
     how = "by half the step, over the whole run"
@@ -192,7 +181,13 @@ def _verification(trial: Measured) -> Verification | None:
     return Verification(trial.groups, trial.worst, trial.worst_error, half, how)
 
 
-def check_coupling(*, algorithm: object, slow: object, fmu: bool, probe: bool) -> None:
+def check_kind(*, fmu: bool) -> None:
+    """Refuse a kind of FMUs, which fused parts are not; raises ParameterError."""
+    if fmu:
+        raise ParameterError("fuse: fmu: of a coupling of own parts, which are fused; leave it out")
+
+
+def check_coupling(*, algorithm: object, slow: object, probe: bool) -> None:
     """Refuse what is asked of a coupling, which a fused run has not.
 
     Raises:
@@ -201,7 +196,6 @@ def check_coupling(*, algorithm: object, slow: object, fmu: bool, probe: bool) -
     given = {
         "algorithm": algorithm is not None,
         "slow": bool(slow),
-        "fmu": fmu,
         "no_probe": not probe,
     }
     if names := [name for name, is_given in given.items() if is_given]:

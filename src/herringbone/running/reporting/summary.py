@@ -97,9 +97,14 @@ def _energy(found: EnergyReport) -> str:
 def _core(info: RunInfo) -> Iterator[str]:
     """How the core of a fused run was marched."""
     core = info.core or {}
-    yield _line("Algorithm", f"{info.algorithm}: all parts in one core, degree {core['degree']}")
-    step = f"{_time(core['step'])}, record {_time(info.record_step)}"
-    yield _line("Steps", f"at most {step}; {core['steps']} steps, {core['halvings']} halvings")
+    taken = f"{core['steps']} steps, {core['halvings']} halvings"
+    step = f"at most {_time(core['step'])}"
+    if info.all_fused:
+        what = f"{info.algorithm}: all parts in one core, degree {core['degree']}"
+        yield _line("Algorithm", what)
+        yield _line("Steps", f"{step}, record {_time(info.record_step)}; {taken}")
+    else:
+        yield _line("Fused parts", f"one core, degree {core['degree']}, steps {step}; {taken}")
     yield _line("", f"{core['bends']} located bends of laws, {core['evaluations']} evaluations")
 
 
@@ -110,7 +115,7 @@ def _wall(info: RunInfo, reached: float) -> str:
 
 def _cost(result: Result) -> Iterator[str]:
     info, reached = result.info, result.outcome.time
-    if info.core:
+    if info.all_fused:
         yield from _core(info)
         if reached > 0.0:
             yield _wall(info, reached)
@@ -118,6 +123,8 @@ def _cost(result: Result) -> Iterator[str]:
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
     yield _line("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
     yield _line("Steps", f"communication {_steps(info)}, record {_time(info.record_step)}")
+    if info.core:
+        yield from _core(info)
     if micro:
         yield _line("Micro steps", f"at most: {micro}")
     if info.macro_steps and reached > 0.0:

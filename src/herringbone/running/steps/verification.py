@@ -65,6 +65,8 @@ def verified(
         HerringboneError: see `coupled`.
     """
     step = 0.5 * found.recording.step
+    if found.recording.core is not None:
+        asked = replace(asked, core_step=0.5 * found.recording.core.step)
     finer = _with_step(with_half_inner_steps(system), scene, found, asked, step, progress).result
     differences = apart(result, finer, found.exchanged)
     verification = scaled(differences, _LONGER, step, "by half the macro step and inner steps")

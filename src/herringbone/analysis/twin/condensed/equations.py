@@ -21,7 +21,8 @@ _SEED = 17
 class Equations:
     """x' = a x + b u, z = c x + d u and y = e x + g u.
 
-    The channels u are the laws' values, the sources' signals, and a 1.
+    The channels u are the laws' values, the signals, and a 1. Signals are those of sources, then
+    open inputs, which something outside gives.
 
     Attributes:
         a: (states, states).
@@ -31,7 +32,8 @@ class Equations:
         e: (seen, states), of places in the twin's block that are seen.
         g: (seen, channels).
         laws: parts with laws, in the order of their values and arguments.
-        signals: part and index in the twin's block of each source's signal.
+        signals: part and index in the twin's block of each signal.
+        open_inputs: how many of the signals are open inputs.
     """
 
     a: np.ndarray
@@ -42,6 +44,12 @@ class Equations:
     g: np.ndarray
     laws: tuple[int, ...]
     signals: tuple[tuple[int, int], ...]
+    open_inputs: int = 0
+
+    @property
+    def of_sources(self) -> tuple[tuple[int, int], ...]:
+        """Signals of sources."""
+        return self.signals[: len(self.signals) - self.open_inputs]
 
     @property
     def channels(self) -> int:
@@ -66,14 +74,16 @@ def laws_of(instance: Instance) -> Laws | None:
 class _Given:
     """Derivatives and arguments of a twin whose laws' values and sources' signals are given."""
 
-    def __init__(self, twin: Twin, seen: Sequence[int]) -> None:
+    def __init__(self, twin: Twin, seen: Sequence[int], open_inputs: Sequence[int]) -> None:
         self._twin = twin
         self._block, self._seen = twin.block.copy(), list(seen)
         self._first = twin.layout.block_first
         self.laws = {p: found for p, i in enumerate(twin.instances) if (found := laws_of(i))}
         for p, laws in self.laws.items():
             laws.prepare(self._own(p))
-        sources = [p for p in twin.network.sources if not self._states(p)]
+        given = [(int(np.searchsorted(self._first, i, "right")) - 1, i) for i in open_inputs]
+        driven = {p for p, _ in given}
+        sources = [p for p in twin.network.sources if not self._states(p) and p not in driven]
         self._moving = [
             p
             for p in (*twin.network.sources, *twin.network.bodies, *twin.network.elements)
@@ -81,10 +91,11 @@ class _Given:
         ]
         self._fed = {p: [self._places(c) for c in twin.network.inputs(p)] for p in self._moving}
         used = {(c.source, c.output) for c in twin.network.connections if c.source in sources}
-        self.signals = tuple(
+        of_sources = [
             (p, self._first[p] + twin.instances[p].component.declaration.index[name])
             for p, name in sorted(used)
-        )
+        ]
+        self.signals = (*of_sources, *given)
         self.values = sum(len(laws.values) for laws in self.laws.values())
         self.arguments = sum(len(laws.arguments) for laws in self.laws.values())
 
@@ -155,18 +166,19 @@ class _Given:
         return z
 
 
-def take_apart(twin: Twin, seen: Sequence[int] = ()) -> Equations:
+def take_apart(twin: Twin, seen: Sequence[int] = (), open_inputs: Sequence[int] = ()) -> Equations:
     """Matrices of a twin's linear rest, and its laws.
 
     Args:
         twin: the system.
         seen: places in its block; whether they are affine is not checked.
+        open_inputs: places of inputs that become channels.
 
     Raises:
         StructureError: a part is neither linear nor declares its laws, or laws depend on each
             other without delay.
     """
-    given = _Given(twin, seen)
+    given = _Given(twin, seen, open_inputs)
     n, m = twin.state.size, given.values + len(given.signals)
     x0, u0 = np.zeros(n), np.zeros(m)
     still = given(x0, u0)
@@ -182,8 +194,9 @@ def take_apart(twin: Twin, seen: Sequence[int] = ()) -> Equations:
         )
 
     found = Equations(
-        *matrices(0), *matrices(1), *matrices(2), laws=tuple(given.laws), signals=given.signals
-    )
+        *matrices(0), *matrices(1), *matrices(2), laws=tuple(given.laws), signals=given.signals,
+        open_inputs=len(open_inputs),
+    )  # fmt: skip
     _check(twin, given, found)
     return found
 

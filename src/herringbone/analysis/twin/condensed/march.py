@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State
+from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State, Work
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.compiling.jit import allocating, inlined, kernel
@@ -23,7 +23,7 @@ DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
 MOST_ITERATIONS = 8
 STEPS, HALVINGS, EVALUATIONS, BENDS = 0, 1, 2, 3
 """What is counted; bends: shortest steps in which a law bends."""
-BASE, INSIDE, RUNG, LAST, KEPT = 0, 1, 2, 3, 4
+BASE, INSIDE, RUNG, LAST, KEPT, TRIED = 0, 1, 2, 3, 4, 5
 """Places of a state, see `State.place`."""
 _REAL = 8
 
@@ -71,11 +71,14 @@ def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np
         if calls.source.size > 0:
             call_sources(calls, now)
         for k in range(signals):
-            if calls.source.size > 0:
+            if calls.source.size > 0 and calls.signal[k] >= 0:
                 u[first + k * count + i] = calls.blocks[calls.signal[k]]
             else:
-                since, start, slope, bend = state.curve[k]
-                u[first + k * count + i] = start + (now - since) * (slope + (now - since) * bend)
+                curve = state.curve[k]
+                since, value = now - curve[0], curve[curve.size - 1]
+                for j in range(curve.size - 2, 0, -1):
+                    value = curve[j] + since * value
+                u[first + k * count + i] = value
         u[u.size - count + i] = fixed.one
 
 
@@ -255,11 +258,34 @@ def march(
         A status; but after DONE, `state` is at the start of the step. After RUNG_WANTED, go on when
         the rung at which it stands is made.
     """
+    work = Work(
+        np.zeros_like(state.u),
+        np.zeros_like(state.u),
+        np.zeros(fixed.offset.size),
+        np.zeros(fixed.offset.size),
+        np.empty(state.u.size, dtype=np.int64),
+    )
+    return march_in(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)
+
+
+@inlined
+def march_in(
+    calls: Calls,
+    fixed: Fixed,
+    rungs: Rungs,
+    table: Table,
+    nodes: Nodes,
+    room: Room,
+    state: State,
+    samples: Samples,
+    work: Work,
+    t0: float,
+    steps: int,
+) -> int:
+    """As `march`, in a room that is there."""
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
-    u, v = np.zeros_like(state.u), np.zeros_like(state.u)
-    free, rows = np.zeros(fixed.offset.size), np.zeros(fixed.offset.size)
-    chosen = np.empty(v.size, dtype=np.int64)
+    u, v, free, rows, chosen = work
     count, values = len(nodes.e), table.unknown.size
     place = state.place
     while place[BASE] < steps:
@@ -268,7 +294,12 @@ def march(
             return RUNG_WANTED
         t, h = t0 + (place[BASE] * per_step + place[INSIDE]) * shortest, rungs.lengths[rung]
         _signals(calls, fixed, state, t, h, u)
-        _predict(fixed, values, rung, place[LAST], state.u, u)
+        if place[TRIED] == 1:
+            place[TRIED] = 0
+            for value in range(values):
+                u[value * count] = state.u[value * count + count - 1]
+        else:
+            _predict(fixed, values, rung, place[LAST], state.u, u)
         copy(fixed.offset, free)
         add_product(rungs.rows[rung], state.q[: rungs.rows.shape[1]], free)
         given = _inputs(u, count, values, u.size // count, v, chosen)

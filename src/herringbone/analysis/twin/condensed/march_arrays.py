@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.condensed.collocation import Sharp
+from herringbone.kernels.condensed.collocation import Nodes, Room, Sharp, Table
 
 
 class Calls(NamedTuple):
@@ -19,7 +19,7 @@ class Calls(NamedTuple):
         source: (sources,) addresses of functions that write a source's signals, which are called
             at every node; none if all signals are known curves.
         source_block: (sources,) where their blocks begin.
-        signal: (signals,) places of the signals.
+        signal: (signals,) places of the signals; -1 of open inputs, which are always curves.
     """
 
     blocks: np.ndarray
@@ -66,9 +66,10 @@ class State(NamedTuple):
         q: (2 modes + rotations,) real parts of the coordinates, imaginary parts, and angles since
             the start [rad]: a sum of small steps keeps its digits; then zeros, see `Rungs`.
         u: (channels x nodes,) values of the step that was taken last.
-        curve: (signals, 4) since when [s], and coefficients of powers of the time since then.
+        curve: (signals, 6) since when [s], and coefficients of powers of the time since then.
         place: base step, place in it in shortest steps, rung, rung of the last step (-1: none, or
-            the laws bent in it), times that are kept.
+            the laws bent in it), times that are kept, 1 if the laws' inputs in `Work.u` are those
+            of the next step, nearly.
         counted: see `STEPS`.
     """
 
@@ -77,6 +78,27 @@ class State(NamedTuple):
     curve: np.ndarray
     place: np.ndarray
     counted: np.ndarray
+
+
+class Work(NamedTuple):
+    """Room of a march: inputs of a step, twice (as of `State.u`), rows, twice, and places."""
+
+    u: np.ndarray
+    v: np.ndarray
+    free: np.ndarray
+    rows: np.ndarray
+    chosen: np.ndarray
+
+
+class Arrays(NamedTuple):
+    """What a march works on."""
+
+    calls: Calls
+    fixed: Fixed
+    table: Table
+    nodes: Nodes
+    room: Room
+    state: State
 
 
 class Samples(NamedTuple):

@@ -6,6 +6,7 @@ that no digits are lost to revolutions.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,13 +93,24 @@ def _laws(twin: Twin, p: int):  # noqa: ANN202
     return found
 
 
-def make_modes(twin: Twin, equations: Equations) -> Modes:
+def make_modes(
+    twin: Twin,
+    equations: Equations,
+    tangent: np.ndarray | None = None,
+    references: Sequence[int] = (),
+) -> Modes:
     """Modal coordinates of a twin.
+
+    Args:
+        twin: the system.
+        equations: of it.
+        tangent: (law values, arguments), in place of the laws' mean tangents.
+        references: states whose angles are to be those of the rotations, if they can be.
 
     Raises:
         StructureError: it has no modal coordinates, or rotates otherwise than with its angles.
     """
-    tangent = mean_tangent(twin, equations)
+    tangent = mean_tangent(twin, equations) if tangent is None else tangent
     values = len(tangent)
     n, x0 = twin.state.size, twin.state
     a = equations.a + equations.b[:, :values] @ tangent @ equations.c
@@ -107,7 +119,7 @@ def make_modes(twin: Twin, equations: Equations) -> Modes:
     moving = _moving(a, b)
     constant = np.where(moving, 0.0, x0)
     b[:, -1] += a @ constant
-    rigid, references = _rotations(twin, a)
+    rigid, references = _rotations(twin, a, references)
     inside = np.array([i for i in range(n) if moving[i] and i not in references], dtype=int)
     rest = a - rigid @ a[references]
     driven = (b - rigid @ b[references])[inside]
@@ -150,7 +162,9 @@ def _moving(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         moving = now
 
 
-def _rotations(twin: Twin, a: np.ndarray) -> tuple[np.ndarray, list[int]]:
+def _rotations(
+    twin: Twin, a: np.ndarray, wanted: Sequence[int]
+) -> tuple[np.ndarray, Sequence[int]]:
     """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references."""
     turning = [
         first + i
@@ -164,8 +178,10 @@ def _rotations(twin: Twin, a: np.ndarray) -> tuple[np.ndarray, list[int]]:
     free = rows[sizes <= _RIGID * max(sizes[0], 1.0)].T
     if not free.size:
         return np.zeros((len(a), 0)), []
-    _, _, order = qr(free.T, pivoting=True)
-    chosen = order[: free.shape[1]]
+    chosen = [turning.index(i) for i in wanted if i in turning]
+    if len(chosen) != free.shape[1] or np.linalg.matrix_rank(free[chosen]) < len(chosen):
+        _, _, order = qr(free.T, pivoting=True)
+        chosen = order[: free.shape[1]]
     rigid = np.zeros((len(a), len(chosen)))
     rigid[turning] = free @ np.linalg.inv(free[chosen])
     return rigid, [turning[i] for i in chosen]

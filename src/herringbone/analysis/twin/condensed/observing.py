@@ -1,12 +1,48 @@
 """Outputs that are not affine, by their own parts' kernels, compiled."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from herringbone.cosim.loops.calls import c_call
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
 
 _REAL = 8
 _call_outputs = c_call("address", "real")
+
+
+class Shown(NamedTuple):
+    """How outputs follow from affine rows.
+
+    Attributes:
+        still: (rows,) what is added to them: first of affine outputs, then of targets.
+        here: places of the affine ones among the outputs.
+        there: of the others.
+        addresses, first, blocks, targets, read: see `call_parts`.
+    """
+
+    still: np.ndarray
+    here: np.ndarray
+    there: np.ndarray
+    addresses: np.ndarray
+    first: np.ndarray
+    blocks: np.ndarray
+    targets: np.ndarray
+    read: np.ndarray
+
+
+@inlined
+def show(shown: Shown, t: float, rows: np.ndarray, values: np.ndarray) -> None:
+    """Write the outputs at a time [s] from their rows."""
+    count = shown.here.size
+    for k in range(count):
+        values[shown.here[k]] = rows[k]
+    for k in range(shown.targets.size):
+        shown.blocks[shown.targets[k]] = rows[count + k]
+    for p in range(shown.addresses.size):
+        _call_outputs(shown.addresses[p], (shown.blocks.ctypes.data + _REAL * shown.first[p], t))
+    for k in range(shown.read.size):
+        values[shown.there[k]] = shown.blocks[shown.read[k]]
 
 
 @kernel

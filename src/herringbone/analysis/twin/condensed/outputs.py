@@ -12,6 +12,7 @@ import numpy as np
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.condensed.modes import Modes
+from herringbone.analysis.twin.condensed.observing import Shown
 from herringbone.analysis.twin.condensed.rungs import coefficients, padded, parts, powers, twice
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
@@ -74,6 +75,15 @@ class Outputs:
         self._wanted = Wanted(system, affine, columns)
         self._rows = _Rows(system.modes, self._wanted.rows, degree)
 
+    @property
+    def shown(self) -> Shown:
+        """How they follow from `rows_at`; raises StructureError, see `Wanted.shown`."""
+        return self._wanted.shown
+
+    def rows_at(self, length: float, share: float) -> np.ndarray:
+        """Rows (held, rows) over what `Samples` hold, at a share of a step of a length [s]."""
+        return np.ascontiguousarray(self._rows.at(length, share).T)
+
     def values(self, run: Solution, samples: Samples) -> np.ndarray:
         """Values (times, columns) at the times of samples of a solution."""
         found = self._rows.values(run, samples)
@@ -125,7 +135,7 @@ class _Rows:
         """Rows (held, rows) at a share, in units of the grid, of a step [s]."""
         key = (length if share else 0.0, share)
         if key not in self._kept:
-            self._kept[key] = np.asfortranarray(self._at(length, _GRID * share).T)
+            self._kept[key] = np.asfortranarray(self.at(length, _GRID * share).T)
         return self._kept[key]
 
     def _product(self, held: np.ndarray, rows: np.ndarray, *, at_start: bool) -> np.ndarray:
@@ -145,7 +155,7 @@ class _Rows:
         together = np.hstack([parts(self._modal.T).T, self._turned, self._channels])
         return np.hstack([q, now]) @ together.T + self._still
 
-    def _at(self, length: float, c: float) -> np.ndarray:
+    def at(self, length: float, c: float) -> np.ndarray:
         """Rows (rows, held) at a share of a step."""
         modes, degree = self._modes, self._degree
         fit, t = coefficients(degree), c * length

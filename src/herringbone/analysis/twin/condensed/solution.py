@@ -13,7 +13,7 @@ from herringbone.analysis.twin.condensed.march import (
     begin,
     march,
 )
-from herringbone.analysis.twin.condensed.march_arrays import Fixed, Samples, State
+from herringbone.analysis.twin.condensed.march_arrays import Arrays, Fixed, Samples, State
 from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
@@ -28,6 +28,7 @@ from herringbone.analysis.twin.condensed.rungs import (
 )
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.variable import NODES
 from herringbone.kernels.condensed.collocation import Nodes, Sharp, make_room
 
 HALVINGS = 7
@@ -103,12 +104,19 @@ class Solution:
         self.state = State(
             _filled(np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)])),
             np.zeros(channels * (degree + 1)),
-            np.zeros((len(system.equations.signals), 4)),
-            np.array([0, 0, 0, -1, 0]),
+            np.zeros((len(system.equations.signals), 2 + NODES)),
+            np.array([0, 0, 0, -1, 0, 0]),
             np.zeros(4, dtype=np.int64),
         )
         self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
         self._rungs: dict[float, Rungs] = {}
+
+    @property
+    def arrays(self) -> Arrays:
+        """All that a march works on but matrices of steps and samples."""
+        return Arrays(
+            self._calls, self._fixed, self._table, self._nodes, self._corrections, self.state
+        )
 
     def saved(self) -> dict[str, np.ndarray]:
         """What is needed to go on with the same bits; copies."""
@@ -126,7 +134,7 @@ class Solution:
 
     def enter(self, t0: float, t1: float) -> None:
         """Begin a piece [s]: what came before says nothing about the laws' inputs."""
-        self.state.place[:] = 0, 0, 0, -1, 0
+        self.state.place[:] = 0, 0, 0, -1, 0, 0
         self._find_curves(t0, t1)
         self._begin(t0)
 
@@ -173,10 +181,10 @@ class Solution:
         if t1 <= t0:
             samples.held[:] = np.concatenate([self.state.q, self._ends])
         else:
-            rungs = self._rungs_of(h)
+            rungs = self.rungs_of(h)
             status = RUNG_WANTED
             while status == RUNG_WANTED:
-                self._make(rungs, int(self.state.place[RUNG]))
+                self.make(rungs, int(self.state.place[RUNG]))
                 status = march(
                     self._calls, self._fixed, rungs, self._table, self._nodes, self._corrections,
                     self.state, samples, t0, round((t1 - t0) / h),
@@ -185,13 +193,15 @@ class Solution:
                 self._fail(status, t0, rungs)
         return Samples(*(array[:count] for array in samples))
 
-    def _rungs_of(self, h: float) -> Rungs:
+    def rungs_of(self, h: float) -> Rungs:
+        """Matrices of steps of a length [s], and of shorter ones; see `make`."""
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
             self._rungs[h] = empty_rungs(self._modes, lengths, self._shape)
         return self._rungs[h]
 
-    def _make(self, rungs: Rungs, rung: int) -> None:
+    def make(self, rungs: Rungs, rung: int) -> None:
+        """Fill in the matrices of a rung."""
         if not rungs.made[rung]:
             make_rung(rungs, rung, self._modes, self._shape)
 

@@ -60,23 +60,29 @@ class Condensed:
     def curved(self) -> bool:
         """True if all signals of sources are known curves between breakpoints."""
         twin = self.twin
-        return all(twin.instances[p].component.curve is not None for p, _ in self.equations.signals)
+        known = self.equations.of_sources
+        return all(twin.instances[p].component.curve is not None for p, _ in known)
 
     def signals(self, t: float) -> np.ndarray:
-        """Signals of the sources (signals,) at a time [s]."""
+        """Signals (signals,) at a time [s]; of open inputs the values that the twin has."""
         blocks, first = self.twin.block.copy(), self.twin.layout.block_first
-        for p in {p for p, _ in self.equations.signals}:
+        for p in {p for p, _ in self.equations.of_sources}:
             own = blocks[first[p] : first[p + 1]]
             self.twin.instances[p].component.kernels.out(own, t)
         return blocks[[place for _, place in self.equations.signals]]
 
     def calls(self) -> Calls:
-        """Addresses, and fresh blocks for them to work on."""
+        """Addresses, and fresh blocks for them to work on.
+
+        Where inputs are open, sources are called at every node: steps know no breakpoints then.
+        """
         twin, first = self.twin, self.twin.layout.block_first
         blocks = twin.block.copy()
         for p, (_, laws) in zip(self.equations.laws, self._parts(), strict=True):
             laws.prepare(blocks[first[p] : first[p + 1]])
-        called = () if self.curved else self.equations.signals
+        equations = self.equations
+        curved = self.curved and not equations.open_inputs
+        called = () if curved else equations.of_sources
         sources = sorted({p for p, _ in called})
         parts = list(self._parts())
 
@@ -100,7 +106,7 @@ class Condensed:
             offsets(laws.kinks for _, laws in parts),
             integers(signals_address(twin.instances[p].component.name) for p in sources),
             integers(first[p] for p in sources),
-            integers(place for _, place in self.equations.signals),
+            integers([place for _, place in equations.of_sources] + [-1] * equations.open_inputs),
         )
 
     def table(self, calls: Calls) -> Table:

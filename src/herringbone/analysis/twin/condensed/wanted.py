@@ -7,10 +7,11 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations
 from herringbone.analysis.twin.condensed.modes import Modes
-from herringbone.analysis.twin.condensed.observing import call_parts
+from herringbone.analysis.twin.condensed.observing import Shown, call_parts
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import signals_address
+from herringbone.core import StructureError
 
 _SAME = 1e-9
 """Of the terms that are added: a difference below is rounding."""
@@ -105,6 +106,24 @@ class Wanted:
         self._first = _integers(first[p] for p in own)
         self._targets = _integers(targets)
         self._read = _integers(wanted[k] for k in self.there)
+
+    @property
+    def shown(self) -> Shown:
+        """How columns follow from rows, for compiled functions.
+
+        Raises:
+            StructureError: a part's inputs are not affine.
+        """
+        if self.whole:
+            names = ", ".join(self.columns[k] for k in self.there)
+            raise StructureError(
+                f"{self._system.twin.system.name}: inputs of the parts of {names} are not linear, "
+                "so that they cannot be shown from inside of a coupling; run without fuse"
+            )
+        return Shown(
+            self.rows.still, self.here, self.there, self._addresses, self._first, self._blocks,
+            self._targets, self._read,
+        )  # fmt: skip
 
     def computed(self, times: np.ndarray, given: np.ndarray) -> np.ndarray:
         """The columns that are not affine (times, n), from what their parts are given.

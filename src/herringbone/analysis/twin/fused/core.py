@@ -1,6 +1,6 @@
 """A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core import StructureError
+from herringbone.core import StructureError, Variable
 from herringbone.core.names import matches_any
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
@@ -56,6 +56,8 @@ class Core:
     Args:
         system: its parts are all components of this package.
         like: of the same structure; what is the same is taken from it.
+        same_tangents: take its mean tangents, too, so that harmonics of both can be compared.
+        open_inputs: `instance.variable` of inputs that something outside gives.
 
     Attributes:
         twin: the system as one right-hand side.
@@ -69,7 +71,14 @@ class Core:
         ParameterError, ResourceError: bad values.
     """
 
-    def __init__(self, system: System, like: "Core | None" = None) -> None:
+    def __init__(
+        self,
+        system: System,
+        like: "Core | None" = None,
+        *,
+        same_tangents: bool = False,
+        open_inputs: Sequence[str] = (),
+    ) -> None:
         self.twin = twin = Twin(system)
         for instance in twin.instances:
             if instance.component.samples:
@@ -77,7 +86,9 @@ class Core:
                     f"{instance.name}: {instance.component.name} takes samples, so that it cannot "
                     "be fused; run without fuse"
                 )
-        self.condensed: Condensed = _condensed(twin, like.condensed if like else None)
+        places = [twin.index(name) for name in open_inputs]
+        known = like.condensed if like else None
+        self.condensed: Condensed = _condensed(twin, known, places, same_tangents=same_tangents)
         same = like is not None and self.condensed.modes.rates is like.condensed.modes.rates
         self.affine: np.ndarray = like.affine if like and same else affine_places(self.condensed)
         self.names = outputs_of_kernels(twin)
@@ -86,20 +97,30 @@ class Core:
         ]
         self.missing = tuple(name for name in declared if name not in set(self.names))
 
-    def chosen(self, patterns: Sequence[str]) -> tuple[str, ...]:
+    def chosen(
+        self,
+        patterns: Sequence[str],
+        channels: Mapping[str, Sequence[str]] | None = None,
+        others: Sequence[str] = (),
+    ) -> tuple[str, ...]:
         """Outputs that match any of the patterns or are in a group of channels; all without.
+
+        Args:
+            patterns: of outputs, or names of groups.
+            channels: groups of patterns; those of the system if not given.
+            others: outputs of other parts, which patterns may match as well.
 
         Raises:
             StructureError: a pattern matches nothing.
         """
         if not patterns:
             return self.names
-        channels = self.twin.system.channels
+        channels = self.twin.system.channels if channels is None else channels
         found: set[str] = set()
         for pattern in patterns:
             wanted = channels.get(pattern, [pattern])
             own = {name for name in self.names if matches_any(endings_of(name), wanted)}
-            if not own:
+            if not own and not any(matches_any(endings_of(name), wanted) for name in others):
                 groups = ", ".join(channels) or "none"
                 raise StructureError(
                     f"record: no output matches '{pattern}'; groups of channels: {groups}"
@@ -127,9 +148,13 @@ class Core:
 
     def unit(self, name: str) -> str:
         """Unit of an output, "" if it has none."""
+        return self.declared(name).unit
+
+    def declared(self, name: str) -> Variable:
+        """The variable that `instance.variable` names."""
         part, variable = self.twin.system.split(name)
         instance = next(i for i in self.twin.instances if i.name == part)
-        return instance.component.declaration.variable(variable).unit
+        return instance.component.declaration.variable(variable)
 
     def solution(self, steps: Steps) -> Solution:
         """A march from the start values on."""
@@ -146,11 +171,16 @@ def endings_of(name: str) -> tuple[str, ...]:
     return tuple(".".join(words[k:]) for k in range(len(words) - 1))
 
 
-def _condensed(twin: Twin, like: Condensed | None) -> Condensed:
-    equations = take_apart(twin, places_seen(twin))
+def _condensed(
+    twin: Twin, like: Condensed | None, open_inputs: Sequence[int], *, same_tangents: bool
+) -> Condensed:
+    equations = take_apart(twin, places_seen(twin), open_inputs)
     modes = renewed(twin, equations, like.equations, like.modes) if like else None
     with one_blas_thread():
-        found = Condensed(twin, equations, modes or make_modes(twin, equations))
+        tangent = like.modes.tangent if like and same_tangents else None
+        references = like.modes.references if like else ()
+        modes = modes or make_modes(twin, equations, tangent, references)
+        found = Condensed(twin, equations, modes)
     if not np.isfinite(found.modes.start).all():
         raise StructureError(f"{twin.system.name}: its start values are not finite")
     return found

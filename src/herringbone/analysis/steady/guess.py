@@ -1,0 +1,68 @@
+"""First guesses of a periodic motion: equilibrium, slow motion, and what a march comes to."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.marched import March, marched
+from herringbone.analysis.steady.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.structure import Structure
+from herringbone.core import HerringboneError
+
+_SLOW, _THIN, _SAME = 6, 1e-3, 1e-2
+"""Of slow motion: points in time for each mesh, alternation that is not in use, last change."""
+SETTLING = 0.3
+"""Length of a march that is to settle [s]; at least some periods."""
+_FEWEST = 8
+
+
+class Guess(NamedTuple):
+    """Where an iteration begins.
+
+    Attributes:
+        values: (values, harmonics) of the laws, less mean tangents.
+        orders: (harmonics,) of the period.
+        per_mesh: points in time of a mesh period.
+    """
+
+    values: np.ndarray
+    orders: np.ndarray
+    per_mesh: int
+
+
+def several(motion: Motion, times: int) -> Motion:
+    """The same motion, repeating after some periods."""
+    return motion._replace(turn=times * motion.turn, frequency=motion.frequency / times)
+
+
+def standing(structure: Structure, motion: Motion) -> Orbit:
+    """Equilibrium at the angle of the start."""
+    still = Balance(structure.problem, Period(0, 1), motion)
+    return still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
+
+
+def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> Guess:
+    """Equilibrium; of a period of many meshes the slow motion of their run-outs.
+
+    That is what a march over one period gives, smoothed: from equilibrium at one angle the
+    run-outs would open the teeth, unless their shaft follows them.
+    """
+    values, meshes = structure.problem.values, structure.meshes
+    if meshes == 1:
+        return Guess(still.channels[:values], still.response.orders, per_mesh)
+    places = 1 << int(np.ceil(np.log2(_SLOW * meshes)))  # they meet the mesh at ever new phases
+    rough = marched(structure, motion, still, 1, places).harmonics(1)
+    slow = Balance(structure.problem, Period(0, places, meshes, _THIN), motion)
+    found = slow.solve(rough, np.arange(rough.shape[1]), _SAME)
+    return Guess(found.channels[:values], found.response.orders, per_mesh)
+
+
+def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:
+    """The last periods of a march from equilibrium; None if it fails."""
+    periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
+    places = structure.meshes * per_mesh
+    try:
+        return marched(structure, motion, still, periods, places, kept=_FEWEST)
+    except HerringboneError:
+        return None

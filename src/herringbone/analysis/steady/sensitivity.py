@@ -1,0 +1,143 @@
+"""What a level depends on: its derivatives over parameters, by one adjoint solve.
+
+With the balance F(r, p) = 0, its Jacobian J and a level l(r, p),
+
+    dl/dp = dl/dp|r - s . dF/dp|r,    J^T s = dl/dr
+
+so that each parameter costs no more than evaluations at fixed harmonics r. These are differences
+over small steps of the parameter.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.correction import Bent, jacobian, packed, sloped
+from herringbone.analysis.steady.orbit import Period
+from herringbone.analysis.steady.response import Rows
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.steady.structure import Structure
+from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
+
+_STEP = 1e-3
+"""Of a parameter, over its value."""
+
+
+class Sensitivity(NamedTuple):
+    """How a level depends on a parameter.
+
+    Attributes:
+        value: of the parameter.
+        derivative: of the level over it.
+        relative: change of the level over that of the parameter, both over their sizes: -1 where
+            the level goes with its inverse.
+    """
+
+    value: float
+    derivative: float
+    relative: float
+
+
+def sensitivities(
+    state: SteadyState, level: str, parameters: Sequence[str]
+) -> dict[str, Sensitivity]:
+    """Derivatives of a level over parameters that are not zero.
+
+    Args:
+        state: a periodic motion of one mesh.
+        level: column or group of channels, of outputs that are affine, see `SteadyState.level`.
+        parameters: `instance.variable`.
+
+    Raises:
+        ParameterError: the period has several meshes; a parameter is zero.
+    """
+    if state.meshes != 1:
+        raise ParameterError(
+            f"sensitivities are of a period of one mesh, this one has {state.meshes}; switch "
+            "run-outs and deviations of teeth off"
+        )
+    columns = state.chosen(level)
+    with one_blas_thread():
+        size, found, adjoint = _adjoint(state, columns)
+        return {name: _of(state, columns, size, found, adjoint, name) for name in parameters}
+
+
+def _of(
+    state: SteadyState,
+    columns: Sequence[str],
+    size: float,
+    found: Bent,
+    adjoint: np.ndarray,
+    name: str,
+) -> Sensitivity:
+    """Of one parameter."""
+    system = state.structure.system
+    value = value_at(system, name)
+    if value == 0.0:
+        raise ParameterError(f"{name} = 0: a sensitivity is of a parameter that is not zero")
+    sides = []
+    for sign in (1.0, -1.0):
+        moved = system.with_values({name: value * (1.0 + sign * _STEP)})
+        structure = Structure(moved, state.structure, same_tangents=True)
+        sides.append(_fixed(state, structure, columns, found, adjoint))
+    derivative = (sides[0] - sides[1]) / (2.0 * _STEP * value)
+    return Sensitivity(value, derivative, derivative * value / size)
+
+
+def _fixed(
+    state: SteadyState,
+    structure: Structure,
+    columns: Sequence[str],
+    found: Bent,
+    adjoint: np.ndarray,
+) -> float:
+    """The level at fixed harmonics, and the adjoint's product with what they lack then."""
+    balance = Balance(structure.problem, _period(state), state.motion)
+    orbit, off = balance.lacking(state.orbit.channels)
+    values = orbit.response.outputs(_rows(structure, columns), orbit.q, orbit.channels)
+    return _level(values) + float(adjoint @ packed(off[found.unknown, : _order(state) + 1]))
+
+
+def _adjoint(state: SteadyState, columns: Sequence[str]) -> tuple[float, Bent, np.ndarray]:
+    """The level, what is unknown, and the solution of the adjoint equations."""
+    structure, orbit = state.structure, state.orbit
+    rows, response, order = _rows(structure, columns), orbit.response, _order(state)
+    values = response.outputs(rows, orbit.q, orbit.channels)
+    size, count = _level(values), order + 1
+    found = sloped(structure.problem, orbit.samples, every=True)
+    gains = response.gain(rows.modal, rows.of_angle, found.unknown, count)
+    gains += rows.of_channels[:, found.unknown, None]
+    conjugate = values[:, :count].conj()
+    conjugate[:, 0] = 0.0
+    slope = np.einsum("ck,cuk->uk", conjugate, gains) * 2.0 / (len(columns) * size)
+    matrix = jacobian(response, found, order)
+    return size, found, np.linalg.solve(matrix.T, packed(slope.conj()))
+
+
+def _order(state: SteadyState) -> int:
+    """The highest harmonic whose tangents the places tell apart."""
+    return state.orbit.response.orders.size // 2
+
+
+def _period(state: SteadyState) -> Period:
+    return Period(_order(state), state.orbit.places)
+
+
+def _rows(structure: Structure, columns: Sequence[str]) -> Rows:
+    wanted = structure.wanted(columns)
+    if wanted.there.size:
+        names = ", ".join(columns[k] for k in wanted.there)
+        raise ParameterError(
+            f"{names}: a product of others; ask for sensitivities of other outputs"
+        )
+    modal, turned, channels, _ = wanted.rows
+    of_angle = turned[:, 0] if turned.shape[1] else np.zeros(len(turned))
+    return Rows(modal, of_angle, channels)
+
+
+def _level(values: np.ndarray) -> float:
+    return float(np.sqrt(2.0 * np.mean(np.sum(np.abs(values[:, 1:]) ** 2, axis=1))))

@@ -1,0 +1,48 @@
+"""The command `sweep`: what it takes, refuses, writes and says."""
+
+import json
+
+import pandas as pd
+import pytest
+
+from herringbone.commands.main import BAD_INPUT, main
+
+GEARBOX = ["sweep", "gearbox", "--speed", "900:1000:2", "--torque", "150"]
+
+
+def test_a_table_in_the_units_that_were_asked_for(tmp_path, capsys):
+    folder = tmp_path / "out"
+    varied = ["--set", "gear_mesh.symmetry_deviation=0,1e-6"]
+    assert main([*GEARBOX, *varied, "-o", str(folder), "--parquet", "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["outcomes"] == {"steady": 4}
+    assert "4 points in 2 chains" in said.err
+    table = pd.read_csv(folder / "table.csv")
+    assert table["speed"].tolist() == [900.0, 1000.0] * 2
+    assert table["gear_mesh.symmetry_deviation"].tolist() == [0.0, 0.0, 1e-6, 1e-6]
+    units = pd.read_csv(folder / "units.csv").set_index("column")["unit"]
+    assert (units["speed"], units["gear_mesh.symmetry_deviation"]) == ("r/min", "m")
+    parquet = pd.read_parquet(folder / "table.parquet")
+    assert parquet["bearing_force.rms"].tolist() == table["bearing_force.rms"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["sweep", "e_axle", "--speed", "1000"], "no part of e_axle declares a speed set point"),
+        (["sweep", "gearbox"], "at least one parameter"),
+        (["sweep", "gearbox", "--speed", "1:2"], "START:STOP:COUNT"),
+        (["sweep", "gearbox", "--set", "gear_mesh.nothing=1,2"], "no variable 'nothing'"),
+        ([*GEARBOX, "--t-end", "0.1"], "--transient"),
+        ([*GEARBOX, "--algorithm", "li"], "--transient"),
+        ([*GEARBOX, "--series"], "--transient"),
+        ([*GEARBOX, "--study", "absent.toml"], "drop speed, torque"),
+        ([*GEARBOX, "--workers", "0"], "workers = 0"),
+        (["sweep", "test_rig", "--scene", "runup", "--speed", "500"], "cycle"),
+    ],
+)
+def test_wrong_input_is_one_line(tmp_path, capsys, arguments, said):
+    assert main([*arguments, "-o", str(tmp_path / "out")]) == BAD_INPUT
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+    assert not (tmp_path / "out").exists()
