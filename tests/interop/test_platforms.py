@@ -27,7 +27,6 @@ STEP, COUNT, EVERY = 2e-6, 100_000, 1000
 MASTER = Path(__file__).with_name("jacobi.c")
 AARCH64_LIBC = Path("/usr/aarch64-linux-gnu")
 
-
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(
