@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.continuation import Branch, BranchPoint
-from herringbone.analysis.steady.floquet import multipliers
-from herringbone.analysis.steady.orbit import Motion, Period
-from herringbone.analysis.steady.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.continuation import Branch, BranchPoint
+from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Period
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
 
 NOTHING = np.zeros((1, 1), dtype=complex)
 PERIOD = Period(40, 1024)

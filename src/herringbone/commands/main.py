@@ -12,15 +12,12 @@ from typing import Any, NoReturn
 import herringbone
 from herringbone.commands import bench as bench_command
 from herringbone.commands import build as build_command
-from herringbone.commands import check as check_command
 from herringbone.commands import compare as compare_command
 from herringbone.commands import export as export_command
-from herringbone.commands import modes as modes_command
 from herringbone.commands import plot as plot_command
 from herringbone.commands import stability as stability_command
-from herringbone.commands import steady as steady_command
-from herringbone.commands import sweep as sweep_command
 from herringbone.commands import template as template_command
+from herringbone.commands.checking import check as check_command
 from herringbone.commands.gear import command as gear_command
 from herringbone.commands.housing import command as housing_command
 from herringbone.commands.options import (
@@ -37,6 +34,9 @@ from herringbone.commands.options import (
 from herringbone.commands.output import as_command, check_writable, say, show
 from herringbone.commands.run import command as run_command
 from herringbone.commands.run import options as run_options
+from herringbone.commands.studies import modes as modes_command
+from herringbone.commands.studies import steady as steady_command
+from herringbone.commands.studies import sweep as sweep_command
 from herringbone.core import (
     EXIT_CODES,
     HerringboneError,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from herringbone.commands import flange
+from herringbone.commands.checking import flange
 from herringbone.commands.options import files_of_parts, replacements
 from herringbone.commands.output import check_writable, say
 from herringbone.core import FmuError, ParameterError

@@ -8,8 +8,8 @@ import pytest
 import herringbone as hb
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.plotting.campbell import campbell
-from herringbone.plotting.mode_shapes import animate_mode, mode_shapes
+from herringbone.plotting.modes.campbell import campbell
+from herringbone.plotting.modes.mode_shapes import animate_mode, mode_shapes
 
 TWO = """
 connections = [["one.flange_b", "shaft.flange_a"], ["other.flange_a", "shaft.flange_b"]]

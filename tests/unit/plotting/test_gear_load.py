@@ -11,7 +11,7 @@ from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Conditions, loaded_figures
 from herringbone.gears.load.loaded_pair import Symmetry
 from herringbone.gears.stiffness.slices import SliceMesh
-from herringbone.plotting.gear_load import gear_load_picture
+from herringbone.plotting.gears.gear_load import gear_load_picture
 
 
 def draw(data: dict, **conditions: object) -> tuple:

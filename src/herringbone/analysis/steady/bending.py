@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from herringbone.analysis.steady.orbit import Orbit
+from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
 
 

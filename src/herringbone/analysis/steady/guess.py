@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.marched import March, marched
-from herringbone.analysis.steady.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 

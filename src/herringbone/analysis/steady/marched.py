@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.orbit import Motion, Orbit
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Calls

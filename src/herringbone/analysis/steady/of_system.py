@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from herringbone.analysis.steady.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
 from herringbone.analysis.twin.condensed.along import laws_along
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.system import Condensed

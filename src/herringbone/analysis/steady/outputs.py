@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.fourier import in_frequency, in_time
-from herringbone.analysis.steady.orbit import Orbit
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time
+from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
 
 

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.anatomy import value_at
-from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.correction import Bent, jacobian, packed, sloped
-from herringbone.analysis.steady.orbit import Period
-from herringbone.analysis.steady.response import Rows
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.correction import Bent, jacobian, packed, sloped
+from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError

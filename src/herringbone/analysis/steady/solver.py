@@ -5,10 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.accuracy import Accuracy, accuracy
-from herringbone.analysis.steady.balance import Balance
 from herringbone.analysis.steady.bending import bending_parts
-from herringbone.analysis.steady.floquet import multipliers
 from herringbone.analysis.steady.guess import (
     SETTLING,
     Guess,
@@ -17,7 +14,10 @@ from herringbone.analysis.steady.guess import (
     several,
     standing,
 )
-from herringbone.analysis.steady.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from herringbone.analysis.steady.accuracy import Accuracy
 from herringbone.analysis.steady.bending import bending_parts
-from herringbone.analysis.steady.floquet import Multipliers, multipliers
-from herringbone.analysis.steady.orbit import Motion, Orbit
+from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
+from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure

@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
+from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import problem_of, turn_of
-from herringbone.analysis.steady.problem import Problem
-from herringbone.analysis.steady.response import Rows
 from herringbone.analysis.steady.set_points import SetPoints
 from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core

@@ -73,8 +73,8 @@ def gear(
 
 def _write(stiffness: MeshStiffness, loaded: Loaded, folder: Path, name: str) -> list[Path]:
     """Write tables and pictures."""
-    from herringbone.plotting.gear_load import write_gear_load_picture  # noqa: PLC0415 (lazy)
-    from herringbone.plotting.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
+    from herringbone.plotting.gears.gear_load import write_gear_load_picture  # noqa: PLC0415 (lazy)
+    from herringbone.plotting.gears.gear_pair import write_gear_pair_picture  # noqa: PLC0415 (lazy)
 
     texts = {TABLE: table_text(stiffness), FLANKS: flank_text(stiffness.pair, loaded.flanks)}
     try:

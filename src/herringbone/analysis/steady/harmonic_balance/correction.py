@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.fourier import in_frequency
-from herringbone.analysis.steady.problem import Problem, Samples
-from herringbone.analysis.steady.response import Response
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.response import Response
 from herringbone.kernels.balance.jacobian import fill_jacobian
 
 _STEP, _LEAST = 1e-5, 1e-10

@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.correction import slopes
-from herringbone.analysis.steady.orbit import Motion, Orbit
-from herringbone.analysis.steady.problem import Problem
+from herringbone.analysis.steady.harmonic_balance.correction import slopes
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients, powers, twice
 
 _DEGREE = 3

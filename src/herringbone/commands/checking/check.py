@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     """
     _refuse_wrong(options)
     if options.role:
-        from herringbone.commands.contract import check_command  # noqa: PLC0415 (numba)
+        from herringbone.commands.checking.contract import check_command  # noqa: PLC0415 (numba)
 
         return check_command(options)
     from herringbone.fmi.check import check_fmu  # noqa: PLC0415

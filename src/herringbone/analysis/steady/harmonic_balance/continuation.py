@@ -13,10 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.correction import jacobian, packed, sloped, unpacked
-from herringbone.analysis.steady.orbit import Motion, Orbit, Period
-from herringbone.analysis.steady.problem import Problem
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.correction import (
+    jacobian,
+    packed,
+    sloped,
+    unpacked,
+)
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.core import HerringboneError
 
 _ITERATIONS, _EASY = 12, 4

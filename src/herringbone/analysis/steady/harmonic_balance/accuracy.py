@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.balance import Balance
-from herringbone.analysis.steady.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.structure import Structure
 
 _THINNER = 0.03

@@ -84,8 +84,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _write(found: "NaturalModes", options: argparse.Namespace) -> list[Path]:
-    from herringbone.plotting.campbell import campbell  # noqa: PLC0415 (matplotlib: lazy)
-    from herringbone.plotting.mode_shapes import animate_mode, mode_shapes  # noqa: PLC0415
+    from herringbone.plotting.modes.campbell import campbell  # noqa: PLC0415 (matplotlib: lazy)
+    from herringbone.plotting.modes.mode_shapes import animate_mode, mode_shapes  # noqa: PLC0415
 
     folder: Path = options.output
     table, diagram, shapes = (folder / name for name in FILES)

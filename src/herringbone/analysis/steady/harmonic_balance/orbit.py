@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.problem import Samples
-from herringbone.analysis.steady.response import Coordinates, Response
+from herringbone.analysis.steady.harmonic_balance.problem import Samples
+from herringbone.analysis.steady.harmonic_balance.response import Coordinates, Response
 
 
 class Period(NamedTuple):

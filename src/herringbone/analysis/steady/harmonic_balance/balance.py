@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.correction import correct_at_once
-from herringbone.analysis.steady.families import Families
-from herringbone.analysis.steady.fourier import in_frequency, in_time, on
-from herringbone.analysis.steady.krylov import correct_by_families
-from herringbone.analysis.steady.orbit import Motion, Orbit, Period
-from herringbone.analysis.steady.problem import Problem, Samples
-from herringbone.analysis.steady.response import Coordinates, Response
+from herringbone.analysis.steady.harmonic_balance.correction import correct_at_once
+from herringbone.analysis.steady.harmonic_balance.families import Families
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.response import Coordinates, Response
 
 _ITERATIONS = 40
 _EASY = 8

@@ -8,10 +8,10 @@ over the meshes these systems are nearly the whole Jacobian, whatever the number
 
 import numpy as np
 
-from herringbone.analysis.steady.correction import Bent
-from herringbone.analysis.steady.fourier import in_frequency
-from herringbone.analysis.steady.problem import Problem
-from herringbone.analysis.steady.response import Response
+from herringbone.analysis.steady.harmonic_balance.correction import Bent
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
+from herringbone.analysis.steady.harmonic_balance.response import Response
 
 
 class Families:

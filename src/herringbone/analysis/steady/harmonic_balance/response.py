@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.problem import Problem
+from herringbone.analysis.steady.harmonic_balance.problem import Problem
 
 
 class Coordinates(NamedTuple):

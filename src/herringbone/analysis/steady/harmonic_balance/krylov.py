@@ -6,11 +6,11 @@ Jacobian, whose products are taken in time, behind the inverse of the mesh-perio
 
 import numpy as np
 
-from herringbone.analysis.steady.correction import bent
-from herringbone.analysis.steady.families import Families
-from herringbone.analysis.steady.fourier import in_frequency, in_time
-from herringbone.analysis.steady.problem import Problem, Samples
-from herringbone.analysis.steady.response import Response
+from herringbone.analysis.steady.harmonic_balance.correction import bent
+from herringbone.analysis.steady.harmonic_balance.families import Families
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time
+from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
+from herringbone.analysis.steady.harmonic_balance.response import Response
 
 _MOST = 40
 """Vectors of a search."""

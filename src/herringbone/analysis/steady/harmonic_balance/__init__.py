@@ -1,0 +1,1 @@
+"""Periodic motions of a linear part with laws, by harmonics; arrays and callables only."""

@@ -1,0 +1,1 @@
+"""The command check: an FMU, the contract of a role, a flange."""

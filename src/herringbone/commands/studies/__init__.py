@@ -1,0 +1,1 @@
+"""Commands that study a system: modes, steady states, sweeps."""

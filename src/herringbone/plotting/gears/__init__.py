@@ -1,0 +1,1 @@
+"""Pictures of a gear pair and of the load on its flanks."""
