@@ -165,8 +165,8 @@ def test_loaded_pair(tmp_path, capsys):
 def test_rigid_and_floating_pinion(tmp_path, capsys):
     """`rigid` is said, infinity is no JSON; without it the pinion floats."""
     for held, expected in ((["--pinion-axial-stiffness", "rigid"], "rigid"), ([], 0.0)):
-        options = ["--symmetry-deviation", "20 um", *held, "-o", str(tmp_path), "--json"]
-        assert main(["gear", str(THESIS), *options]) == 0
+        options = ["--symmetry-deviation", "20 um", *held, *PLAIN, "-o", str(tmp_path)]
+        assert main(["gear", str(THESIS), *options, "--json"]) == 0
         found = json.loads(capsys.readouterr().out)["loaded"]
         assert found["symmetry"]["pinion_axial_stiffness"] == expected
         share = found["over_torque"]["share_left"][4]
