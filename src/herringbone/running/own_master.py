@@ -4,10 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from herringbone.analysis.anatomy import anatomy
-from herringbone.components.registry import component
-from herringbone.core import ParameterError, StructureError
-from herringbone.core.declaring.roles import GEARS, PortKind, Role
+from herringbone.analysis.set_points import at_pinion
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_system, open_parts
@@ -84,35 +81,3 @@ def connections(system: str | Path | System) -> tuple[Link, ...]:
     finally:
         for part in parts:
             part.close()
-
-
-def at_pinion(
-    system: System, speed: float | None = None, torque: float | None = None
-) -> dict[str, float]:
-    """Speed and torque of the only gear pair, by path.
-
-    Raises:
-        StructureError: there is not one gear pair that is a component.
-        ParameterError: something is joined to it, that decides on its speed and torque.
-    """
-    known = anatomy(system)
-    pairs = [name for name in known.with_role(Role.GEAR_PAIR) if not system.part(name).foreign]
-    if len(pairs) != 1:
-        raise StructureError(
-            f"system '{system.name}' has {len(pairs)} gear pairs; speed and torque are of one"
-        )
-    joined = known.joined(pairs[0], PortKind.FLANGE)
-    if joined:
-        raise ParameterError(
-            f"speed and torque of {pairs[0]} follow from {', '.join(part for part, _ in joined)}; "
-            "set what drives and loads them by values"
-        )
-    found: dict[str, float] = {}
-    declaration = component(str(system.part(pairs[0]).component)).declaration
-    if speed is not None:
-        turning = next(v.name for v in declaration.states if v.steady == "rotating")
-        found[f"{pairs[0]}.der({turning})"] = speed
-    if torque is not None:
-        (pinion,) = known.ports(pairs[0], PortKind.FLANGE, GEARS[0])
-        found[f"{pairs[0]}.{pinion.name}.tau"] = torque
-    return found

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
+from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.places.files import as_texts, is_file
@@ -17,8 +18,8 @@ from herringbone.studies.evaluators.evaluator import Base, Evaluator
 from herringbone.studies.evaluators.steady import Steady
 from herringbone.studies.evaluators.transient import Transient, with_known_values
 from herringbone.studies.keys import base_settings
-from herringbone.studies.set_points import addressed, commanded
-from herringbone.studies.study import SET_POINTS, SPEED, TORQUE, Study, Value, grid
+from herringbone.studies.set_points import commanded
+from herringbone.studies.study import SET_POINTS, Study, Value, grid
 from herringbone.studies.sweep import Asked, Progress, Sweep, Told, computed
 from herringbone.studies.working.executors import Workers
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 
+from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
 
-SPEED, TORQUE = "speed", "torque"
 SET_POINTS = {SPEED: "rad/s", TORQUE: "N.m"}
 """Parameters that address what a system declares as its set points, and their SI units."""
 PER_MINUTE = "r/min"

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import pytest
 
+from herringbone.analysis.set_points import addressed
 from herringbone.core import ParameterError, StructureError
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.studies.set_points import addressed, commanded
+from herringbone.studies.set_points import commanded
 
 RPM = math.pi / 30.0
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
@@ -16,8 +17,8 @@ from herringbone.studies.evaluators.levels import (
     prefixed,
 )
 from herringbone.studies.evaluators.transient import with_known_values
-from herringbone.studies.set_points import commanded, set_point
-from herringbone.studies.study import SPEED, TORQUE, Point
+from herringbone.studies.set_points import commanded
+from herringbone.studies.study import Point
 
 STEADY, UNSETTLED = "steady", "not_converged"
 """Outcomes of a point."""

@@ -1,0 +1,116 @@
+"""What speed and torque address: the set points that a system declares."""
+
+from typing import NamedTuple
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.components.registry import component
+from herringbone.core import ParameterError, StructureError
+from herringbone.core.declaring.roles import GEARS, PortKind, Quantity, Role
+from herringbone.core.declaring.variable import Causality
+from herringbone.cosim.structure.system import System
+
+SPEED, TORQUE = "speed", "torque"
+QUANTITIES = {SPEED: Quantity.SPEED_SETPOINT, TORQUE: Quantity.TORQUE_SETPOINT}
+
+
+class SetPoint(NamedTuple):
+    """A variable that commands speed or torque.
+
+    Attributes:
+        part, variable: what it is.
+        given: it is an input that takes a start value; else an output of what commands.
+    """
+
+    part: str
+    variable: str
+    given: bool
+
+    def __str__(self) -> str:
+        return f"{self.part}.{self.variable}"
+
+
+def set_point(system: System, name: str) -> SetPoint | None:
+    """What speed or torque addresses; None: the free flanges of the only gear pair.
+
+    Args:
+        system: whose set points they are.
+        name: SPEED or TORQUE.
+
+    Raises:
+        ParameterError: nothing in the system commands it.
+        StructureError: several parts do.
+    """
+    fed = {system.split(path) for pair in system.connections for path in pair}
+    found = [
+        SetPoint(str(part.name), v.name, v.causality is Causality.INPUT)
+        for part in system.parts
+        if part.component
+        for v in component(part.component).declaration.offered(QUANTITIES[name])
+        if v.causality is Causality.OUTPUT or (part.name, v.name) not in fed
+    ]
+    if len(found) > 1:
+        raise StructureError(
+            f"{name}: {system.name} has the set points {', '.join(map(str, found))}; vary them "
+            "with --set"
+        )
+    if not found:
+        _check_free(system, name)
+        return None
+    return found[0]
+
+
+def addressed(system: System, name: str) -> str:
+    """What speed or torque addresses, for people; raises as `set_point`."""
+    found = set_point(system, name)
+    if found is not None:
+        return str(found)
+    return ", ".join(at_pinion(system, **{name: 1.0}))
+
+
+def at_pinion(
+    system: System, speed: float | None = None, torque: float | None = None
+) -> dict[str, float]:
+    """Speed and torque of the only gear pair, by path.
+
+    Raises:
+        StructureError: there is not one gear pair that is a component.
+        ParameterError: something is joined to it, that decides on its speed and torque.
+    """
+    known = anatomy(system)
+    pairs = [name for name in known.with_role(Role.GEAR_PAIR) if not system.part(name).foreign]
+    if len(pairs) != 1:
+        raise StructureError(
+            f"system '{system.name}' has {len(pairs)} gear pairs; speed and torque are of one"
+        )
+    joined = known.joined(pairs[0], PortKind.FLANGE)
+    if joined:
+        raise ParameterError(
+            f"speed and torque of {pairs[0]} follow from {', '.join(part for part, _ in joined)}; "
+            "set what drives and loads them by values"
+        )
+    found: dict[str, float] = {}
+    declaration = component(str(system.part(pairs[0]).component)).declaration
+    if speed is not None:
+        turning = next(v.name for v in declaration.states if v.steady == "rotating")
+        found[f"{pairs[0]}.der({turning})"] = speed
+    if torque is not None:
+        (pinion,) = known.ports(pairs[0], PortKind.FLANGE, GEARS[0])
+        found[f"{pairs[0]}.{pinion.name}.tau"] = torque
+    return found
+
+
+def _check_free(system: System, name: str) -> None:
+    """Raise ParameterError unless a gear pair with free flanges takes it."""
+    try:
+        at_pinion(system, **{name: 1.0})
+    except (ParameterError, StructureError):
+        known = [str(p.name) for p in system.parts if p.component and _drives(p.component)]
+        such_as = f", such as {known[0]}" if known else ""
+        raise ParameterError(
+            f"{name}: no part of {system.name} declares a {QUANTITIES[name]}; vary what drives and "
+            f"loads it with --set{such_as}"
+        ) from None
+
+
+def _drives(name: str) -> bool:
+    return bool({Role.SOURCE, Role.DRIVE, Role.LOAD} & set(component(name).declaration.roles))
