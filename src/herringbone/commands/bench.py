@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
 
 _RIG = "macro-step"
-_PARTS = (_RIG, "accuracy", "fused", "fmus")
+_PARTS = (_RIG, "accuracy", "fused", "steady", "fmus")
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -146,4 +146,17 @@ def _fused() -> tuple[str, dict[str, Any]]:
     return "\n".join(lines), {row.name: row._asdict() for row in found}
 
 
-_MEASURE = {"accuracy": _accuracy, "fused": _fused, "fmus": _fmus}
+def _steady() -> tuple[str, dict[str, Any]]:
+    from herringbone.benchmarks import steady  # noqa: PLC0415
+
+    found = steady.measure()
+    lines = [
+        "Periodic steady states of the test rig: CPU time of the thread",
+        f"{'ms':>10}{'error':>10}{'lost':>6}  case",
+    ]
+    for row in found:
+        lines.append(f"{1e3 * row.seconds:10.2f}{row.error:10.2g}{row.lost:6d}  {row.name}")
+    return "\n".join(lines), {row.name: row._asdict() for row in found}
+
+
+_MEASURE = {"accuracy": _accuracy, "fused": _fused, "steady": _steady, "fmus": _fmus}

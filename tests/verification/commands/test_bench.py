@@ -8,7 +8,7 @@ from functools import partial
 import pytest
 from fuzz.campaign import last_commit
 
-from herringbone.benchmarks import fmus, macro_step
+from herringbone.benchmarks import fmus, macro_step, steady
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.simulation import make_grid, simulate
@@ -72,3 +72,11 @@ def test_fmus_are_small(capsys, monkeypatch):
 def test_unknown_part(capsys):
     assert main(["bench", "speed"]) != 0
     assert "there is no part 'speed'; it has macro-step" in capsys.readouterr().err
+
+
+def test_steady_states_are_found_and_timed():
+    rows = steady.measure(repeats=1, speeds=5)
+    assert [row.lost for row in rows] == [0] * len(rows)
+    assert all(row.seconds > 0.0 for row in rows)
+    assert all(row.error <= 1e-3 for row in rows)
+    assert "81 meshes" in rows[-1].name

@@ -1,0 +1,87 @@
+"""CPU time of the thread per periodic steady state of the test rig, by harmonic balance."""
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.running.steady import prepared_solver
+
+_SYSTEM = "test_rig"
+_NO_RUN_OUTS = {"gear_mesh.symmetry_deviation": 0.0}
+_COARSE, _FINE = 1e-3, 1e-4
+_SLOWEST, _FASTEST = 500.0, 3000.0
+"""Speeds of the sweep [r/min]."""
+_R_MIN = math.pi / 30.0
+
+
+class Cost(NamedTuple):
+    """What was measured.
+
+    Attributes:
+        name: what was solved.
+        seconds: CPU time, the least of all repetitions.
+        error: stated by the state, the largest where there are several.
+        lost: states that were not found.
+    """
+
+    name: str
+    seconds: float
+    error: float
+    lost: int
+
+
+def measure(repeats: int = 7, speeds: int = 500) -> list[Cost]:
+    """Measure all cases; a solver has solved once before.
+
+    Args:
+        repeats: of each case.
+        speeds: of the sweep.
+    """
+    rows = []
+    for tolerance in (_COARSE, _FINE):
+        solver = _solver(tolerance, _NO_RUN_OUTS)
+        rows.append(_measured(f"one point to {tolerance:g}", repeats, _point(solver)))
+        if tolerance == _COARSE:
+            name = f"{speeds} speeds to {tolerance:g}, each from its neighbour"
+            rows.append(_measured(name, min(repeats, 3), _sweep(solver, speeds)))
+    long = _solver(_COARSE, {})
+    meshes = long.solve().meshes
+    name = f"one point to {_COARSE:g}, with run-outs ({meshes} meshes)"
+    return [*rows, _measured(name, repeats, _point(long))]
+
+
+def _solver(tolerance: float, values: Mapping[str, float]) -> SteadySolver:
+    """A solver that has solved once."""
+    solver, _, _ = prepared_solver(_SYSTEM, values=values, tolerance=tolerance)
+    solver.solve()
+    return solver
+
+
+def _point(solver: SteadySolver) -> Callable[[], list[SteadyState]]:
+    return lambda: [solver.solve()]
+
+
+def _sweep(solver: SteadySolver, count: int) -> Callable[[], list[SteadyState]]:
+    def solved() -> list[SteadyState]:
+        found: list[SteadyState] = []
+        for speed in np.linspace(_SLOWEST, _FASTEST, count) * _R_MIN:
+            found.append(solver.solve(Point(speed=speed), found[-1] if found else None))
+        return found
+
+    return solved
+
+
+def _measured(name: str, repeats: int, solved: Callable[[], list[SteadyState]]) -> Cost:
+    least, states = math.inf, []
+    for _ in range(repeats):
+        begin = time.thread_time()
+        states = solved()
+        least = min(least, time.thread_time() - begin)
+    lost = sum(not state.converged for state in states)
+    return Cost(name, least, max(state.errors.worst for state in states), lost)
