@@ -67,6 +67,7 @@ def prepared_solver(
     """What solves for steady states, the operating point asked for, and notes; see `steady`."""
     structure = system if isinstance(system, System) else load_system(system)[0]
     point = Point(speed, torque)
+    point.check()
     wanted = {**SetPoints(structure).values(point), **(values or {})}
     wishes = Wishes(
         values=wanted, gear=gear, housing=housing, start=Start.EQUILIBRIUM, start_offset={}

@@ -1,5 +1,7 @@
 """Steady states by harmonic balance against the fused core that marches on from them."""
 
+import math
+
 import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
@@ -87,6 +89,25 @@ def test_an_open_set_point_takes_a_value():
 def test_speed_of_what_follows_its_loads_is_refused():
     with pytest.raises(ParameterError, match=r"speed: no part of .* declares a"):
         hb.steady("ship", values=STILL, speed=100.0)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"speed": 0.0}, "speed = 0 rad/s"),
+        ({"speed": math.nan}, "speed = nan rad/s"),
+        ({"torque": math.inf}, "torque = inf N m"),
+    ],
+)
+def test_a_point_without_motion_is_refused(asked, said):
+    with pytest.raises(ParameterError, match=said):
+        hb.steady("test_rig", values=STILL, **asked)
+
+
+def test_what_no_rotor_does_ends_without_a_state():
+    state = hb.steady("test_rig", torque=1e9, values=STILL)
+    assert not state.converged
+    assert state.notes
 
 
 def test_run_outs_make_the_period_long():

@@ -17,6 +17,10 @@ SETTLING = 0.3
 _FEWEST = 8
 
 
+_SHORTEST, _LONGEST = 1e-7, 100.0
+"""Periods [s] that a march follows."""
+
+
 class Guess(NamedTuple):
     """Where an iteration begins.
 
@@ -49,7 +53,7 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
     run-outs would open the teeth, unless their shaft follows them.
     """
     values, meshes = structure.problem.values, structure.meshes
-    if meshes == 1:
+    if meshes == 1 or not _can_be_marched(still):
         return Guess(still.channels[:values], still.response.orders, per_mesh)
     places = 1 << int(np.ceil(np.log2(_SLOW * meshes)))  # they meet the mesh at ever new phases
     rough = marched(structure, motion, still, 1, places).harmonics(1)
@@ -60,9 +64,16 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
 
 def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:
     """The last periods of a march from equilibrium; None if it fails."""
+    if not _can_be_marched(still):
+        return None
     periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
     places = structure.meshes * per_mesh
     try:
         return marched(structure, motion, still, periods, places, kept=_FEWEST)
     except HerringboneError:
         return None
+
+
+def _can_be_marched(still: Orbit) -> bool:
+    """False at the speeds that no rotor has, which what was asked for may lead to."""
+    return _SHORTEST <= still.period <= _LONGEST

@@ -1,5 +1,6 @@
 """Speed and torque of an operating point: the set points that a system declares."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -25,6 +26,16 @@ class Point(NamedTuple):
     speed: float | None = None
     torque: float | None = None
     values: Mapping[str, float] = {}
+
+    def check(self) -> None:
+        """Raise ParameterError unless it turns, and numbers are finite."""
+        if self.speed is not None and not (math.isfinite(self.speed) and self.speed != 0.0):
+            raise ParameterError(
+                f"speed = {self.speed:g} rad/s: it must be finite and not 0, as a steady state "
+                "repeats with the mesh"
+            )
+        if self.torque is not None and not math.isfinite(self.torque):
+            raise ParameterError(f"torque = {self.torque:g} N m: it must be finite")
 
 
 class SetPoints:

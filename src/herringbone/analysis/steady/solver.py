@@ -95,8 +95,10 @@ class SteadySolver:
             A state; ask it whether it is `converged`.
 
         Raises:
-            ParameterError: the system declares no such set point.
+            ParameterError: the system declares no such set point, or the point has no motion that
+                could repeat.
         """
+        point.check()
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             (motion, orbit, errors), notes = self._found(structure, _motion(structure, point), near)
