@@ -1,8 +1,8 @@
 """Sweeps on many cores, killed, and long: `python -m campaigns.sweeps efficiency|kills|memory`.
 
 efficiency [POINTS [T_END]]: transient points in this process, in two processes, and on a local Dask
-cluster; the same bits, and serial CPU time over that of all processes. The share of wall time is
-that of an idle machine only.
+cluster, if that is installed; the same bits, and serial CPU time over that of all processes. The
+share of wall time is that of an idle machine only.
 kills [COUNT [SEED]]: kill -9 of a worker or of the parent at random moments, then the same command
 again: the same table, bit for bit.
 memory [POINTS]: a cheap study of so many points; memory of the process over its course.
@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 
 _RUN = """
@@ -91,7 +92,8 @@ def efficiency(folder: Path, points: int = 400, t_end: float = 0.02) -> int:
     script = folder / "run.py"
     script.write_text(_RUN)
     found = {}
-    for how in ("1", "2", "dask"):
+    ways = ("1", "2", "dask") if find_spec("dask") else ("1", "2")
+    for how in ways:
         place = folder / how
         done = subprocess.run(
             [sys.executable, script, how, place, str(points), str(t_end)],
