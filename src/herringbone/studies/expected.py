@@ -37,9 +37,13 @@ class Expected:
         there = self.points - self.missing
         known = f", of which {there} are there" if there else ""
         return (
-            f"{self.points} points in {self.chains} chains{known}; about {_duration(self.cpu)} of "
-            f"CPU time, {self.size / _MEBIBYTE:.2g} MiB"
+            f"{_counted(self.points, 'point')} in {_counted(self.chains, 'chain')}{known}; about "
+            f"{_duration(self.cpu)} of CPU time, {self.size / _MEBIBYTE:.2g} MiB"
         )
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" + "s" * (count != 1)
 
 
 def expected(points: int, chains: int, missing: int, known: Sequence[Done]) -> Expected:
