@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 
 from herringbone.analysis.accuracy.apart import Apart, differences, groups_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.result.folder.load import load
@@ -289,12 +289,8 @@ def mesh_amplitudes(result: Result, columns: Sequence[str], count: int = ORDERS)
         raise ParameterError(f"system '{result.info.system}': no steady mesh frequency is known")
     time = result.data[TIME].to_numpy()[part.rows]
     values = result.data[list(columns)].to_numpy(float)[part.rows]
-    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(time.size) / time.size)
-    weight = window / window.sum()
-    frequencies = mesh * np.arange(1, count + 1)
-    turned = np.exp(-2j * math.pi * frequencies[:, None] * (time - time[0]))
-    found = 2.0 * np.abs((turned * weight) @ (values - weight @ values))
-    found[frequencies > 0.5 / part.sample_step] = math.nan
+    found = amplitudes_at_multiples(time, values, mesh, count)
+    found[mesh * np.arange(1, count + 1) > 0.5 / part.sample_step] = math.nan
     return found
 
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES
+from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, hann_weight
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
@@ -161,8 +161,7 @@ def _block(
     at = np.interp(begin + block * np.arange(count + 1) / count, cycles, time)
     values = spline(at[:-1])
     duration = float(at[-1] - at[0])
-    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(count) / count)
-    weight = window / window.sum()
+    weight = hann_weight(count)
     amplitude = 2.0 * np.abs(np.fft.rfft(weight * (values - weight @ values)))[: orders.size]
     amplitude[0] = 0.0
     speed = block / duration
@@ -199,8 +198,7 @@ def frequency_map(
         )
     starts = np.arange(0, time.size - length + 1, max(1, round(length * (1.0 - overlap))))
     blocks = np.lib.stride_tricks.sliding_window_view(signal, length)[starts]
-    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(length) / length)
-    weight = window / window.sum()
+    weight = hann_weight(length)
     amplitude = 2.0 * np.abs(np.fft.rfft((blocks - (blocks @ weight)[:, None]) * weight, axis=1))
     amplitude[:, 0] = 0.0
     middles = starts + 0.5 * (length - 1)

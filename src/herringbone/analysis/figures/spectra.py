@@ -50,6 +50,33 @@ class Line(NamedTuple):
     amplitude: float
 
 
+def hann_weight(count: int) -> np.ndarray:
+    """A Hann window over so many samples (count,), whose sum is 1."""
+    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(count) / count)
+    return window / window.sum()
+
+
+def amplitudes_at_multiples(
+    time: np.ndarray, values: np.ndarray, frequency: float, count: int
+) -> np.ndarray:
+    """Amplitudes (count, signals) at 1, 2, ... times a frequency, each signal without its mean.
+
+    Args:
+        time: (n,), equidistant [s].
+        values: (n, signals).
+        frequency: [Hz].
+        count: of multiples.
+    """
+    weight = hann_weight(time.size)
+    alternating = (values - weight @ values) * weight[:, None]
+    once = np.exp(-2j * math.pi * frequency * (time - time[0]))
+    factor, found = np.ones_like(once), np.empty((count, values.shape[1]))
+    for k in range(count):
+        factor = factor * once
+        found[k] = 2.0 * np.abs(factor @ alternating)
+    return found
+
+
 def amplitude_spectrum(signal: np.ndarray, sample_step: float, padding: int = 1) -> Spectrum:
     """Hann-windowed amplitude spectrum without the mean.
 
@@ -68,8 +95,7 @@ def amplitude_spectrum(signal: np.ndarray, sample_step: float, padding: int = 1)
         raise ParameterError(f"{count} samples make no spectrum; it takes {FEWEST_SAMPLES} or more")
     if not (math.isfinite(sample_step) and sample_step > 0.0):
         raise ParameterError(f"sample_step = {sample_step:g} s: it must be positive and finite")
-    window = 0.5 - 0.5 * np.cos(2.0 * math.pi * np.arange(count) / count)
-    weight = window / window.sum()
+    weight = hann_weight(count)
     mean = weight @ signal
     length = padding * count
     windowed = ((signal - mean).T * weight).T

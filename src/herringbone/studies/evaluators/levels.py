@@ -12,6 +12,7 @@ import numpy as np
 
 from herringbone.analysis.accuracy.apart import groups_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.spectra import amplitudes_at_multiples
 from herringbone.core import ParameterError
 from herringbone.result.result import TIME, Result
 from herringbone.studies.evaluators.evaluator import Figure
@@ -89,16 +90,8 @@ def order_amplitudes(time: np.ndarray, values: np.ndarray, frequency: float | No
     if frequency is None or frequency * length < _FEWEST_PERIODS:
         return np.zeros(0)
     count = min(_MOST_ORDERS, int(0.5 * (time.size - 1) / length / frequency - 1e-9))
-    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(time.size) / time.size)
-    window /= window.sum()
-    alternating = (values - window @ values) * window[:, None]
-    once = np.exp(-2j * np.pi * frequency * (time - time[0]))
-    factor, found = np.ones_like(once), []
-    for _ in range(count):
-        factor = factor * once
-        amplitude = 2.0 * np.abs(factor @ alternating)
-        found.append(float(np.sqrt(np.mean(np.square(amplitude)))))
-    return np.array(found)
+    amplitudes = amplitudes_at_multiples(time, values, frequency, count)
+    return np.sqrt(np.mean(np.square(amplitudes), axis=1))
 
 
 def order_figures(
