@@ -51,12 +51,16 @@ class SetPoints:
 
     def __init__(self, system: System) -> None:
         self._system, self._known = system, anatomy(system)
+        self._addressed: dict[str, SetPoint | None] = {}
 
     def _asked(self, point: Point) -> Iterator[tuple[str, float, SetPoint | None]]:
         """Name and value of what is asked for, and what it addresses."""
         for name, wanted in ((SPEED, point.speed), (TORQUE, point.torque)):
-            if wanted is not None:
-                yield name, wanted, set_point(self._system, name)
+            if wanted is None:
+                continue
+            if name not in self._addressed:  # a search through all parts, and points are many
+                self._addressed[name] = set_point(self._system, name)
+            yield name, wanted, self._addressed[name]
 
     def signals(self, condensed: Condensed, still: np.ndarray, point: Point) -> np.ndarray:
         """Signals of the sources (signals,) at an operating point.
