@@ -13,7 +13,7 @@ from typing import Any
 from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.files import PART, is_file
-from herringbone.core.reading.structured import read_json
+from herringbone.result.folder.formatted import read_formatted
 from herringbone.result.folder.names import State
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.writing import refused, write_text
@@ -145,13 +145,4 @@ def read_study(folder: Path) -> dict[str, Any] | None:
     Raises:
         ResourceError: it cannot be read, or is of a later format.
     """
-    file = folder / STUDY
-    if not is_file(file):
-        return None
-    found = read_json(file)
-    version = found.get("format", 0)
-    if isinstance(version, int) and version > FORMAT:
-        raise ResourceError(
-            f"{file}: its format is {version}, and this version of the package reads up to {FORMAT}"
-        )
-    return found
+    return read_formatted(folder / STUDY, FORMAT)

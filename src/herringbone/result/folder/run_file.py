@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ResourceError
-from herringbone.core.places.files import is_file
-from herringbone.core.reading.structured import read_json
+from herringbone.result.folder.formatted import read_formatted
 from herringbone.result.folder.names import FORMAT, RUN, State
 from herringbone.result.folder.typed import as_json, from_json
 from herringbone.result.folder.writing import write_text
@@ -55,15 +54,9 @@ def read_run_file(folder: Path) -> RunFile | None:
         ResourceError: it cannot be read, or is of a later format.
     """
     file = folder / RUN
-    if not is_file(file):
+    found = read_formatted(file, FORMAT)
+    if found is None:
         return None
-    found = read_json(file)
-    version = found.get("format", 0)
-    if isinstance(version, int) and version > FORMAT:
-        raise ResourceError(
-            f"{file}: its format is {version}, and this version of the package reads up to "
-            f"{FORMAT}; read it with a newer one"
-        )
     try:
         return from_json(RunFile, found)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
