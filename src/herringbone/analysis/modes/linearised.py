@@ -19,7 +19,6 @@ from herringbone.cosim.structure.system import System
 
 _PLACES = 2048
 """Angles of a turn of the reference shaft at which the laws are evaluated."""
-_LATE = 1e9
 
 
 class Linearised(NamedTuple):
@@ -71,7 +70,7 @@ def _tangents(core: Core) -> np.ndarray:
     """(tangents,) of all laws at the start values, averaged over a turn."""
     condensed, modes = core.condensed, core.condensed.modes
     calls, equations = condensed.calls(), condensed.equations
-    late = max([0.0, *core.twin.breakpoints(_LATE)])
+    late = core.twin.settled
     laws = SystemLaws(condensed, late)
     signals = condensed.signals(late)
     channels = np.concatenate([np.zeros(int(calls.value[-1])), signals, [1.0]])

@@ -60,6 +60,11 @@ def harmonics(structure: Structure, orbit: Orbit, columns: Sequence[str]) -> Har
     return Harmonics(values, response.orders, slopes)
 
 
+def level_of(coefficients: np.ndarray) -> float:
+    """Root mean square of the alternating parts of outputs (columns, harmonics), all together."""
+    return float(np.sqrt(2.0 * np.mean(np.sum(np.abs(coefficients[:, 1:]) ** 2, axis=1))))
+
+
 def states(structure: Structure, orbit: Orbit) -> np.ndarray:
     """All states (n, places) of the system over a period."""
     modes = structure.core.condensed.modes

@@ -77,12 +77,14 @@ def steady_text(state: SteadyState) -> list[str]:
 def _group(state: SteadyState, group: str) -> list[str]:
     columns = state.chosen(group)
     unit = state.structure.core.unit(columns[0])
-    sizes = np.sqrt(np.mean(np.abs(state.amplitudes(group)) ** 2, axis=0) / 2.0)
+    squares = np.abs(state.amplitudes(group)) ** 2 / 2.0
+    sizes = np.sqrt(np.mean(squares, axis=0))
     largest = [k for k in np.argsort(sizes[1:])[::-1][:_LINES] + 1 if sizes[k] > 0.0]
-    loudest = max(columns, key=state.level)
+    levels = np.sqrt(np.sum(squares[:, 1:], axis=1))
+    loudest = int(levels.argmax())
     return [
         f"{group.replace('_', ' ')}: {state.level(group):.5g} {unit} rms over {len(columns)} "
-        f"channels, most {state.level(loudest):.5g} {unit} at {loudest}",
+        f"channels, most {levels[loudest]:.5g} {unit} at {columns[loudest]}",
         *(
             f"  mesh order {state.mesh_orders[k]:<8.5g} {state.frequencies[k]:9.5g} Hz "
             f"{sizes[k]:11.5g} {unit} rms"

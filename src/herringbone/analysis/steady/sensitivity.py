@@ -18,8 +18,9 @@ from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.correction import Bent, jacobian, packed, sloped
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
 from herringbone.analysis.steady.harmonic_balance.response import Rows
+from herringbone.analysis.steady.outputs import level_of
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.analysis.steady.structure import Structure
+from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
 
@@ -99,7 +100,7 @@ def _fixed(
     balance = Balance(structure.problem, _period(state), state.motion)
     orbit, off = balance.lacking(state.orbit.channels)
     values = orbit.response.outputs(_rows(structure, columns), orbit.q, orbit.channels)
-    return _level(values) + float(adjoint @ packed(off[found.unknown, : _order(state) + 1]))
+    return level_of(values) + float(adjoint @ packed(off[found.unknown, : _order(state) + 1]))
 
 
 def _adjoint(state: SteadyState, columns: Sequence[str]) -> tuple[float, Bent, np.ndarray]:
@@ -107,7 +108,7 @@ def _adjoint(state: SteadyState, columns: Sequence[str]) -> tuple[float, Bent, n
     structure, orbit = state.structure, state.orbit
     rows, response, order = _rows(structure, columns), orbit.response, _order(state)
     values = response.outputs(rows, orbit.q, orbit.channels)
-    size, count = _level(values), order + 1
+    size, count = level_of(values), order + 1
     found = sloped(structure.problem, orbit.samples, every=True)
     gains = response.gain(rows.modal, rows.of_angle, found.unknown, count)
     gains += rows.of_channels[:, found.unknown, None]
@@ -134,10 +135,4 @@ def _rows(structure: Structure, columns: Sequence[str]) -> Rows:
         raise ParameterError(
             f"{names}: a product of others; ask for sensitivities of other outputs"
         )
-    modal, turned, channels, _ = wanted.rows
-    of_angle = turned[:, 0] if turned.shape[1] else np.zeros(len(turned))
-    return Rows(modal, of_angle, channels)
-
-
-def _level(values: np.ndarray) -> float:
-    return float(np.sqrt(2.0 * np.mean(np.sum(np.abs(values[:, 1:]) ** 2, axis=1))))
+    return alternating_rows(wanted)

@@ -11,7 +11,7 @@ from herringbone.analysis.steady.bending import bending_parts
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
+from herringbone.analysis.steady.outputs import Harmonics, harmonics, level_of, states
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.fused.core import endings_of
@@ -169,8 +169,7 @@ class SteadyState(Facts):
 
     def level(self, name: str) -> float:
         """Root mean square of the alternating part, over time and the chosen columns."""
-        found = self._harmonics(self.chosen(name)).coefficients[:, 1:]
-        return float(np.sqrt(2.0 * np.mean(np.sum(np.abs(found) ** 2, axis=1))))
+        return level_of(self._harmonics(self.chosen(name)).coefficients)
 
     def mean(self, name: str) -> float:
         """Mean over time of a column, or over several; of angles less what grows."""

@@ -16,9 +16,6 @@ from herringbone.core import StructureError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System
 
-_LATE = 1e9
-"""Time [s] before which all breakpoints lie."""
-
 
 class Structure:
     """A system taken apart, with what harmonic balance needs.
@@ -47,7 +44,7 @@ class Structure:
         self.system = system
         self.core: Core = Core(system, like.core if like else None, same_tangents=same_tangents)
         condensed, twin = self.core.condensed, self.core.twin
-        self.late = max([0.0, *twin.breakpoints(_LATE)])
+        self.late = twin.settled
         self.problem: Problem = problem_of(condensed, self.late)
         turns = turn_of(condensed, self.problem.of_angle)
         self.turn = 2.0 * np.pi * float(turns)
@@ -87,9 +84,7 @@ class Structure:
             if affine:
                 found[name] = slice(len(columns), len(columns) + len(affine))
                 columns += affine
-        modal, turned, channels, _ = self.wanted(columns).rows
-        of_angle = turned[:, 0] if turned.shape[1] else np.zeros(len(turned))
-        return found, Rows(modal, of_angle, channels)
+        return found, alternating_rows(self.wanted(columns))
 
     @cached_property
     def signals(self) -> np.ndarray:
@@ -110,3 +105,10 @@ class Structure:
         z += modes.of_angles @ modes.angles
         f = problem.laws(np.ascontiguousarray(z[None, :])).f[0]
         return (f - problem.tangent @ z)[:, None].astype(complex)
+
+
+def alternating_rows(wanted: Wanted) -> Rows:
+    """Rows of outputs over modes, angle and channels, without what stands still."""
+    modal, turned, channels, _ = wanted.rows
+    of_angle = turned[:, 0] if turned.shape[1] else np.zeros(len(turned))
+    return Rows(modal, of_angle, channels)

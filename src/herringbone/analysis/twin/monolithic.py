@@ -21,6 +21,8 @@ from herringbone.cosim.structure.system import System
 TOLERANCE = 1e-10
 """Relative tolerance of the twin; absolute: this times the size that a state reaches."""
 _SMALLEST = 1e-15
+_LATE = 1e9
+"""Time [s] before which all breakpoints lie."""
 
 
 def refuse_foreign_parts(system: System) -> None:
@@ -105,6 +107,11 @@ class Twin:
         """Times in (0, t_end) at which the right-hand side is not smooth."""
         found = {t for i in self.instances for t in i.component.breakpoints(i.block)}
         return sorted(t for t in found if 0.0 < t < t_end)
+
+    @property
+    def settled(self) -> float:
+        """Time [s] after which the right-hand side is smooth for good."""
+        return max([0.0, *self.breakpoints(_LATE)])
 
     def solve(
         self,
