@@ -13,18 +13,14 @@ static void expand(double *signal, const double *slopes, uint32_t degree, double
     }
 }
 
-static uint32_t input_number(uint32_t reference) {
-    return (reference - hb_component.first_input) / HB_STRIDE;
-}
-
 /* An input that runs on, of which the host gave no derivative: from its value now, with its rate and
    the derivatives of that. The last set value, for which it stands, comes back after the step. */
 static void run_on(Instance *instance, const HbRunsOn *which) {
     Moment *now = &instance->now;
-    uint32_t input = input_number(which->input);
+    uint32_t input = instance_input_number(which->input);
     double *block = instance->block, *slopes = instance->slopes;
     double *own = slopes + input * HIGHEST_ORDER;
-    const double *rates = slopes + input_number(which->rate) * HIGHEST_ORDER;
+    const double *rates = slopes + instance_input_number(which->rate) * HIGHEST_ORDER;
     block[which->input] += block[which->rate] * (now->time - block[which->since]);
     own[0] = block[which->rate];
     for (int order = 1; order < HIGHEST_ORDER; order++)
@@ -37,7 +33,7 @@ uint32_t input_derivatives_to_nodes(Instance *instance, double step_size) {
     uint32_t degree = now->input_order;
     for (uint32_t k = 0; k < hb_component.runs_on_count; k++) {
         const HbRunsOn *which = &hb_component.runs_on[k];
-        if (now->derivatives >> input_number(which->input) & 1u)
+        if (now->derivatives >> instance_input_number(which->input) & 1u)
             continue;
         run_on(instance, which);
         if (degree == now->input_order && degree < HIGHEST_ORDER)
@@ -70,7 +66,7 @@ static Status set_input_derivative(Instance *instance, uint32_t reference, int32
                              "%s.%s: input derivatives need interface_degree = 0, but it is %g: "
                              "the signals are given by nodes",
                              instance->name, name, degree);
-    uint32_t input = input_number(reference);
+    uint32_t input = instance_input_number(reference);
     if (input < 32)
         instance->now.derivatives |= 1u << input;
     instance->slopes[input * HIGHEST_ORDER + (uint32_t)order - 1] = value;

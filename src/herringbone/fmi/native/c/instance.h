@@ -118,6 +118,8 @@ void instance_stamp_set(Instance *instance, const uint32_t references[], size_t 
 bool instance_is_real(uint32_t reference);
 /* An input itself, none of its nodes. */
 bool instance_is_input(uint32_t reference);
+/* Of an input or one of its nodes: which of the inputs, from 0. */
+uint32_t instance_input_number(uint32_t reference);
 /* An output itself, none of its nodes. */
 bool instance_is_output(uint32_t reference);
 /* Value reference of a state's derivative; FMI 3: of the time. */

@@ -15,16 +15,12 @@ static double *signal_of(Instance *instance, uint32_t input) {
     return instance->block + hb_component.first_input + input * HB_STRIDE;
 }
 
-static uint32_t input_number(uint32_t reference) {
-    return (reference - hb_component.first_input) / HB_STRIDE;
-}
-
 Status instance_set_within_step(Instance *instance, const uint32_t references[], size_t count,
                                 const double values[]) {
     for (size_t i = 0; i < count; i++) {
         if (!instance_is_input(references[i]))
             return instance_unknown(instance, "intermediate input", &references[i], 1);
-        instance->given |= 1u << (input_number(references[i]) & 31u);
+        instance->given |= 1u << (instance_input_number(references[i]) & 31u);
     }
     return instance_set(instance, references, count, values);
 }
@@ -64,7 +60,7 @@ bool instance_ask_inputs(Instance *instance, double step_size) {
     for (uint32_t i = 0; i < hb_component.inputs; i++)
         *signal_of(instance, i) = first[i];
     for (uint32_t k = 0; k < hb_component.runs_on_count; k++)
-        if (!(instance->given >> (input_number(hb_component.runs_on[k].input) & 31u) & 1u))
+        if (!(instance->given >> (instance_input_number(hb_component.runs_on[k].input) & 31u) & 1u))
             run_on(instance, &hb_component.runs_on[k], start, step_size);
     return true;
 }

@@ -17,6 +17,10 @@ bool instance_is_input(uint32_t reference) {
            (reference - hb_component.first_input) % HB_STRIDE == 0;
 }
 
+uint32_t instance_input_number(uint32_t reference) {
+    return (reference - hb_component.first_input) / HB_STRIDE;
+}
+
 bool instance_is_output(uint32_t reference) {
     if (!instance_is_real(reference) || hb_component.access[reference] != HB_OUTPUT)
         return false;
