@@ -77,6 +77,13 @@ def rotation(result: Result, gear: str = "") -> Rotation:
     return Rotation(rows, time[rows], cycles[rows], forward[rows], teeth)
 
 
+def _turning(result: Result, column: str, gear: str) -> tuple[Rotation, np.ndarray]:
+    """How a pair turns, and the values (n,) of a column at these rows."""
+    result = result.uniform()
+    turning = rotation(result, gear)
+    return turning, result[column].to_numpy(float)[turning.rows]
+
+
 def tracked(
     result: Result,
     column: str,
@@ -97,9 +104,7 @@ def tracked(
     Raises:
         ParameterError: see `rotation`, `order_map`; or there is no such column.
     """
-    result = result.uniform()
-    turning = rotation(result, gear)
-    values = result[column].to_numpy(float)[turning.rows]
+    turning, values = _turning(result, column, gear)
     return order_map(turning.time, turning.cycles, values, block, highest)
 
 
@@ -117,9 +122,7 @@ def waterfall(
     Raises:
         ParameterError: see `rotation`, `frequency_map`; or there is no such column.
     """
-    result = result.uniform()
-    turning = rotation(result, gear)
-    values = result[column].to_numpy(float)[turning.rows]
+    turning, values = _turning(result, column, gear)
     span = float(turning.time[-1] - turning.time[0])
     block = _DURATION_SHARE * span if duration is None else duration
     return frequency_map(turning.time, turning.speed, values, block)

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.signal import find_peaks
 
+from herringbone.analysis.set_points import SPEED
 from herringbone.core import ParameterError
-from herringbone.plotting.studies.table import MESH, SPEED, Points, thinned
+from herringbone.plotting.studies.table import MESH, Points, thinned
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, new_figure, styled
 
 _PROMINENCE = 1.15

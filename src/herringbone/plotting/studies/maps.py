@@ -3,8 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
-from herringbone.plotting.studies.table import SPEED, TORQUE, Points
+from herringbone.plotting.studies.table import Points
 from herringbone.plotting.style import new_figure, styled
 
 

@@ -9,11 +9,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from herringbone.analysis.figures.sensitivity import base_value, sensitivities
+from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.studies.levels import Band, levels, waterfall
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.sensitivities import band, tornado
-from herringbone.plotting.studies.table import SPEED, TORQUE, Points
+from herringbone.plotting.studies.table import Points
 
 
 def write_study_pictures(

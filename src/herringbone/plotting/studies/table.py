@@ -14,10 +14,11 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.core import ParameterError
 from herringbone.plotting.style import scaled_unit
 
-SPEED, TORQUE, OUTCOME, MESH = "speed", "torque", "outcome", "mesh_frequency"
+OUTCOME, MESH = "outcome", "mesh_frequency"
 LABELS = {SPEED: "pinion speed", TORQUE: "pinion torque"}
 _SHOWN_UNITS = {"N.m": "N m", "": "1", "rpm": "r/min"}
 _NOT_VARIED = {"point", OUTCOME, "message", MESH}
