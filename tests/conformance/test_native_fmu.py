@@ -6,8 +6,8 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
+from support.fmi3_host import Fmi3Host
 from support.fmus import NAMES, H, outputs
 
 from herringbone.components.registry import COMPONENTS
@@ -125,30 +125,6 @@ def test_fmi3_nodes_are_arrays(name, fmi3_fmus):
             assert [int(d.start) for d in nodes.dimensions] == [NODES]
 
 
-class Fmi3Host:
-    """An FMU 3.0 in step mode, with linear signals in its inputs' nodes."""
-
-    def __init__(self, fmu, folder, degree):
-        self.model = fmpy.read_model_description(str(fmu))
-        self.reference = {v.name: v.valueReference for v in self.model.modelVariables}
-        self.slave = FMU3Slave(
-            guid=self.model.guid,
-            unzipDirectory=fmpy.extract(str(fmu), str(folder)),
-            modelIdentifier=self.model.coSimulation.modelIdentifier,
-            instanceName="part",
-        )
-        self.slave.instantiate()
-        self.slave.setFloat64([self.reference["interface_degree"]], [degree])
-        self.slave.enterInitializationMode()
-        self.slave.exitInitializationMode()
-
-    def set(self, name, values):
-        self.slave.setFloat64([self.reference[name]], values)
-
-    def get(self, name, count=1):
-        return list(self.slave.getFloat64([self.reference[name]], nValues=count))
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_fmi3_gives_the_bits_of_fmi2(name, started, fmi3_fmus, tmp_path):
     component = COMPONENTS[name]
@@ -160,17 +136,15 @@ def test_fmi3_gives_the_bits_of_fmi2(name, started, fmi3_fmus, tmp_path):
                 host.set_values({f"{signal}.node{node}" if node else signal: value})
         for v in component.declaration.inputs:
             nodes = host.values(*(f"{v.name}.node{k}" for k in range(1, NODES + 1)))
-            other.set(v.name, host.values(v.name))
-            other.set(f"{v.name}.node", nodes)
+            other.set({v.name: host.values(v.name), f"{v.name}.node": nodes})
         host.step(n * H, H)
-        other.slave.doStep(n * H, H)
+        other.step(n * H, H)
     for v in component.declaration.outputs:
         assert other.get(v.name) == host.values(v.name)
         if v.nodes:
             nodes = host.values(*(f"{v.name}.node{k}" for k in range(1, NODES + 1)))
             assert other.get(f"{v.name}.node", NODES) == nodes
-    other.slave.terminate()
-    other.slave.freeInstance()
+    other.close()
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
