@@ -89,7 +89,9 @@ def sweep(
     base = Base(_found(system), named, wishes, str(Path.cwd()))
     structure, folder = load_system(base.system)
     known = with_known_values(structure, load_scene(folder, named), wishes)
-    chosen = evaluator or _suited(known, wishes, series=series)
+    chosen = evaluator or _suited(known, wishes)
+    if series and not chosen.has_series:
+        raise _of_runs("series")
     units = {name: _unit(known, name) for name in study.names}
     units |= {SPEED: study.speed_unit} if SPEED in units else {}
     first = study.point(0)
@@ -111,18 +113,21 @@ def sweep(
     )
 
 
-def _suited(system: System, wishes: Wishes, *, series: bool) -> Evaluator:
+def _suited(system: System, wishes: Wishes) -> Evaluator:
     """Steady states where all equations are known, and nothing is asked of a run."""
     of_runs = {"t_end": wishes.t_end, "record_step": wishes.record_step, "start": wishes.start}
     given = [name for name, value in of_runs.items() if value is not None]
     if system.foreign_parts or wishes.replace_parts:
         return Transient()
-    if given or series:
-        raise ParameterError(
-            f"{', '.join(given) or 'series'}: of runs, and steady states are without; evaluate "
-            "the points by runs (--transient)"
-        )
+    if given:
+        raise _of_runs(", ".join(given))
     return Steady()
+
+
+def _of_runs(what: str) -> ParameterError:
+    return ParameterError(
+        f"{what}: of runs, and steady states are without; evaluate the points by runs (--transient)"
+    )
 
 
 def _found(system: str | Path) -> str:

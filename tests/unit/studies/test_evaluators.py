@@ -71,6 +71,8 @@ def test_a_steady_sweep_has_the_states_of_its_points():
 
 def test_runs_have_rows_over_time_on_request(tmp_path):
     wanted = {"speed": [100.0], "torque": [150.0], "t_end": 2e-3, "output": tmp_path}
+    with pytest.raises(ParameterError, match="series: of runs"):
+        hb.sweep("gearbox", evaluator=steady.Steady(), series=True, **wanted)
     with pytest.raises(ParameterError, match="t_end: of runs"):
         hb.sweep("gearbox", **wanted)
     found = hb.sweep("gearbox", evaluator=Transient(), series=True, workers=1, **wanted)
