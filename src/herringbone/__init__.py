@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from herringbone.scenes import Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.sweep import Sweep
+    from herringbone.thesis.study import study
 
     __version__: str
 
@@ -60,6 +61,7 @@ __all__ = [
     "run",
     "start_values",
     "steady",
+    "study",
     "sweep",
 ]
 
@@ -71,6 +73,7 @@ _WHERE = {
     "start_values": "herringbone.running.own_master",
     "Sweep": "herringbone.studies.sweep",
     "sweep": "herringbone.studies.api",
+    "study": "herringbone.thesis.study",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",
