@@ -16,6 +16,9 @@ from herringbone.core import StructureError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System
 
+_MOST = 16
+"""Selections of outputs that are kept."""
+
 
 class Structure:
     """A system taken apart, with what harmonic balance needs.
@@ -42,6 +45,7 @@ class Structure:
         self, system: System, like: "Structure | None" = None, *, same_tangents: bool = False
     ) -> None:
         self.system = system
+        self._wanted: dict[tuple[str, ...], Wanted] = {}
         self.core: Core = Core(system, like.core if like else None, same_tangents=same_tangents)
         condensed, twin = self.core.condensed, self.core.twin
         self.late = twin.settled
@@ -71,8 +75,13 @@ class Structure:
         return float(self.core.twin.block[self.core.twin.index(str(column))])
 
     def wanted(self, columns: Sequence[str]) -> Wanted:
-        """Rows of outputs."""
-        return Wanted(self.core.condensed, self.core.affine, columns)
+        """Rows of outputs; those asked for lately are kept, as points over speed ask for the same."""
+        key = tuple(columns)
+        if key not in self._wanted:
+            if len(self._wanted) >= _MOST:
+                self._wanted.clear()
+            self._wanted[key] = Wanted(self.core.condensed, self.core.affine, columns)
+        return self._wanted[key]
 
     @cached_property
     def groups(self) -> tuple[dict[str, slice], Rows]:
