@@ -75,7 +75,7 @@ class Structure:
         return float(self.core.twin.block[self.core.twin.index(str(column))])
 
     def wanted(self, columns: Sequence[str]) -> Wanted:
-        """Rows of outputs; those asked for lately are kept, as points over speed ask for the same."""
+        """Rows of outputs; those of lately are kept: points over speed ask for the same."""
         key = tuple(columns)
         if key not in self._wanted:
             if len(self._wanted) >= _MOST:

@@ -1,7 +1,6 @@
 """The backlash law, where it matters, and the jumps that it makes."""
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.temporary import temporary_folder
 from herringbone.running.steady import prepared_solver
 from herringbone.thesis import names
@@ -17,6 +17,7 @@ from herringbone.thesis.ground import SPEEDS, settled
 from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _TORQUES = (100.0, 200.0, 300.0, 400.0)
@@ -43,7 +44,7 @@ def compute() -> Outcome:
     return Outcome({"least deflection": under_load, "jumps": jumps}, _findings(under_load, jumps))
 
 
-def _least(state: object) -> float:
+def _least(state: SteadyState) -> float:
     """Smallest deflection of the left mesh over its mean."""
     times = np.linspace(0.0, state.period, 64 * state.meshes, endpoint=False)
     values = state.signal(_DEFLECTION, times)
@@ -56,7 +57,7 @@ def _sweeps(folder: Path) -> list[dict[str, float | str]]:
     rows = [f"{side},drive,pinion,27,{_ERROR!r},0.0" for side in ("left", "right")]
     head = "# units: order 1, amplitude m, phase rad\nside,flank,gear,order,amplitude,phase\n"
     file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
-    values = {names.DEVIATION: 0.0, names.SEAT_MOTION: 0.0,
+    values: dict[str, float | str] = {names.DEVIATION: 0.0, names.SEAT_MOTION: 0.0,
               f"{names.GEAR}.tooth_errors": str(file)}  # fmt: skip
     solver, _, _ = prepared_solver(names.GEARBOX, torque=_LIGHT, values=values)
     found = []
@@ -126,9 +127,8 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
     return {"backlash": figure}
 
 
-def _curves(axes: object, rows: pd.DataFrame, split: str, what: str, told: str) -> None:
-    groups: Sequence = list(rows.groupby(split, sort=False))
-    for name, own in groups:
+def _curves(axes: "Axes", rows: pd.DataFrame, split: str, what: str, told: str) -> None:
+    for name, own in rows.groupby(split, sort=False):
         axes.plot(own["speed"], own[what], marker="o", markersize=3.5, label=told.format(name))
 
 

@@ -83,7 +83,7 @@ def _alone(folder: Path) -> Iterator[dict[str, float | str]]:
         file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
         force = _SHARE * _impact(SPEED, torque).force
         for stagger in (0.0, _STAGGER):
-            values = {
+            values: dict[str, float | str] = {
                 f"{names.GEAR}.stiffness_table": str(file),
                 f"{names.GEAR}.impact_force": force,
                 f"{names.GEAR}.stagger": stagger,

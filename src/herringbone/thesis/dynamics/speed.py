@@ -1,6 +1,6 @@
 """Vibration over speed: the thesis' points, and the curve between them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,15 +40,17 @@ def compute() -> Outcome:
     for seen in (_GROUND, _HOUSING):
         states = settled(CURVE, seats_move=seen == _HOUSING)
         for speed, state in zip(CURVE, states, strict=True):
-            found = levels(state)
-            rows.append({"seen": seen, "speed": speed} | {name: found[name] for name in _SHOWN})
+            rows.append(_row(seen, speed, levels(state)))
     for speed in SPEEDS:
-        found = window_levels(window(speed))
-        rows.append({"seen": _WINDOW, "speed": speed} | {name: found[name] for name in _SHOWN})
+        rows.append(_row(_WINDOW, speed, window_levels(window(speed))))
     units = {"speed": "r/min"} | {name: unit(name) for name in _SHOWN}
     curves = table(pd.DataFrame(rows), units)
     crossings = table(pd.DataFrame(_crossings()), {"speed": "r/min", "frequency": "Hz"})
     return Outcome({"curves": curves, "crossings": crossings}, _findings(curves))
+
+
+def _row(seen: str, speed: float, found: Mapping[str, float]) -> dict[str, float | str]:
+    return {"seen": seen, "speed": speed, **{name: found[name] for name in _SHOWN}}
 
 
 def _crossings() -> list[dict[str, float]]:
