@@ -2,3 +2,4 @@
 
 RIG = "test_rig"
 GEARBOX = "gearbox"
+SYMMETRY_DEVIATION = "gear_mesh.symmetry_deviation"
