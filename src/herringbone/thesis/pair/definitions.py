@@ -21,6 +21,8 @@ DEFINITIONS = {
     "loaded": "F over the deflection of the loaded half",
     "mean": "F over the mean deflection of both halves",
 }
+_LIFTS = {"sum": -11.0, "loaded": 4.0, "mean": 4.0}
+"""Of the labels of the curves [points]."""
 _HIGH, _MOST = TORQUES[-1], MICROMETRES[-1]
 
 
@@ -57,21 +59,21 @@ def _findings(changes: pd.DataFrame) -> tuple[Finding, ...]:
     case = f"at {_HIGH:g} N m and {_MOST:g} µm, pinion axially rigid"
     return (
         Finding(
-            "Higher local deformation of the loaded side reduces the overall stiffness F_n/δ_n.",
+            "Higher local deformation of the loaded side reduces the overall stiffness Fₙ/δₙ.",
             Verdict.NEEDS_AN_ASSUMPTION,
             at["loaded"],
             "%",
-            f"with δ_n of the loaded half, {case}",
+            f"with δₙ of the loaded half, {case}",
             f"With the mean deflection of both halves it is {at['mean']:+.2f} %: the trend is one "
-            "of the definition of δ_n, which the thesis leaves open.",
+            "of the definition of δₙ, which the thesis leaves open.",
         ),
         Finding(
             "The stiffness of the pair is the sum of those of its halves.",
             Verdict.NEEDS_AN_ASSUMPTION,
             at["sum"] - at["loaded"],
             "%",
-            f"between k_L + k_R ({at['sum']:+.2f} %) and F_n/δ_n of the loaded half, {case}",
-            "The sum is F_n/δ_n only where both halves deflect alike.",
+            f"between k_L + k_R ({at['sum']:+.2f} %) and Fₙ/δₙ of the loaded half, {case}",
+            "The sum is Fₙ/δₙ only where both halves deflect alike.",
         ),
     )
 
@@ -90,11 +92,18 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
             for colour, (name, told) in zip(COLOURS, DEFINITIONS.items(), strict=False):
                 label = told if deviation == _MOST else None
                 column[0].semilogx(axial, one[name], color=colour, linestyle=dash, label=label)
+                last = one[name].iloc[-1]
+                if deviation == _MOST and not np.isnan(last):
+                    column[0].annotate(
+                        f"{last:+.1f} %", (axial.iloc[-1], last), textcoords="offset points",
+                        xytext=(2.0, _LIFTS[name]), fontsize=8.0, color=colour, ha="right",
+                    )  # fmt: skip
             column[1].semilogx(
                 axial, one["share_left"], color=COLOURS[6], linestyle=dash,
                 label=f"{deviation:g} µm",
             )  # fmt: skip
         column[0].set_title(f"{torque:g} N m")
+        column[0].margins(y=0.1)
         column[0].set_ylabel("change against no deviation [%]")
         column[1].set(xlabel="axial stiffness of the pinion [N/m]", ylabel="share of the left [%]")
     panels[0][0].legend(loc="lower left")
@@ -107,7 +116,7 @@ ENTRY = Entry(
     group="pair",
     title="Three definitions of the pair's stiffness",
     source="chapters 2.1 and 2.3",
-    shows="The stiffness is defined twice, as F_n/δ_n and as k_L + k_R, and said to fall with the "
+    shows="The stiffness is defined twice, as Fₙ/δₙ and as k_L + k_R, and said to fall with the "
     "symmetry deviation because the loaded side deforms more.",
     compute=compute,
     draw=draw,

@@ -11,6 +11,7 @@ from herringbone.gears.stiffness.methods import mesh_stiffness
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.finite_elements import TORQUES, by_elements, loads
 from herringbone.thesis.pair.given import JOB
+from herringbone.thesis.pair.periods import two_periods
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -123,10 +124,9 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
     phases, torques = tables["over_phase"], tables["over_torque"]
     figure = new_figure("Mesh stiffness by four methods", 1, 2)
     left, right = figure.subplots(1, 2)
-    at = np.concatenate([phases["phase"], phases["phase"] + 1.0])
     for colour, (name, column) in zip(COLOURS, _COLUMNS.items(), strict=False):
         if column in phases:
-            left.plot(at, 1e-9 * np.tile(phases[column], 2), color=colour)
+            left.plot(*two_periods(phases["phase"], 1e-9 * phases[column]), color=colour)
         right.semilogx(
             torques["torque"], 1e-9 * torques[column], "o-", markersize=3.0, color=colour,
             label=name,

@@ -10,11 +10,14 @@ from herringbone.gears.stiffness.load_sharing import LoadSharing, load_sharing
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.finite_elements import by_elements
 from herringbone.thesis.pair.holding import HOLDINGS, MICROMETRES, TORQUES
+from herringbone.thesis.pair.periods import two_periods
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PHASES = 64
+_WIDTHS = (3.2, 1.8, 0.9)
+"""Of the lines: those that coincide are all seen."""
 _KEYS = ("torque", "pinion", "deviation")
 _UNITS = {"torque": "N.m", "deviation": "um", "phase": "mesh periods"}
 _FLOATING, _HELD, _RIGID = HOLDINGS
@@ -129,16 +132,22 @@ def _figure(curves: pd.DataFrame, torque: float) -> "Figure":
     figure = new_figure(title, len(HOLDINGS), 2)
     panels = figure.subplots(len(HOLDINGS), 2, sharex=True, sharey=True)
     at = curves[curves["torque"] == torque]
+    touching = at[["k_left", "k_right"]].to_numpy()
+    touching = 1e-9 * touching[touching > 0.0]
+    limits = touching.min() - 0.02, touching.max() + 0.02
     for row, name in zip(panels, HOLDINGS, strict=True):
         for axes, side in zip(row, ("left", "right"), strict=True):
-            for colour, deviation in zip(COLOURS, MICROMETRES, strict=False):
+            for colour, width, deviation in zip(COLOURS, _WIDTHS, MICROMETRES, strict=False):
                 one = at[(at["pinion"] == name) & (at["deviation"] == deviation)]
-                phase = np.concatenate([one["phase"], one["phase"] + 1.0])
-                values = 1e-9 * np.tile(one[f"k_{side}"], 2)
-                how = {"linestyle": "-", "linewidth": 1.6} if deviation == 0.0 else {}
-                axes.plot(phase, values, color=colour, label=f"{deviation:g} µm", **how)
+                phase, values = two_periods(one["phase"], 1e-9 * one[f"k_{side}"])
+                label = f"{deviation:g} µm"
+                axes.plot(phase, values, color=colour, linewidth=width, label=label)
             axes.set_title(f"{side} half, pinion {name}")
             axes.set_xlim(0.0, 2.0)
+            axes.set_ylim(*limits)
+            if (apart := at[(at["pinion"] == name) & (at[f"k_{side}"] == 0.0)]).size:
+                told = " and ".join(f"{d:g}" for d in sorted(apart["deviation"].unique()))
+                axes.text(1.0, limits[0], f"{told} µm: apart, k = 0", ha="center", va="bottom")
         row[0].set_ylabel("k [10⁹ N/m]")
     for axes in panels[-1]:
         axes.set_xlabel("phase [mesh periods]")

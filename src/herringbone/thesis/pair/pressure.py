@@ -117,14 +117,16 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
             shown = _shown(axes, one, top)
             told = means.loc[(case, side)]
             axes.set_title(
-                f"{side}, {case}: {told['share']:.0f} % of the load, "
-                f"{told['mean_pressure']:.0f} MPa in the mean",
-                fontsize=9.0,
+                f"{side}, {case}: {told['share']:.0f} % of the load, mean "
+                f"{told['mean_pressure']:.0f} MPa",
+                fontsize=8.5,
             )
         row[0].set_ylabel("path of contact, A to E [mm]")
     for axes in panels[-1]:
         axes.set_xlabel("axial, from the middle of the pair [mm]")
-    figure.colorbar(shown, ax=panels, label="pressure [MPa]", pad=0.01, aspect=40)
+    figure.subplots_adjust(right=0.9)
+    beside = figure.add_axes((0.93, 0.1, 0.015, 0.78))
+    figure.colorbar(shown, cax=beside, label="pressure [MPa]")
     return {"pressure": figure}
 
 

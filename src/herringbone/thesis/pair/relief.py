@@ -21,9 +21,9 @@ READINGS: dict[str, Callable[[MeshStiffness], np.ndarray]] = {
 }
 """What "stiffness amplitude" may be: a number for each torque, of one half."""
 TOLD = {
-    "mean": "mean of F_n/δ_n",
-    "peak": "largest F_n/δ_n of a mesh period",
-    "tangent": "mean of the tangent dF_n/dδ_n",
+    "mean": "mean of Fₙ/δₙ",
+    "peak": "largest Fₙ/δₙ of a mesh period",
+    "tangent": "mean of the tangent dFₙ/dδₙ",
 }
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TORQUE = 200.0
-_SPEEDS = tuple(range(600, 2001, 20))
+_SPEEDS = tuple(range(600, 2001, 10))
 """Of the pinion [r/min]; the thesis has three to four of them."""
 _SHOWN = 1000
 _RANGE = (800, 1500)
@@ -89,9 +89,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
     levels = tables["levels"]
     title = f"Bearing forces over speed with relief, {_TORQUE:g} N m, perfect teeth, no deviation"
     figure = new_figure(title, 1, 2)
-    for axes, (tips, where) in zip(
-        figure.subplots(1, 2, sharey=True), reversed(TIPS.items()), strict=True
-    ):
+    for axes, (tips, where) in zip(figure.subplots(1, 2, sharey=True), TIPS.items(), strict=True):
         for colour, amount in zip(COLOURS, (0.0, *AMOUNTS), strict=False):
             one = levels[(levels["tips"] == tips) & (levels["relief"] == amount)]
             axes.plot(one["speed"], one["level"], color=colour, label=f"{amount:g} µm")

@@ -8,6 +8,7 @@ import pandas as pd
 from herringbone.gears import MeshStiffness
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.finite_elements import TORQUES, by_elements
+from herringbone.thesis.pair.periods import two_periods
 from herringbone.thesis.pair.relief import AMOUNTS, TIPS, relief
 
 if TYPE_CHECKING:
@@ -79,8 +80,8 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
                 continue  # the same twice
             one = curves[(curves["tips"] == tips) & (curves["relief"] == amount)]
             label = f"{amount:g} µm {TIPS[tips]}" if amount else "none"
-            phase = np.concatenate([one["phase"], one["phase"] + 1.0])
-            left.plot(phase, np.tile(one["error"], 2), color=colour, linestyle=dash)
+            phase, error = two_periods(one["phase"], one["error"])
+            left.plot(phase, error, color=colour, linestyle=dash)
             of = (over_torque["tips"] == tips) & (over_torque["relief"] == amount)
             shown = over_torque[of & (over_torque["torque"] <= _HIGHEST)]
             right.loglog(

@@ -8,6 +8,7 @@ import pandas as pd
 from herringbone.gears import MeshStiffness
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.finite_elements import TORQUES, by_elements
+from herringbone.thesis.pair.periods import two_periods
 from herringbone.thesis.pair.relief import AMOUNTS, TIPS, change, relief
 
 if TYPE_CHECKING:
@@ -103,8 +104,8 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
                     & (curves["torque"] == torque)
                     & (curves["relief"] == amount)
                 ]
-                phase = np.concatenate([one["phase"], one["phase"] + 1.0])
-                axes.plot(phase, 1e-9 * np.tile(one["k"], 2), color=colour, label=f"{amount:g} µm")
+                phase, k = two_periods(one["phase"], 1e-9 * one["k"])
+                axes.plot(phase, k, color=colour, label=f"{amount:g} µm")
             axes.set_title(f"{torque:g} N m, {where}", fontsize=9.0)
             axes.set_xlim(0.0, 2.0)
         row[0].set_ylabel("k [10⁹ N/m]")

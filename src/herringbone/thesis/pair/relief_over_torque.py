@@ -1,6 +1,6 @@
 """At which torque each reading of the thesis' relief gives its -0.95 %."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -24,6 +24,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TEN = AMOUNTS[1]
+_PLACES: dict[str, dict[str, Any]] = {
+    "pinion": {"xytext": (-5.0, -11.0), "ha": "right"},
+    "both": {"xytext": (5.0, 6.0), "ha": "center"},
+}
+"""Of the labels of the torques, beside their points."""
 
 
 def compute() -> Outcome:
@@ -80,7 +85,7 @@ def _findings(reached: pd.DataFrame) -> tuple[Finding, ...]:
             Verdict.NEEDS_AN_ASSUMPTION,
             mean["torque"],
             "N m",
-            f"at the pinion, where the mean F_n/δ_n does so by relief at its tip: "
+            f"at the pinion, where the mean Fₙ/δₙ does so by relief at its tip: "
             f"{mean['line_load']:.0f} N/mm",
             f"Torque of each reading: {every}.",
             margin=50.0,
@@ -92,7 +97,7 @@ def _findings(reached: pd.DataFrame) -> tuple[Finding, ...]:
             "%",
             "by 10 µm at the torque at which the mean stiffness is 2.011·10⁹ N/m: the nearest of "
             f"all readings, {TOLD[best['reading']]}, {TIPS[best['tips']]}",
-            f"By the thesis' own definition, F_n/δ_n, it is {mean['at_stiffness']:.1f} % there.",
+            f"By the thesis' own definition, Fₙ/δₙ, it is {mean['at_stiffness']:.1f} % there.",
             margin=0.02,
         ),
     )
@@ -126,7 +131,8 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
             axes.plot(at["torque"], -PUBLISHED_CHANGE, "o", color=colour, markersize=5.0)
             axes.annotate(
                 f"{at['torque']:.0f} N m", (at["torque"], -PUBLISHED_CHANGE),
-                textcoords="offset points", xytext=(4.0, 5.0), fontsize=8.0, color=colour,
+                textcoords="offset points", fontsize=8.0, color=colour,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5}, **_PLACES[tips],
             )  # fmt: skip
         axes.axhline(-PUBLISHED_CHANGE, color="black", linestyle=":")
         axes.set_title(TOLD[reading], fontsize=9.0)
