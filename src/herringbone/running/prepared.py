@@ -16,6 +16,7 @@ from herringbone.running.loading import load_scene, load_system, with_options, w
 from herringbone.running.pairs.gears import Gear, with_gears
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
+from herringbone.running.rigid_ground import driven_one_way
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -95,7 +96,7 @@ def prepared(
     check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)
     structure = balanced(structure)
-    lines = unbalanced(structure)
+    lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
         structure, notes = started(structure, chosen)
     except EquilibriumError as error:
