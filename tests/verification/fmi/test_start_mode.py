@@ -1,5 +1,7 @@
 """How a gearbox FMU starts is an Enumeration, for every host that knows FMI."""
 
+from xml.etree.ElementTree import fromstring
+
 import numpy as np
 import pytest
 from fmpy import read_model_description, simulate_fmu
@@ -96,3 +98,27 @@ def test_what_is_no_item_is_refused(fmu, tmp_path):
     )
     with pytest.raises(ParameterError, match="it takes an Enumeration, one of 0"):
         hb.run(tmp_path, t_end=1e-3, step=1e-3, in_process=True)
+
+
+def test_a_parameter_file_moves_the_operating_point(fmu, tmp_path):
+    """FMU of one operating point, .ssv of another: it runs as the FMU that was exported there."""
+    there = {"gear_mesh.pinion.tau": -150.0, "gear_mesh.der(angle)": 150.0}
+    other, values = (
+        export_fmu("gearbox", tmp_path / f"there.{end}", values=there, wanted=Wanted())
+        for end in ("fmu", "ssv")
+    )
+    parameters = fromstring(values.read_bytes()).iter()
+    found = {p.get("name"): p[0].get("value") for p in parameters if p.tag.endswith("}Parameter")}
+    assert found.pop("start_mode") == "periodic"
+    assert float(found["initial_speed"]) == 150.0
+    assert float(found["pinion.tau"]) == -150.0
+    assert float(found["wheel.tau"]) == pytest.approx(450.0)  # 81 teeth over 27
+    forces = ["mesh_left.force", "bearing.wheel_right.f_y"]
+    here, moved, right = (
+        simulate_fmu(str(file), start_values=start, stop_time=5e-3, output=forces)
+        for file, start in ((fmu, {}), (fmu, found), (other, {}))
+    )
+    for name in forces:
+        size = np.abs(right[name]).max()
+        assert np.abs(moved[name] - right[name]).max() < 1e-6 * size  # searched from elsewhere
+        assert np.abs(here[name] - right[name]).max() > 0.5 * size
