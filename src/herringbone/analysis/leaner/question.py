@@ -1,30 +1,17 @@
 """What is asked of a periodic motion, and how far an answer is from another one."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.outputs import harmonics
 from herringbone.analysis.steady.state import SteadyState
 
 _SAME = 1e-6
 """Relative difference of mesh orders that are one."""
-
-
-class Form(StrEnum):
-    """As what a quantity is asked for."""
-
-    SIGNAL = "signal"
-    """Over time, less its mean."""
-    SPECTRUM = "spectrum"
-    """Complex lines, up to the end of a band."""
-    ORDER = "order"
-    """Amplitudes of some mesh orders."""
-    LEVEL = "level"
-    """Root mean square of each output, less its mean."""
 
 
 @dataclass(frozen=True)

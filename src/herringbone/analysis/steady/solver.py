@@ -94,7 +94,7 @@ class SteadySolver:
         return self._structure
 
     def leaner(self, lean: Lean, tolerance: float | None = None) -> "SteadySolver":
-        """The same of a leaner model; see `Structure.leaner`. Tolerance: as this one if not given."""
+        """The same of a leaner model; see `Structure.leaner`. Without a tolerance, as this."""
         found = copy(self)
         found.tolerance = tolerance or self.tolerance
         if lean:
