@@ -41,12 +41,16 @@ class Reactions:
         known = {name: k for k, name in enumerate(state_names(state.structure.core.twin))}
         equations = state.structure.core.condensed.equations
         wanted = [known[name] for name in names]
-        others = np.ones(len(equations.a), dtype=bool)
-        others[wanted] = False
-        own = [  # that can move, and not only with others that are held, as positions do
+        rates = set(wanted)
+        own = [  # that can move, and not only with another one that is held, as positions do
             k
             for k in wanted
-            if modes.back[:, k].any() and (equations.a[k, others].any() or equations.b[k].any())
+            if modes.back[:, k].any()
+            and not (
+                np.count_nonzero(equations.a[k]) == 1
+                and int(equations.a[k].argmax()) in rates - {k}
+                and not equations.b[k].any()
+            )
         ]
         self.places = {state_names(state.structure.core.twin)[k]: at for at, k in enumerate(own)}
         orders, self._count = orbit.response.orders, problem.inputs.shape[1]
