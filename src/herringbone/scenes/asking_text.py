@@ -159,4 +159,4 @@ def _ranges(ends: Mapping[str, Range | None]) -> Iterator[str]:
     for key, given in ends.items():
         if given is not None:
             low, high = (value * (_R_MIN if key == "speed" else 1.0) for value in given)
-            yield f"{key} = [{low!r}, {high!r}]"
+            yield f"{key} = [{low:.12g}, {high:.12g}]"

@@ -60,6 +60,7 @@ class Estimates:
         self._rows = _rows(state.structure, tuple(columns))
         orbit = state.orbit
         with one_blas_thread():
+            self._lines = {question.name: lines_of(state, question) for question in questions}
             problem = state.structure.problem
             one = state.meshes == 1
             self._found: Bent = (
@@ -180,7 +181,7 @@ class Estimates:
     def _apart(self, values: np.ndarray, orders: np.ndarray) -> dict[str, Apart]:
         found = {}
         for question in self._questions:
-            theirs = lines_of(self._state, question)
+            theirs = self._lines[question.name]
             own = values[[self._place[name] for name in question.columns]]
             ours = Lines(own, orders, theirs.meshes, theirs.frequency)
             found[question.name] = apart(question, ours, theirs)

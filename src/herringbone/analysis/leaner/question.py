@@ -9,6 +9,7 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.outputs import harmonics
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.core.one_thread import one_blas_thread
 
 _SAME = 1e-6
 """Relative difference of mesh orders that are one."""
@@ -74,7 +75,8 @@ class Apart(NamedTuple):
 
 def lines_of(state: SteadyState, question: Question) -> Lines:
     """Harmonics of what is asked for."""
-    found = harmonics(state.structure, state.orbit, question.columns)
+    with one_blas_thread():
+        found = harmonics(state.structure, state.orbit, question.columns)
     return Lines(found.coefficients, found.orders, state.meshes, state.frequency)
 
 

@@ -56,6 +56,10 @@ class Certifier:
                 "plan: the system has no steady state that was found at all of the operating "
                 "points; narrow the range, or ask for a transient"
             )
+        self._lines = [
+            {question.name: lines_of(state, question) for question in questions}
+            for state in self._whole
+        ]
 
     def _solved(
         self, solver: SteadySolver, near: Sequence[SteadyState]
@@ -72,13 +76,11 @@ class Certifier:
         """The worst error of a leaner model; None if it has no steady state at a point."""
         leaner = self._solved(self._solver.leaner(lean), self._whole)
         found: list[tuple[Point, dict[str, Apart]]] = []
-        for ours, theirs in zip(leaner, self._whole, strict=True):
+        for ours, theirs in zip(leaner, self._lines, strict=True):
             if ours is None:
                 return None
-            by_name = {
-                q.name: apart(q, lines_of(ours, q), lines_of(theirs, q)) for q in self._questions
-            }
-            found.append((theirs.point, by_name))
+            by_name = {q.name: apart(q, lines_of(ours, q), theirs[q.name]) for q in self._questions}
+            found.append((ours.point, by_name))
         return worst(self._questions, found)
 
     def costs(self, models: Sequence[Lean]) -> list[float]:
@@ -86,13 +88,14 @@ class Certifier:
         solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
         spent: list[list[float]] = [[] for _ in models]
         near: list[SteadyState | None] = [None] * len(models)
-        points = self.points if len(self.points) > 1 else [self.points[0]] * (_TIMES + 1)
+        several = len(self.points) > 1
+        points = self.points if several else [self.points[0]] * _TIMES
         with one_blas_thread():
             for k, point in enumerate(points):
                 for m, solver in enumerate(solvers):
                     start = time.thread_time()
                     found = solver.solve(point, near[m])
-                    if k:  # the first one has no neighbour
+                    if k or not several:  # the first of several has no neighbour
                         spent[m].append(time.thread_time() - start)
-                    near[m] = found if found.converged and len(self.points) > 1 else None
+                    near[m] = found if found.converged and several else None
         return [median(each) for each in spent]

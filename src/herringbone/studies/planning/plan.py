@@ -90,7 +90,7 @@ def plan(
     begin = time.process_time()
     wishes = Wishes(values=values or {}, gear=gear, housing=housing, lean=True)
     found = prepared(system, scene, wishes)
-    asking = found.scene
+    asking = _with_files(found.scene, gear, housing)
     if not asking.asks:
         raise ParameterError(
             f"scene {asking.name}: it asks nothing; add [[ask]], see docs/plans.md, or the "
@@ -109,9 +109,28 @@ def plan(
         questions = questions_of(solver.structure.core, asking.asks)
         solver = solver.leaner(lean_of(replace(asking, model=Model())), _fine(questions))
         by_hand = lean_of(asking)
-        rungs, certifier, said = steady_rungs(solver, questions, asking.operating, by_hand)
+        rungs, certifier, said = steady_rungs(solver, questions, asking, by_hand)
         tolerance = certifier.tolerance
     return _made(found.system, asking, questions, rungs, tolerance, begin, (*found.notes, *said))
+
+
+def _with_files(scene: Scene, gear: object, housing: object) -> Scene:
+    """A scene with the files that the caller gave besides, so that it is whole."""
+    gears, housings = (
+        {"": given} if isinstance(given, str | Path) else dict(given or {})  # type: ignore[call-overload]
+        for given in (gear, housing)
+    )
+    if any(not isinstance(given, str | Path) for given in gears.values()):
+        raise ParameterError("plan: gear: give a file, which the planned scene can name")
+    files = {
+        key: {path: Path(file) for path, file in own.items()}
+        for key, own in (("gears", gears), ("housings", housings))
+    }
+    return replace(
+        scene,
+        gears={**scene.gears, **files["gears"]},
+        housings={**scene.housings, **files["housings"]},
+    )
 
 
 def _fine(questions: list[Question]) -> float:

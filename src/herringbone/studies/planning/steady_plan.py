@@ -10,16 +10,20 @@ from herringbone.analysis.leaner.question import Lines, Question, lines_of
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
-from herringbone.analysis.twin.fused.core import Core
+from herringbone.analysis.twin.fused.core import Core, Steps, closeness
+from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
-from herringbone.scenes import Ask, Operating
+from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder
+from herringbone.studies.planning.marching import marched
 from herringbone.studies.planning.points import probes, tests
-from herringbone.studies.planning.rung import SHARE, STEADY, Rung
+from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
 
 _TRIED = 3
 """Rungs that are solved at most."""
+_TRIAL = 5e-3
+"""Length of a run of which the cost is measured [s]."""
 _WORTH = 0.95
 """Cost over that of the whole model below which leaving something out is worth it."""
 
@@ -43,7 +47,7 @@ def questions_of(core: Core, asks: Sequence[Ask]) -> list[Question]:
 def steady_rungs(
     solver: SteadySolver,
     questions: Sequence[Question],
-    operating: Operating,
+    scene: Scene,
     by_hand: Lean,
 ) -> tuple[list[Rung], Certifier, list[str]]:
     """The ladder with its choice, what it was certified with, and what is to be said.
@@ -51,18 +55,18 @@ def steady_rungs(
     Args:
         solver: of the whole model, fine enough to compare models.
         questions: what is asked.
-        operating: where.
+        scene: that asks.
         by_hand: a leaner model that the user gave.
 
     Raises:
         ParameterError: there is no steady state where it is asked for.
     """
     states: list[SteadyState] = []
-    for point in probes(operating):
+    for point in probes(scene.operating):
         states.append(_steady(solver, point, states[-1] if states else None))
     ladder = Ladder(solver, states, questions)
     rungs = list(ladder.rungs())
-    certifier = Certifier(solver, questions, tests(operating), SHARE)
+    certifier = Certifier(solver, questions, tests(scene.operating), SHARE)
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
     tried = sorted(
@@ -79,13 +83,25 @@ def steady_rungs(
     costs = certifier.costs([WHOLE, *(rung.lean for rung in good)])
     cost_of = {id(rung): cost for rung, cost in zip(good, costs[1:], strict=True)}
     every = [replace(whole, cost=costs[0])]
+    every += [_run(solver, questions, scene)]
     every += [replace(rung, cost=cost_of.get(id(rung))) for rung in rungs]
     return _chosen(every), certifier, _remarks(questions, states)
 
 
+def _run(solver: SteadySolver, questions: Sequence[Question], scene: Scene) -> Rung:
+    """What a run of the core costs that waits until all has settled, by its first part."""
+    columns = tuple(dict.fromkeys(c for q in questions for c in q.columns))
+    steps = Steps(LONGEST, DEGREES[0], closeness(min(q.tolerance for q in questions)))
+    trial = min(_TRIAL, scene.t_end)
+    found = marched(solver.structure.core, trial, min(scene.record_step, trial), steps, columns)
+    cost = found.seconds * scene.t_end / trial
+    name = f"whole model, a run of {scene.t_end:g} s to settle"
+    return Rung(name, FUSED, cost=cost, step=steps.length, why="dearer")
+
+
 def _chosen(rungs: Sequence[Rung]) -> list[Rung]:
     """The rungs, each with why it is not the choice."""
-    priced = [rung for rung in rungs if rung.cost is not None]
+    priced = [rung for rung in rungs if rung.cost is not None and rung.solver == STEADY]
     cheapest = min(priced, key=lambda rung: rung.cost or 0.0)
     whole = rungs[0]
     if (cheapest.cost or 0.0) > _WORTH * (whole.cost or 0.0):

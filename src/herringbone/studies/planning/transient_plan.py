@@ -4,7 +4,6 @@ What a transient would lose with a mode is known only when it was marched, and t
 hardly depends on its modes: the model stays whole.
 """
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -14,13 +13,14 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
-from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST, SHORTEST
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.scenes import Scene
+from herringbone.studies.planning.marching import Marched, marched
 from herringbone.studies.planning.rung import FUSED, Rung, Worst
 
+TURN = 0.06
+"""Time over which means are taken out of what varies [s]: a turn at 1000 r/min."""
 _SAFE = 0.9
 """Of a tolerance: half a step is not the exact solution."""
 
@@ -45,14 +45,14 @@ def transient_rungs(
     finer = None
     for steps in _halved(min(q.tolerance for q in questions), scene.t_end):
         try:
-            ours = finer or _marched(core, scene, steps, columns)
-            finer = _marched(core, scene, steps._replace(length=0.5 * steps.length), columns)
+            ours = finer or _run(core, scene, steps, columns)
+            finer = _run(core, scene, steps._replace(length=0.5 * steps.length), columns)
         except HerringboneError:
             finer = None
             continue
-        found = _worst(questions, columns, ours[0], finer[0], scene)
+        found = _worst(questions, columns, ours, finer)
         name = f"whole model, steps of {1e6 * steps.length:.4g} us, degree {steps.degree}"
-        rung = Rung(name, FUSED, measured=found, cost=ours[1], step=steps.length)
+        rung = Rung(name, FUSED, measured=found, cost=ours.seconds, step=steps.length)
         if found.ratio <= _SAFE:
             return [*rungs, rung], []
         rungs.append(replace(rung, why="its error is above the tolerance"))
@@ -68,35 +68,33 @@ def _halved(tolerance: float, t_end: float) -> Iterator[Steps]:
         length *= 0.5
 
 
-def _marched(
-    core: Core, scene: Scene, steps: Steps, columns: Sequence[str]
-) -> tuple[np.ndarray, float]:
-    """Rows (times, columns), and the CPU time that they took [s]."""
-    times = np.arange(round(scene.t_end / scene.record_step) + 1) * scene.record_step
-    with one_blas_thread():
-        begin = time.thread_time()
-        course, rows = Course(core, times, steps, columns), []
-        while not course.ended:
-            rows.append(course.advance()[1])
-        return np.concatenate(rows), time.thread_time() - begin
+def _run(core: Core, scene: Scene, steps: Steps, columns: Sequence[str]) -> Marched:
+    return marched(core, scene.t_end, scene.record_step, steps, columns)
 
 
 def _worst(
-    questions: Sequence[Question],
-    columns: Sequence[str],
-    ours: np.ndarray,
-    theirs: np.ndarray,
-    scene: Scene,
+    questions: Sequence[Question], columns: Sequence[str], ours: Marched, theirs: Marched
 ) -> Worst:
+    """The largest difference over its tolerance, against what varies within a turn of the shaft."""
     place = {name: k for k, name in enumerate(columns)}
+    window = round(TURN / (theirs.times[1] - theirs.times[0]))
     found = []
     for question in questions:
         own = [place[name] for name in question.columns]
-        off = np.sqrt(np.mean((ours[:, own] - theirs[:, own]) ** 2, axis=0))
-        size = np.std(theirs[:, own], axis=0)
+        off = np.sqrt(np.mean((ours.values[:, own] - theirs.values[:, own]) ** 2, axis=0))
+        size = np.std(_less_slow(theirs.values[:, own], window), axis=0)
         whole = float(np.linalg.norm(size))
         single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
         k = int(single.argmax())
         error = float(np.linalg.norm(off)) / whole if whole else 0.0
         found.append(Worst(error, question, question.columns[k], float(single[k]), Point()))
     return max(found, key=lambda each: each.ratio)
+
+
+def _less_slow(values: np.ndarray, window: int) -> np.ndarray:
+    """Values (n, columns) less their moving means over some rows, which shrinks at the ends."""
+    sums = np.vstack([np.zeros(values.shape[1]), np.cumsum(values, axis=0)])
+    rows = np.arange(len(values))
+    reach = np.minimum(np.minimum(rows, len(values) - 1 - rows), max(1, window // 2))
+    first, last = rows - reach, rows + reach + 1
+    return values - (sums[last] - sums[first]) / (last - first)[:, None]
