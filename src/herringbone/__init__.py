@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from herringbone.studies.api import sweep
     from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
+    from herringbone.thesis.study import study
 
     __version__: str
 
@@ -63,6 +64,7 @@ __all__ = [
     "run",
     "start_values",
     "steady",
+    "study",
     "sweep",
 ]
 
@@ -76,6 +78,7 @@ _WHERE = {
     "sweep": "herringbone.studies.api",
     "Plan": "herringbone.studies.planning.plan",
     "plan": "herringbone.studies.planning.plan",
+    "study": "herringbone.thesis.study",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

@@ -1,0 +1,4 @@
+"""Names in the shipped systems that entries use, as a user's script would."""
+
+RIG = "test_rig"
+GEARBOX = "gearbox"
