@@ -69,7 +69,11 @@ def settled(
     Raises:
         HerringboneError: a state was not found.
     """
-    given = {names.DEVIATION: deviation, names.SEAT_MOTION: float(seats_move), **(values or {})}
+    given = {
+        names.SYMMETRY_DEVIATION: deviation,
+        names.SEAT_MOTION: float(seats_move),
+        **(values or {}),
+    }
     solver, _, _ = prepared_solver(names.GEARBOX, torque=torque, values=given)
     near = None
     for speed in speeds:
@@ -102,7 +106,7 @@ def window(
     share = torque / TORQUE
     values = {
         f"{names.GEAR}.der(angle)": speed * _SPEED_IN,
-        names.DEVIATION: deviation,
+        names.SYMMETRY_DEVIATION: deviation,
         "pinion_torque.torque_factor": share,
         "wheel_torque.torque_factor": -share,
     }

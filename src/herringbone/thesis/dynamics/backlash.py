@@ -57,7 +57,7 @@ def _sweeps(folder: Path) -> list[dict[str, float | str]]:
     rows = [f"{side},drive,pinion,27,{_ERROR!r},0.0" for side in ("left", "right")]
     head = "# units: order 1, amplitude m, phase rad\nside,flank,gear,order,amplitude,phase\n"
     file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
-    values: dict[str, float | str] = {names.DEVIATION: 0.0, names.SEAT_MOTION: 0.0,
+    values: dict[str, float | str] = {names.SYMMETRY_DEVIATION: 0.0, names.SEAT_MOTION: 0.0,
               f"{names.GEAR}.tooth_errors": str(file)}  # fmt: skip
     solver, _, _ = prepared_solver(names.GEARBOX, torque=_LIGHT, values=values)
     found = []

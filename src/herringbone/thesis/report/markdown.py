@@ -1,5 +1,6 @@
 """The report as Markdown pages with pictures beside them."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 from herringbone.thesis.entry import Finding, Verdict
@@ -31,7 +32,9 @@ def markdown_pages(entries: Sequence[Shown]) -> dict[str, str]:
 def picture_name(shown: Shown, name: str) -> str:
     """File of a picture beside the pages."""
     entry = shown.done.entry.name
-    return f"{PICTURES}/{entry}.png" if name == entry else f"{PICTURES}/{entry}.{name}.png"
+    if len(shown.pictures) == 1:
+        return f"{PICTURES}/{entry}.png"
+    return f"{PICTURES}/{entry}.{re.sub(r'[^A-Za-z0-9]+', '_', name)}.png"
 
 
 def _index(groups: dict[str, list[Shown]]) -> Iterator[str]:
