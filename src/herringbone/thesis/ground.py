@@ -34,7 +34,8 @@ SIGNALS = {
     for what, letter in (("displacement", "s"), ("velocity", "v"))
 }
 """Columns of what figures 3.5 to 3.20 show, of the left halves."""
-_SAMPLE = 40e-6
+SAMPLE = 40e-6
+"""Between shown values [s]."""
 _LEAST = 1e-12
 _SPEED_IN = math.pi / 30.0
 
@@ -56,6 +57,7 @@ def settled(
     *,
     seats_move: bool = False,
     values: Mapping[str, float | str] | None = None,
+    system: str = names.GEARBOX,
 ) -> Iterator[SteadyState]:
     """Steady states at speeds [r/min], each from its neighbour.
 
@@ -65,6 +67,7 @@ def settled(
         deviation: f_A [m].
         seats_move: two-way housing; else bearings on rigid ground that drive the housing.
         values: of further variables, by name.
+        system: that has gears, bearings and a housing.
 
     Raises:
         HerringboneError: a state was not found.
@@ -74,7 +77,7 @@ def settled(
         names.SEAT_MOTION: float(seats_move),
         **(values or {}),
     }
-    solver, _, _ = prepared_solver(names.GEARBOX, torque=torque, values=given)
+    solver, _, _ = prepared_solver(system, torque=torque, values=given)
     near = None
     for speed in speeds:
         near = solver.solve(Point(speed=speed * _SPEED_IN), near)
@@ -118,12 +121,17 @@ def window(
     rows = result.data[result.data["time"] >= WINDOW[0] - _LEAST]
     found = {"time": rows["time"]}
     found |= {name: _in_tables(name, rows[result.column(c)]) for name, c in columns.items()}
-    return pd.DataFrame(found).iloc[:: round(_SAMPLE / (rows["time"].iloc[1] - WINDOW[0]))]
+    return pd.DataFrame(found).iloc[:: round(SAMPLE / (rows["time"].iloc[1] - WINDOW[0]))]
+
+
+def window_times() -> np.ndarray:
+    """Times of the window [s]."""
+    return WINDOW[0] + np.arange(round((WINDOW[1] - WINDOW[0]) / SAMPLE) + 1) * SAMPLE
 
 
 def piece(state: SteadyState, columns: Mapping[str, str] = SIGNALS) -> pd.DataFrame:
-    """A settled state over as long a time as the window, from a multiple of the period."""
-    times = np.arange(round((WINDOW[1] - WINDOW[0]) / _SAMPLE) + 1) * _SAMPLE
+    """A settled state at the times of the window."""
+    times = window_times()
     found = {"time": times}
     values = (state.signal(column, times) for column in columns.values())
     found |= {name: _in_tables(name, x) for name, x in zip(columns, values, strict=True)}

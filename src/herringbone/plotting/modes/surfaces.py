@@ -53,7 +53,7 @@ def displaced_surfaces(
             strict=True,
         ):  # fmt: skip
             set_limits(low, high)
-        axes.set_box_aspect(extent, zoom=1.25)
+        axes.set_box_aspect(extent, zoom=0.98)
         axes.view_init(*_VIEW)
         axes.set_axis_off()
         axes.set_title(told, loc="left", x=0.08, fontsize=9.0)

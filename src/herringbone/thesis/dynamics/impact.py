@@ -131,14 +131,15 @@ def _findings(impacts: pd.DataFrame, alone: pd.DataFrame) -> tuple[Finding, ...]
             f"times the force at {_SPEEDS[-1]:.0f} against {_SPEEDS[0]:.0f} r/min",
         ),
         Finding(
-            "The impact force has the compliances of entering and other pairs in series.",
-            Verdict.CONTRADICTS,
+            "The impact force follows from the compliances of the entering and the other pairs.",
+            Verdict.CANNOT_BE_TESTED,
             float(at[SPEED]),
             "N",
             f"per half at {SPEED:.0f} r/min and {TORQUES[0]:.0f} N m, at most, with the entering "
             "pair alone",
-            "Pairs in contact act in parallel. The line of contact of a helical pair begins with "
-            "no length, so that this is an upper bound.",
+            "No value is published. The thesis adds both compliances as if they were in series, "
+            "pairs in contact are in parallel; and the line of contact of a helical pair begins "
+            "with no length, so that this is an upper bound.",
         ),
     )
 
