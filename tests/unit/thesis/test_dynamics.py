@@ -148,6 +148,7 @@ def test_wheel_moves_more_where_the_mesh_meets_its_mode():
     assert found["pinion radial displacement"] < 0.3 * found["wheel radial displacement"]
 
 
+@pytest.mark.slow
 def test_teeth_stay_together():
     found = outcome("backlash").tables["least deflection"]
     assert found["least"].min() == pytest.approx(0.958, abs=0.005)
