@@ -122,6 +122,14 @@ def test_torques_of_the_reliefs_change(tips, reading, torque):
     assert finding("relief_over_torque", "reduce the stiffness").verdict is NEEDS
 
 
+def test_methods_of_slices_on_the_relief():
+    """Coupled slices within 10 %; plain ones, 5 kN m in example 07, know no support at the ends."""
+    rows = outcome("relief_over_torque").tables["methods"].set_index(["tips", "method"])["torque"]
+    pinion = rows["pinion"]
+    assert pinion["coupled slices"] == pytest.approx(pinion["finite elements"], rel=0.1)
+    assert pinion["plain slices"] == pytest.approx(5000.0, rel=0.1)
+
+
 def test_a_change_that_is_not_reached():
     assert np.isnan(torque_of(change("both", 10.0, "peak")))
     assert "not up to the largest" in finding("relief_over_torque", "reduce").why

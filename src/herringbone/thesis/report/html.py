@@ -52,12 +52,8 @@ def html_page(entries: Sequence[Shown], data: str) -> str:
 
 
 def _head(entries: Sequence[Shown]) -> Iterator[str]:
-    found = counts([f for shown in entries for f in findings_of(shown.done)])
     yield "<h1>The thesis on herringbone gears, sentence by sentence</h1>"
     yield f"<p>{_ABOUT}</p>"
-    yield '<p class="counts">' + " ".join(
-        f"<span>{_chip(verdict)} <b>{count}</b></span>" for verdict, count in found.items()
-    ) + f"<span>{sum(found.values())} sentences, {len(entries)} studies</span></p>"  # fmt: skip
     yield from _by_group(entries)
     if failed := [shown for shown in entries if shown.error]:
         names = ", ".join(_link(shown) for shown in failed)
@@ -67,14 +63,17 @@ def _head(entries: Sequence[Shown]) -> Iterator[str]:
 def _by_group(entries: Sequence[Shown]) -> Iterator[str]:
     """How many sentences of each group have which verdict."""
     yield '<table class="counts"><thead><tr><th></th>'
-    yield "".join(f"<th>{verdict.value}</th>" for verdict in Verdict) + "</tr></thead><tbody>"
+    yield "".join(f"<th>{_chip(verdict)}</th>" for verdict in Verdict) + "</tr></thead><tbody>"
     for group, title in GROUPS.items():
         members = [shown for shown in entries if shown.done.entry.group == group]
         if members:
             found = counts([f for shown in members for f in findings_of(shown.done)])
             numbers = "".join(f"<td>{count or ''}</td>" for count in found.values())
             yield f'<tr><td><a href="#{group}">{escape(title)}</a></td>{numbers}</tr>'
-    yield "</tbody></table>"
+    every = counts([f for shown in entries for f in findings_of(shown.done)])
+    told = f"{sum(every.values())} sentences in {len(entries)} studies"
+    numbers = "".join(f"<td>{count}</td>" for count in every.values())
+    yield f'<tr class="all"><td>{told}</td>{numbers}</tr></tbody></table>'
 
 
 def _summary(entries: Sequence[Shown]) -> Iterator[str]:
