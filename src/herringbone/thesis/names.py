@@ -2,3 +2,8 @@
 
 RIG = "test_rig"
 GEARBOX = "gearbox"
+
+GEAR = "gear_mesh"
+BEARINGS = "bearing_supports"
+HOUSING = "modal_housing"
+CONTROLLER = "bench_controller"
