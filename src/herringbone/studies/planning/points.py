@@ -15,25 +15,25 @@ _SPREAD = 0.754877666, 0.569840291
 plastic number."""
 
 
-def probes(operating: Operating) -> list[Point]:
+def points_to_probe(operating: Operating) -> list[Point]:
     """Ends and middle of the ranges; the scene's own point without any."""
     ends = {"speed": operating.speed, "torque": operating.torque}
     values = {key: _at(given, _PROBES[key]) for key, given in ends.items()}
     return [Point(speed, torque) for torque, speed in product(values["torque"], values["speed"])]
 
 
-def tests(operating: Operating, count: int = TESTS) -> list[Point]:
+def points_to_test(operating: Operating, count: int = TESTS) -> list[Point]:
     """Points that fill the ranges, by ascending speed; none of them is probed at.
 
     Without a range, the scene's own point, where nothing else is asked.
     """
     if all(given is None or given[0] == given[1] for given in (operating.speed, operating.torque)):
-        return probes(operating)[:1]
+        return points_to_probe(operating)[:1]
     shares = np.mod(0.5 + np.outer(np.arange(1, count + 1), _SPREAD), 1.0)
-    return sorted(_tests(operating, shares), key=lambda point: abs(point.speed or 0.0))
+    return sorted(_spread(operating, shares), key=lambda point: abs(point.speed or 0.0))
 
 
-def _tests(operating: Operating, shares: np.ndarray) -> Iterator[Point]:
+def _spread(operating: Operating, shares: np.ndarray) -> Iterator[Point]:
     for own in shares:
         speed, torque = (
             _at(given, (float(share),))[0]

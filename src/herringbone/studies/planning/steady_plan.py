@@ -17,7 +17,7 @@ from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder
 from herringbone.studies.planning.marching import marched
-from herringbone.studies.planning.points import probes, tests
+from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
 
 _TRIED = 3
@@ -62,11 +62,11 @@ def steady_rungs(
         ParameterError: there is no steady state where it is asked for.
     """
     states: list[SteadyState] = []
-    for point in probes(scene.operating):
+    for point in points_to_probe(scene.operating):
         states.append(_steady(solver, point, states[-1] if states else None))
     ladder = Ladder(solver, states, questions)
     rungs = list(ladder.rungs())
-    certifier = Certifier(solver, questions, tests(scene.operating), SHARE)
+    certifier = Certifier(solver, questions, points_to_test(scene.operating), SHARE)
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
     tried = sorted(
