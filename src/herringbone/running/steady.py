@@ -1,6 +1,7 @@
 """Periodic steady states of systems, by name."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point, SetPoints
@@ -10,7 +11,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.running.lean import lean_notes, lean_of
 from herringbone.running.loading import load_system
 from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.running.prepared import Named, Prepared, Wishes, prepared
 from herringbone.scenes import Scene, Start
 
 
@@ -66,19 +67,38 @@ def prepared_solver(
     tolerance: float = TOLERANCE,
 ) -> tuple[SteadySolver, Point, tuple[str, ...]]:
     """What solves for steady states, the operating point asked for, and notes; see `steady`."""
-    structure = system if isinstance(system, System) else load_system(system)[0]
     point = Point(speed, torque)
-    point.check()
-    wanted = {**SetPoints(structure).values(point), **(values or {})}
-    wishes = Wishes(
-        values=wanted,
-        gear=gear,
-        housing=housing,
-        start=Start.EQUILIBRIUM,
-        start_offset={},
-        lean=True,
-    )
-    found = prepared(system, scene, wishes)
+    found = prepared_at(point, system, scene, values=values, gear=gear, housing=housing)
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
     said = lean_notes(found.scene.model, values or {}, speed, torque)
     return solver, point, (*found.notes, *said)
+
+
+def prepared_at(
+    point: Point,
+    system: str | Path | System,
+    scene: str | Path | Scene | None = None,
+    *,
+    values: Mapping[str, float | str | Path] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+) -> Prepared:
+    """A system in the equilibrium of an operating point; see `steady`.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    point.check()
+    wishes = Wishes(
+        values=values or {},
+        gear=gear,
+        housing=housing,
+        start=Start.REST,
+        start_offset={},
+        lean=True,
+    )
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    if point.torque is not None and gear:  # what balances it at the wheel follows from the pair
+        structure = prepared(system, scene, wishes).system
+    wanted = {**SetPoints(structure).values(point), **(values or {})}
+    return prepared(system, scene, replace(wishes, values=wanted, start=Start.EQUILIBRIUM))

@@ -13,7 +13,7 @@ from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.studies.planning.rung import Worst, worst
 
-_FINER = 20.0
+FINER = 20.0
 """How much finer than the tolerance models are compared."""
 _LEAST, _LOOSEST = 1e-7, 0.05
 """Tolerances of a solver."""
@@ -47,7 +47,7 @@ class Certifier:
         share: float,
     ) -> None:
         self._questions, self.points = questions, points
-        self.fine = tolerance_for(questions, 1.0 / _FINER)
+        self.fine = tolerance_for(questions, 1.0 / FINER)
         self.tolerance = tolerance_for(questions, share)
         self._solver = solver.leaner(WHOLE, self.fine)
         self._whole = [found for found in self._solved(self._solver, ()) if found is not None]

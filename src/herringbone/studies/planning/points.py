@@ -15,6 +15,11 @@ _SPREAD = 0.754877666, 0.569840291
 plastic number."""
 
 
+def first_point(operating: Operating) -> Point:
+    """The lowest of the ranges."""
+    return points_to_probe(operating)[0]
+
+
 def points_to_probe(operating: Operating) -> list[Point]:
     """Ends and middle of the ranges; the scene's own point without any."""
     ends = {"speed": operating.speed, "torque": operating.torque}
