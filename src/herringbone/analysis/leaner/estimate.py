@@ -53,7 +53,7 @@ class Estimates:
         self._wanted = _wanted(state.structure, tuple(columns))
         self._rows = alternating_rows(self._wanted)
         orbit = state.orbit
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             self._lines = {question.name: lines_of(state, question) for question in questions}
             problem = state.structure.problem
             one = state.meshes == 1
@@ -62,34 +62,35 @@ class Estimates:
             )
             self._inverse = of_a_mesh(state, self._found) if one else of_many(state, self._found)
             self._reactions = Reactions(state, names, self._found, self._rows)
+            self._still = np.zeros_like(orbit.channels)
             self._moving = self._reactions.moving(orbit.channels)
+            self._moving[:, 0] -= self._reactions.start
             self._whole = coefficients_of(self._wanted, orbit)
 
     def held(self, names: Sequence[str]) -> dict[str, Apart]:
         """Errors by question if these states are held."""
         places = self._reactions.places
         own = [places[name] for name in names if name in places]
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             push = self._reactions.holding(own, self._moving)
             step = self._answered(own, push)
-            channels = np.zeros_like(self._state.orbit.channels)
+            channels = self._still.copy()
             channels[self._found.unknown] = step
-            again = self._reactions.moving(channels)
-            push = push + self._reactions.holding(own, again)
+            moving = self._reactions.moving
+            push = push + self._reactions.holding(own, moving(channels) - moving(self._still))
             changed = self._changed(own, push, channels)
             return self._apart(self._whole + changed)
 
     def alone(self, names: Sequence[str]) -> dict[str, Mapping[str, Apart]]:
         """Errors by state and question if each of these is held alone, with what goes with it."""
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             every = self._reactions.alone(self._moving)
             found: dict[str, Mapping[str, Apart]] = {}
-            nothing = np.zeros_like(self._state.orbit.channels)
             for name in names:
                 if (place := self._reactions.places.get(name)) is None:
                     continue
                 push = every[[place]]
-                channels = nothing.copy()
+                channels = self._still.copy()
                 channels[self._found.unknown] = self._answered([place], push)
                 changed = self._changed([place], push, channels)
                 found[name] = self._apart(self._whole + changed)
@@ -132,7 +133,9 @@ class Estimates:
         """What outputs change by under reactions and changes of the channels."""
         response = self._state.orbit.response
         by = np.einsum("crh,rh->ch", self._reactions.outputs[:, list(own)], push)
-        return by + response.outputs(self._rows, response.coordinates(channels), channels)
+        by += response.outputs(self._rows, response.coordinates(channels), channels)
+        still = response.coordinates(self._still)  # a rotation that nothing drives has its speed
+        return by - response.outputs(self._rows, still, self._still)
 
     def _apart(self, rows: np.ndarray, wanted: Wanted | None = None) -> dict[str, Apart]:
         """Errors by question of coefficients (rows, harmonics) of all affine rows."""

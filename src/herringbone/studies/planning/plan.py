@@ -130,10 +130,13 @@ def _with_files(scene: Scene, gear: object, housing: object) -> Scene:
 
 def _files(given: object, name: str) -> dict[str, Path]:
     """Files by path of their part; "": of the only one."""
-    own = given if isinstance(given, Mapping) else {"": given} if given is not None else {}
-    if any(not isinstance(file, str | Path) for file in own.values()):
-        raise ParameterError(f"plan: {name}: give a file, which the planned scene can name")
-    return {path: Path(file) for path, file in own.items()}
+    own = dict(given) if isinstance(given, Mapping) else {} if given is None else {"": given}
+    found = {}
+    for path, file in own.items():
+        if not isinstance(file, str | Path):
+            raise ParameterError(f"plan: {name}: give a file, which the planned scene can name")
+        found[str(path)] = Path(file)
+    return found
 
 
 def _made(

@@ -8,7 +8,8 @@ import numpy as np
 from herringbone.analysis.steady.set_points import Point
 from herringbone.scenes.asking import Operating, Range
 
-TESTS = 12
+TESTS, _FEW = 12, 5
+"""Points of a range that are tested at; where the period has many meshes."""
 _PROBES = {"speed": (0.0, 0.5, 1.0), "torque": (0.0, 1.0)}
 _SPREAD = 0.754877666, 0.569840291
 """Steps of a sequence that fills a square evenly (M. Roberts, 2018): powers of the inverse of the
@@ -27,14 +28,18 @@ def points_to_probe(operating: Operating) -> list[Point]:
     return [Point(speed, torque) for torque, speed in product(values["torque"], values["speed"])]
 
 
-def points_to_test(operating: Operating, count: int = TESTS) -> list[Point]:
+def points_to_test(operating: Operating, *, long: bool = False) -> list[Point]:
     """Points that fill the ranges, by ascending speed; none of them is probed at.
+
+    Args:
+        operating: the ranges.
+        long: the period has many meshes.
 
     Without a range, the scene's own point, where nothing else is asked.
     """
     if all(given is None or given[0] == given[1] for given in (operating.speed, operating.torque)):
         return points_to_probe(operating)[:1]
-    shares = np.mod(0.5 + np.outer(np.arange(1, count + 1), _SPREAD), 1.0)
+    shares = np.mod(0.5 + np.outer(np.arange(1, (_FEW if long else TESTS) + 1), _SPREAD), 1.0)
     return sorted(_spread(operating, shares), key=lambda point: abs(point.speed or 0.0))
 
 

@@ -66,7 +66,8 @@ def steady_rungs(
         states.append(_steady(solver, point, states[-1] if states else None))
     ladder = Ladder(solver, states, questions)
     rungs = list(ladder.rungs())
-    certifier = Certifier(solver, questions, points_to_test(scene.operating), SHARE)
+    long = any(state.meshes > 1 for state in states)
+    certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
     tried = sorted(
