@@ -13,7 +13,7 @@ from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.lean import lean_notes, lean_of
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.running.prepared import Named, Prepared, Wishes, prepared
 from herringbone.running.settled import LONGEST, settled, with_known_values
 from herringbone.scenes import Scene, Start
 
@@ -89,11 +89,27 @@ def prepared_solver(
     tolerance: float = TOLERANCE,
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """What solves for steady states near an operating point, and notes; see `steady`."""
-    structure = system if isinstance(system, System) else load_system(system)[0]
-    point.check()
-    wanted = {**SetPoints(structure).values(point), **wishes.values}
-    asked = replace(wishes, values=wanted, start=Start.EQUILIBRIUM, start_offset={}, lean=True)
-    found = prepared(system, scene, asked)
+    found = prepared_at(point, system, scene, wishes)
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
     said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
     return solver, (*found.notes, *said)
+
+
+def prepared_at(
+    point: Point,
+    system: str | Path | System,
+    scene: str | Path | Scene | None = None,
+    wishes: Wishes = NOTHING,
+) -> Prepared:
+    """A system in the equilibrium of an operating point; see `steady`.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    point.check()
+    asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    if point.torque is not None and wishes.gear:  # what balances it follows from the pair
+        structure = prepared(system, scene, asked).system
+    wanted = {**SetPoints(structure).values(point), **wishes.values}
+    return prepared(system, scene, replace(asked, values=wanted, start=Start.EQUILIBRIUM))
