@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from herringbone.running.steady import steady
     from herringbone.scenes import Scene
     from herringbone.studies.api import sweep
+    from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
     from herringbone.thesis.study import study
 
@@ -43,6 +44,7 @@ __all__ = [
     "HerringboneError",
     "Jacobi",
     "OutcomeKind",
+    "Plan",
     "Point",
     "Predict",
     "Result",
@@ -57,6 +59,7 @@ __all__ = [
     "connections",
     "load",
     "modes",
+    "plan",
     "radiated_power",
     "run",
     "start_values",
@@ -73,6 +76,8 @@ _WHERE = {
     "start_values": "herringbone.running.own_master",
     "Sweep": "herringbone.studies.sweep",
     "sweep": "herringbone.studies.api",
+    "Plan": "herringbone.studies.planning.plan",
+    "plan": "herringbone.studies.planning.plan",
     "study": "herringbone.thesis.study",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",

@@ -35,6 +35,7 @@ from herringbone.commands.output import as_command, check_writable, say, show
 from herringbone.commands.run import command as run_command
 from herringbone.commands.run import options as run_options
 from herringbone.commands.studies import modes as modes_command
+from herringbone.commands.studies import plan as plan_command
 from herringbone.commands.studies import steady as steady_command
 from herringbone.commands.studies import study as study_command
 from herringbone.commands.studies import sweep as sweep_command
@@ -109,6 +110,10 @@ def _parser() -> argparse.ArgumentParser:
     study_command.add_options(sub)
     sub = add("steady", steady_command.run, "the periodic steady state at an operating point")
     steady_command.add_options(sub)
+    sub = add(
+        "plan", plan_command.run, "the least model and the solver that a scene's questions need"
+    )
+    plan_command.add_options(sub)
     sub = add("plot", plot_command.run, "pictures of a results folder or of a sweep's folder")
     plot_command.add_options(sub)
     sub = add("modes", modes_command.run, "natural modes: participation, Campbell diagram, shapes")

@@ -7,6 +7,7 @@ from herringbone.analysis.steady.set_points import Point, SetPoints
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
+from herringbone.running.lean import lean_notes, lean_of
 from herringbone.running.loading import load_system
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
@@ -70,7 +71,14 @@ def prepared_solver(
     point.check()
     wanted = {**SetPoints(structure).values(point), **(values or {})}
     wishes = Wishes(
-        values=wanted, gear=gear, housing=housing, start=Start.EQUILIBRIUM, start_offset={}
+        values=wanted,
+        gear=gear,
+        housing=housing,
+        start=Start.EQUILIBRIUM,
+        start_offset={},
+        lean=True,
     )
     found = prepared(system, scene, wishes)
-    return SteadySolver(found.system, tolerance), point, found.notes
+    solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
+    said = lean_notes(found.scene.model, values or {}, speed, torque)
+    return solver, point, (*found.notes, *said)

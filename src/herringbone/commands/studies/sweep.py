@@ -92,6 +92,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         study = read_study_file(options.study)
     files = files_of_parts(options)
+    tqdm.monitor_interval = 0  # a thread, and what has threads is not forked
     with tqdm(unit=" points", disable=None) as bar:
         found = sweep(
             options.system,
