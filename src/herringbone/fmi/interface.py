@@ -37,6 +37,11 @@ def texts(declaration: Declaration) -> dict[int, Text]:
     return dict(enumerate(declaration.texts, declaration.size))
 
 
+def choices(declaration: Declaration) -> list[Variable]:
+    """The variables that are one of some items, Enumerations of FMI."""
+    return [v for v in reals(declaration).values() if v.items]
+
+
 def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:
     """The inputs on which an output depends directly, each followed by its nodes."""
     names = []

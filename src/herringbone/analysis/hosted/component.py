@@ -57,10 +57,10 @@ EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
 _NOT_SETTLED = (
     "no equilibrium of the elastic coordinates was found under these torques; they start "
-    "undeformed, and will vibrate: look at the torques, or set start_mode = 0",
+    "undeformed, and will vibrate: look at the torques, or set start_mode = as_set",
     "no vibration was found that repeats itself every mesh period at this speed and these torques; "
     "the elastic coordinates start in equilibrium, and will settle: look for teeth that separate, "
-    "or set start_mode = 1",
+    "or set start_mode = equilibrium",
 )
 
 

@@ -97,16 +97,20 @@ class PeriodicMotion(Facts):
         return self.numbers * self.frequency
 
     def chosen(self, *names: str) -> list[str]:
-        """Columns of groups of channels, and those that match a pattern (`*`, `?`).
+        """Columns by name, of groups of channels, and those that match a pattern (`*`, `?`).
 
         Raises:
             ParameterError: a name is none of these.
         """
         found: dict[str, None] = {}
+        known = frozenset(self.columns)
         for name in names:
-            own = self.channels.get(name) or [
-                c for c in self.columns if matches_any(endings_of(c), [name])
-            ]
+            whole = [name] if name in known else []  # patterns of many names take long
+            own = (
+                self.channels.get(name)
+                or whole
+                or [c for c in self.columns if matches_any(endings_of(c), [name])]
+            )
             if not own:
                 groups = ", ".join(self.channels)
                 raise ParameterError(f"no output matches '{name}'; groups of channels: {groups}")

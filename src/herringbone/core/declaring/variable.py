@@ -46,6 +46,8 @@ class Variable:
         minimum, maximum: range of a parameter, in `unit`.
         nominal: usual size of a state, in `unit`, by which integrators scale their tolerance.
         whole: a parameter that takes whole numbers only.
+        items: names of the numbers 0, 1, ... that a parameter takes; in native FMUs it is an
+            Enumeration. Empty: it is a number.
         rate: the output that is the time derivative of this output, if there is one.
         quantity, place: what it means to those who ask for the component's role, and where.
         at_rest: of a parameter, the input whose value in steady rotation it takes at the start.
@@ -65,6 +67,7 @@ class Variable:
     maximum: float = math.inf
     nominal: float = 1.0
     whole: bool = False
+    items: tuple[str, ...] = ()
     rate: str = ""
     quantity: Quantity | None = None
     place: str = ""
@@ -249,4 +252,20 @@ def parameter(
         quantity=quantity,
         place=place,
         at_rest=at_rest,
+    )
+
+
+def choice(name: str, description: str, items: tuple[str, ...], start: int) -> Variable:
+    """A parameter that is one of some items, by its number from 0."""
+    return Variable(
+        name,
+        "1",
+        Causality.PARAMETER,
+        Variability.FIXED,
+        description,
+        float(start),
+        minimum=0.0,
+        maximum=float(len(items) - 1),
+        whole=True,
+        items=items,
     )

@@ -149,7 +149,8 @@ def _number(value: float) -> str:
 
 def _real(variable: Variable, node: int) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
-    return f"{{{', '.join(map(_number, numbers))}, {int(variable.whole)}, {node}}}"
+    kinds = int(variable.whole), node, int(bool(variable.items))
+    return f"{{{', '.join([*map(_number, numbers), *map(str, kinds)])}}}"
 
 
 def _block(used: UsedStates) -> list[Variable | None]:
@@ -184,7 +185,7 @@ def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[s
     nodes = _nodes(declaration)
     for index, variable in enumerate(block):
         node = nodes.get(index, 0)
-        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0}"
+        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0, 0}"
 
 
 def _access(
@@ -210,7 +211,7 @@ def _extents(used: UsedStates) -> list[int]:
     extents = [0] * declaration.first_table
     for variable in declaration.variables:
         first = declaration.index[variable.name]
-        extents[first] = 1
+        extents[first] = int(not variable.items)
         if variable.nodes and node_name(variable.name, 1) not in declaration.hidden:
             extents[first + 1] = NODES
     for first, (_, extent) in used.arrays().items():
