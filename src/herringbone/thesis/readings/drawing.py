@@ -11,6 +11,8 @@ from herringbone.thesis.entry import Tables
 _COLOURS = ("#E8A188", "#F5E3B5", "#9CCBB0")
 """Contradicts; not to be seen; holds."""
 _LARGE = 10.0
+_NOTHING = 5e-4
+"""A margin this near to zero says that nothing changes."""
 
 
 def over_assumptions(tables: Tables) -> Figure:
@@ -20,9 +22,8 @@ def over_assumptions(tables: Tables) -> Figure:
     best = tables["smallest_sets"].groupby("about", sort=False)["case"].last().drop_duplicates()
     cases = pd.concat([cases, margins.loc[[k for k in best if k not in cases.index]]])
     values = cases[list(sentences["sentence"])].to_numpy().T
-    holds = np.where(
-        values >= sentences["needs"].to_numpy()[:, None], 2, np.where(values > 0.0, 1, 0)
-    )
+    needed = sentences["needs"].to_numpy()[:, None]
+    holds = np.where(values >= needed, 2, np.where(values > -_NOTHING, 1, 0))
     figure = Figure(figsize=(15.0, 10.5))
     axes = figure.subplots()
     axes.imshow(holds, cmap=ListedColormap(_COLOURS), vmin=0, vmax=2, aspect="auto")
@@ -43,7 +44,7 @@ def over_assumptions(tables: Tables) -> Figure:
               fontsize=8, fontweight="bold")  # fmt: skip
     figure.suptitle(
         "Margins of the thesis' sentences, one assumption changed at a time (right: most hold). "
-        "Green: holds; yellow: too little to be seen; red: contradicted",
+        "Green: holds; yellow: too little to be seen; red: the other way",
         x=0.01, ha="left", fontsize=10, fontweight="bold",
     )  # fmt: skip
     figure.subplots_adjust(left=0.36, right=0.95, top=0.79, bottom=0.03)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _ALL = "all"
 _ABOUT = (_ALL, COMPUTED, MEASURED)
 _WORDS = {_ALL: "all sentences", COMPUTED: "chapters 2 to 4", MEASURED: "chapters 5 and 6"}
+_DIGITS = 3
 _RATIO_MARGIN = 0.01
 """Of numbers between machines: the solver's tolerance, over a growth."""
 
@@ -77,8 +78,8 @@ def _sentences(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray) ->
 
 def _simplest(found: Sequence[Case], holds: np.ndarray, margins: np.ndarray) -> int | None:
     """Number of the case with fewest changes in which a sentence holds; of these the clearest."""
-    inside = np.flatnonzero(holds)
-    if not inside.size:
+    inside = np.flatnonzero(holds).tolist()
+    if not inside:
         return None
     return int(min(inside, key=lambda k: (len(found[k].changes), -margins[k])))
 
@@ -112,9 +113,16 @@ def _of_sentences(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray)
             why = f"It holds in {count}; with fewest changes: {words} ({there})."
         text = sentence.text[0].upper() + sentence.text[1:]
         findings.append(
-            Finding(f"{text} ({sentence.source}).", verdict, number, unit, what, why,
-                    max(1.0, _RATIO_MARGIN * abs(number)))
-        )  # fmt: skip
+            Finding(
+                f"{text} ({sentence.source}).",
+                verdict,
+                round(number, _DIGITS),
+                unit,
+                what,
+                why,
+                max(1.0, _RATIO_MARGIN * abs(number)),
+            )
+        )
     return findings
 
 
