@@ -10,6 +10,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
 from herringbone.running.api import run
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Start
 from herringbone.thesis import names
@@ -77,7 +78,7 @@ def settled(
         names.SEAT_MOTION: float(seats_move),
         **(values or {}),
     }
-    solver, _, _ = prepared_solver(system, torque=torque, values=given)
+    solver, _ = prepared_solver(system, point=Point(torque=torque), wishes=Wishes(values=given))
     near = None
     for speed in speeds:
         near = solver.solve(Point(speed=speed * _SPEED_IN), near)

@@ -10,6 +10,7 @@ import pandas as pd
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
@@ -59,7 +60,9 @@ def _sweeps(folder: Path) -> list[dict[str, float | str]]:
     file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
     values: dict[str, float | str] = {names.SYMMETRY_DEVIATION: 0.0, names.SEAT_MOTION: 0.0,
               f"{names.GEAR}.tooth_errors": str(file)}  # fmt: skip
-    solver, _, _ = prepared_solver(names.GEARBOX, torque=_LIGHT, values=values)
+    solver, _ = prepared_solver(
+        names.GEARBOX, point=Point(torque=_LIGHT), wishes=Wishes(values=values)
+    )
     found = []
     for sweep, speeds in (("up", _UP), ("down", _DOWN)):
         near = None

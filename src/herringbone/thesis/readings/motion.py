@@ -22,8 +22,8 @@ from herringbone.core.declaring.roles import HALVES
 from herringbone.housing import SEAT_DOFS, ModalHousing, default_housing
 from herringbone.result.result import TIME, Result
 from herringbone.running.api import run
+from herringbone.running.commanded import commanded
 from herringbone.running.steady import prepared_solver
-from herringbone.studies.set_points import commanded
 from herringbone.thesis.names import BEARINGS, GEAR, GEARBOX
 from herringbone.thesis.readings.reading import Reading
 
@@ -90,12 +90,8 @@ class Moving:
 
     def _state(self, point: Point) -> SteadyState:
         if self._solver is None:
-            self._solver, _, _ = prepared_solver(
-                self._reading.system(),
-                speed=point.speed,
-                torque=point.torque,
-                values=point.values,
-                tolerance=_TOLERANCE,
+            self._solver, _ = prepared_solver(
+                self._reading.system(), point=point, tolerance=_TOLERANCE
             )
         return self._solver.solve(point, self._near)
 
@@ -150,7 +146,9 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
     result = _run(reading, own, _SETTLING + turn)
     data, known = result.data, result.data.columns
     count = round(turn / _STEP)
-    named = {name: data[_full(known, name)].to_numpy()[-count:] for name in COLUMNS}
+    named: dict[object, np.ndarray] = {
+        name: data[_full(known, name)].to_numpy()[-count:] for name in COLUMNS
+    }
     forces = data[[_full(known, name) for name in SEATS]].to_numpy()
     step = float(data[TIME].iloc[1] - data[TIME].iloc[0])
     velocity = modal_velocity(_housing(), forces, step)[-count:] @ _shapes().T

@@ -81,7 +81,7 @@ def _simplest(found: Sequence[Case], holds: np.ndarray, margins: np.ndarray) -> 
     inside = np.flatnonzero(holds).tolist()
     if not inside:
         return None
-    return int(min(inside, key=lambda k: (len(found[k].changes), -margins[k])))
+    return int(min(inside, key=lambda k: (len(found[int(k)].changes), -margins[k])))
 
 
 def _smallest(found: Sequence[Case], holds: np.ndarray) -> pd.DataFrame:
