@@ -146,14 +146,13 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
     result = _run(reading, own, _SETTLING + turn)
     data, known = result.data, result.data.columns
     count = round(turn / _STEP)
-    named: dict[object, np.ndarray] = {
+    signals: dict[Key, np.ndarray] = {
         name: data[_full(known, name)].to_numpy()[-count:] for name in COLUMNS
     }
     forces = data[[_full(known, name) for name in SEATS]].to_numpy()
     step = float(data[TIME].iloc[1] - data[TIME].iloc[0])
     velocity = modal_velocity(_housing(), forces, step)[-count:] @ _shapes().T
-    signals: dict[Key, np.ndarray] = dict(zip(PLACES, velocity.T, strict=True))
-    signals |= named
+    signals |= zip(PLACES, velocity.T, strict=True)
     return Motion(step, signals, repeats=False, how=RUN)
 
 
