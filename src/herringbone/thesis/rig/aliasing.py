@@ -88,7 +88,11 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
 
     spectra, orders = tables["spectra"], tables["orders"]
     speeds = sorted(spectra["speed"].unique())
-    figure = new_figure("Sensor A, sampled at 2000 Hz, perfect teeth; ( ): folded", 1, len(speeds))
+    figure = new_figure(
+        "Sensor A, sampled at 2000 Hz, perfect teeth; numbers: mesh orders, ( ) folded",
+        1,
+        len(speeds),
+    )
     top = spectra["amplitude"].max()
     for axes, speed in zip(figure.subplots(1, len(speeds)), speeds, strict=True):
         for words, part in spectra[spectra["speed"] == speed].groupby("filter", sort=False):
@@ -98,7 +102,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
             axes.axvline(
                 row.shows_at, color=MARKER_COLOUR, linewidth=0.8, linestyle=":", zorder=0.5
             )
-            text = "$f_m$" if row.mesh_order == 1 else f"${row.mesh_order} f_m$"
+            text = str(row.mesh_order)
             text = text if row.shows_at == row.frequency else f"({text})"
             lift = 1.01 + _LIFT * (k % 2)
             axes.text(row.shows_at, lift, text, ha="center", va="bottom", fontsize=8,
