@@ -89,7 +89,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
     spectra, orders = tables["spectra"], tables["orders"]
     speeds = sorted(spectra["speed"].unique())
     figure = new_figure(
-        "Sensor A, sampled at 2000 Hz, perfect teeth; numbers: mesh orders, ( ) folded",
+        "Sensor A, sampled at 2000 Hz, perfect teeth; mesh orders, (folded)",
         1,
         len(speeds),
     )
