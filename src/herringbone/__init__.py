@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from herringbone.analysis.accuracy.comparison import compare
+    from herringbone.analysis.figures.plateaus import plateau_statistics
     from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.analysis.measured.of_run import compare_record
     from herringbone.analysis.steady.set_points import Point
     from herringbone.analysis.steady.solver import SteadySolver
     from herringbone.analysis.steady.state import SteadyState
@@ -56,10 +58,12 @@ __all__ = [
     "System",
     "build_fmus",
     "compare",
+    "compare_record",
     "connections",
     "load",
     "modes",
     "plan",
+    "plateau_statistics",
     "radiated_power",
     "run",
     "start_values",
@@ -92,6 +96,8 @@ _WHERE = {
     "System": "herringbone.cosim.structure.system",
     "modes": "herringbone.running.modes",
     "compare": "herringbone.analysis.accuracy.comparison",
+    "compare_record": "herringbone.analysis.measured.of_run",
+    "plateau_statistics": "herringbone.analysis.figures.plateaus",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",
     "SteadyState": "herringbone.analysis.steady.state",
