@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from herringbone.running.steady import steady
     from herringbone.scenes import Scene
     from herringbone.studies.api import sweep
+    from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
+    from herringbone.thesis.study import study
 
     __version__: str
 
@@ -42,6 +44,7 @@ __all__ = [
     "HerringboneError",
     "Jacobi",
     "OutcomeKind",
+    "Plan",
     "Point",
     "Predict",
     "Result",
@@ -56,10 +59,12 @@ __all__ = [
     "connections",
     "load",
     "modes",
+    "plan",
     "radiated_power",
     "run",
     "start_values",
     "steady",
+    "study",
     "sweep",
 ]
 
@@ -71,6 +76,9 @@ _WHERE = {
     "start_values": "herringbone.running.own_master",
     "Sweep": "herringbone.studies.sweep",
     "sweep": "herringbone.studies.api",
+    "Plan": "herringbone.studies.planning.plan",
+    "plan": "herringbone.studies.planning.plan",
+    "study": "herringbone.thesis.study",
     "Predict": "herringbone.cosim.algorithms",
     "Jacobi": "herringbone.cosim.algorithms",
     "GaussSeidel": "herringbone.cosim.algorithms",

@@ -15,7 +15,13 @@ MODULES = {
     for file in (PACKAGE / "components").rglob("*")
     if file.stem.startswith(tuple(COMPONENTS))
 }
-FILES = sorted(f for f in PACKAGE.rglob("*.py") if "components" not in f.relative_to(PACKAGE).parts)
+ASKING = PACKAGE / "thesis" / "names.py"
+"""What a user's script would name: the report asks shipped systems by the names in this file."""
+FILES = sorted(
+    f
+    for f in PACKAGE.rglob("*.py")
+    if "components" not in f.relative_to(PACKAGE).parts and f != ASKING
+)
 
 
 def explanations(tree: ast.AST) -> set[int]:

@@ -8,6 +8,8 @@ from herringbone.cosim.algorithms import ALGORITHMS
 from herringbone.cosim.structure.system_file import FILE_NAME
 from herringbone.scenes import read_scene
 
+STUDIES = "studies"
+"""What lists the studies in place of a component."""
 _ORDER = (Causality.INPUT, Causality.OUTPUT, Causality.LOCAL, Causality.PARAMETER)
 
 
@@ -39,6 +41,29 @@ def overview() -> str:
 
 def _start(variable: Variable) -> str:
     return "" if variable.causality is Causality.OUTPUT else f"{variable.start:g}"
+
+
+def described(name: str) -> str:
+    """A component, or the studies.
+
+    Raises:
+        StructureError: there is no such component.
+    """
+    return studies() if name == STUDIES else describe_component(name)
+
+
+def studies() -> str:
+    """The entries of the thesis' report."""
+    from herringbone.thesis.registry import ENTRIES, GROUPS  # noqa: PLC0415 (loads all of them)
+
+    lines = ["herringbone study thesis [NAME ...] -o report"]
+    for group, title in GROUPS.items():
+        rows: list[tuple[str, ...]] = [
+            (e.name, e.title, e.source) for e in ENTRIES.values() if e.group == group
+        ]
+        if rows:
+            lines += ["", f"{title}:", *_table(rows)]
+    return "\n".join(lines)
 
 
 def describe_component(name: str) -> str:

@@ -35,7 +35,9 @@ from herringbone.commands.output import as_command, check_writable, say, show
 from herringbone.commands.run import command as run_command
 from herringbone.commands.run import options as run_options
 from herringbone.commands.studies import modes as modes_command
+from herringbone.commands.studies import plan as plan_command
 from herringbone.commands.studies import steady as steady_command
+from herringbone.commands.studies import study as study_command
 from herringbone.commands.studies import sweep as sweep_command
 from herringbone.core import (
     EXIT_CODES,
@@ -95,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add = partial(add_command, commands)
     sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
-    sub.add_argument("name", nargs="?", help="component whose variables are shown")
+    sub.add_argument("name", nargs="?", help="component whose variables are shown; or studies")
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", check_command.run, "check an FMU: is it sound, and what is it")
     check_command.add_options(sub)
@@ -104,8 +106,14 @@ def _parser() -> argparse.ArgumentParser:
     compare_command.add_options(sub)
     sub = add("sweep", sweep_command.run, "run a system at many operating points")
     sweep_command.add_options(sub)
+    sub = add("study", study_command.run, "the thesis' studies as a report with verdicts")
+    study_command.add_options(sub)
     sub = add("steady", steady_command.run, "the periodic steady state at an operating point")
     steady_command.add_options(sub)
+    sub = add(
+        "plan", plan_command.run, "the least model and the solver that a scene's questions need"
+    )
+    plan_command.add_options(sub)
     sub = add("plot", plot_command.run, "pictures of a results folder or of a sweep's folder")
     plot_command.add_options(sub)
     sub = add("modes", modes_command.run, "natural modes: participation, Campbell diagram, shapes")
@@ -157,9 +165,9 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> int:
-    from herringbone.commands.listing import describe_component, overview  # noqa: PLC0415
+    from herringbone.commands.listing import described, overview  # noqa: PLC0415
 
-    show(describe_component(options.name) if options.name else overview())
+    show(described(options.name) if options.name else overview())
     return 0
 
 

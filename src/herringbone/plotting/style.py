@@ -9,7 +9,7 @@ Source: M. Okabe and K. Ito, Color Universal Design (2008), for the colours.
 from collections.abc import Callable
 from functools import wraps
 from io import BytesIO
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
 import numpy as np
@@ -65,6 +65,7 @@ _POINTS = 1600
 _LARGEST = 1e30  # a diverged run is drawn up to here
 
 P = ParamSpec("P")
+Drawn = TypeVar("Drawn")
 
 
 class ShownFigure(Figure):
@@ -76,11 +77,11 @@ class ShownFigure(Figure):
         return picture.getvalue()
 
 
-def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+def styled(draw: Callable[P, Drawn]) -> Callable[P, Drawn]:
     """Draw with this module's style, without touching the caller's matplotlib settings."""
 
     @wraps(draw)
-    def inside(*args: P.args, **kwargs: P.kwargs) -> Figure:
+    def inside(*args: P.args, **kwargs: P.kwargs) -> Drawn:
         with mpl.rc_context(_RC), np.errstate(over="ignore", invalid="ignore"):
             return draw(*args, **kwargs)
 

@@ -27,6 +27,7 @@ from herringbone.running.fused.fused import (
     fused,
     verified_by_half,
 )
+from herringbone.running.lean import lean_notes, refuse_lean
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
@@ -130,7 +131,9 @@ def run(
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
-    wishes = Wishes(t_end, record_step, start, values or {}, gear, housing, replace_parts or {})
+    wishes = Wishes(
+        t_end, record_step, start, values or {}, gear, housing, replace_parts or {}, lean=fuse
+    )
     with (
         one_blas_thread(),
         housing_of_strangers(in_process=in_process, deadline=call_deadline),
@@ -143,8 +146,10 @@ def run(
         )
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
-            wanted = FusedAsked(step, tolerance, tuple(record), notes=notes)
+            said = (*notes, *lean_notes(chosen.model, values or {}))
+            wanted = FusedAsked(step, tolerance, tuple(record), notes=said)
             return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
+        refuse_lean(chosen)
         adapts = tolerance is not None or (coupling is not None and coupling.adaptive)
         if verify and adapts and not structure.foreign_parts:
             reference, verify = True, False

@@ -12,10 +12,12 @@ from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
 from herringbone.running.housings import split_housings, with_housing_data
+from herringbone.running.lean import refuse_lean
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
 from herringbone.running.pairs.gears import Gear, with_gears
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
+from herringbone.running.rigid_ground import driven_one_way
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -34,6 +36,7 @@ class Wishes:
         housing: data, dimensions or FMU of the housing, or of each by path.
         replace_parts: FMU files by instance.
         start_offset: in place of the scene's.
+        lean: the caller takes the leaner model that a scene may have.
     """
 
     t_end: float | None = None
@@ -44,6 +47,7 @@ class Wishes:
     housing: Named | None = None
     replace_parts: Mapping[str, str | Path] = field(default_factory=dict)
     start_offset: Mapping[str, float] | None = None
+    lean: bool = False
 
 
 class Prepared(NamedTuple):
@@ -78,13 +82,13 @@ def prepared(
     chosen = with_options(load_scene(folder, scene), w.t_end, w.record_step, w.start, w.values)
     if w.start_offset is not None:
         chosen = replace(chosen, start_offset=w.start_offset)
+    if not w.lean:
+        refuse_lean(chosen)
     check(chosen)
     gears: dict[str, Gear] = _merged(
         structure, Role.GEAR_PAIR, structure.gears, chosen.gears, _by_path(w.gear)
     )
-    housings: dict[str, str | Path] = _merged(
-        structure, Role.HOUSING, structure.housings, chosen.housings, _by_path(w.housing)
-    )
+    housings = housings_of(structure, chosen, w)
     if (gears or housings) and is_ssp(Path(folder)):
         raise ParameterError(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
@@ -95,13 +99,18 @@ def prepared(
     check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)
     structure = balanced(structure)
-    lines = unbalanced(structure)
+    lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
         structure, notes = started(structure, chosen)
     except EquilibriumError as error:
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
     structure, impacts = with_impacts(structure, jobs)
     return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
+
+
+def housings_of(system: System, scene: Scene, wishes: Wishes) -> dict[str, str | Path]:
+    """Data, dimensions or FMUs of housings by their whole paths; raises ParameterError."""
+    return _merged(system, Role.HOUSING, system.housings, scene.housings, _by_path(wishes.housing))
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,6 +13,8 @@ from herringbone.core.names import shown
 from herringbone.core.places.files import beside, is_file
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
+from herringbone.scenes.asking import Ask, Model, Operating
+from herringbone.scenes.asking_text import ASKING, read_asking
 
 DEFAULT_SCENE = "loaded"
 _TABLES = {"set", "start_offset"}
@@ -45,6 +47,9 @@ class Scene(Facts):
         gears: gear file by path of the gear pair's part, or of a system around it; "": the only
             one.
         housings: the same of housings: data, dimensions or FMU.
+        asks: what is to be known, and how well.
+        operating: where it is to be known.
+        model: what the model leaves out.
     """
 
     name: str
@@ -56,6 +61,9 @@ class Scene(Facts):
     start_offset: Mapping[str, float] = field(default_factory=dict)
     gears: Mapping[str, Path] = field(default_factory=dict)
     housings: Mapping[str, Path] = field(default_factory=dict)
+    asks: tuple[Ask, ...] = ()
+    operating: Operating = field(default_factory=Operating)
+    model: Model = field(default_factory=Model)
 
     def _facts(self) -> dict[str, str]:
         return {
@@ -68,6 +76,8 @@ class Scene(Facts):
             "gears": ", ".join(map(str, self.gears.values())),
             "housings": ", ".join(map(str, self.housings.values())),
             "start offset": ", ".join(f"{k} {v:+g}" for k, v in self.start_offset.items()),
+            "asks": "; ".join(f"{ask.name}, {100 * ask.tolerance:g} %" for ask in self.asks),
+            "left out": ", ".join((*self.model.hold, *self.model.one_way)),
         }
 
 
@@ -95,7 +105,7 @@ def read_scene(file: str | Path) -> Scene:
     """
     file = Path(file)
     data = read_toml(file, StructureError)
-    known = {"description", "start", *_NUMBERS, *_TABLES, *_FILES}
+    known = {"description", "start", *_NUMBERS, *_TABLES, *_FILES, *ASKING}
     if unknown := set(data) - known:
         raise ParameterError(
             f"{file}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(known))}"
@@ -105,6 +115,7 @@ def read_scene(file: str | Path) -> Scene:
     start = data.get("start", Start.EQUILIBRIUM.value)
     if start not in list(Start):
         raise ParameterError(f"{file}: start = {start!r}; it must be one of {', '.join(Start)}")
+    asks, operating, model = read_asking(data, file)
     return Scene(
         file.stem,
         data.get("description", ""),
@@ -113,6 +124,9 @@ def read_scene(file: str | Path) -> Scene:
         start_offset=data.get("start_offset", {}),
         gears=part_files(data, "gear", file),
         housings=part_files(data, "housing", file),
+        asks=asks,
+        operating=operating,
+        model=model,
         **numbers,
     )
 

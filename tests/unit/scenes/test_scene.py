@@ -54,7 +54,7 @@ def test_missing_file(tmp_path):
 
 
 def test_unknown_key(tmp_path):
-    refused("unknown key step, tend; known: description, gear, housing, record_step",
+    refused("unknown key step, tend; known: ask, description, gear, housing, model, ",
             write(tmp_path, "tend = 1\nstep = 2"))  # fmt: skip
 
 

@@ -6,19 +6,24 @@ channels of a group together; orders are amplitudes at multiples of each run's o
 Hann-windowed, of the channel in which they are largest.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
-from herringbone.analysis.accuracy.apart import Apart, differences, groups_of
-from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
-from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
+from herringbone.analysis.accuracy.apart import differences, groups_of
+from herringbone.analysis.accuracy.compared_tables import (
+    Sides,
+    changed_parameters,
+    table_of_columns,
+    table_of_groups,
+    table_of_orders,
+)
+from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.result.folder.load import load
@@ -27,17 +32,8 @@ from herringbone.result.result import TIME, Result
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ORDERS = 6
-"""Mesh orders that are compared."""
 _FEWEST = 4
 _SAME = 1e-9
-
-
-class Sides(NamedTuple):
-    """A run and what it is called in a comparison."""
-
-    name: str
-    result: Result
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,16 +120,16 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
     notes += _only(ours, theirs, shared)
     units = theirs.result.units
     found = differences(*values, shared, groups)
-    orders, why = _orders(ours, theirs, groups)
+    orders, why = table_of_orders(ours, theirs, groups)
     return Comparison(
         ours,
         theirs,
         float(times[0]),
         float(times[-1]),
-        _table_of_groups(ours, theirs, groups, found, values, shared),
-        _table_of_columns(ours, theirs, shared, values, units),
+        table_of_groups(ours, theirs, groups, found, values, shared),
+        table_of_columns(ours, theirs, shared, values, units),
         orders,
-        _parameters(ours.result, theirs.result),
+        changed_parameters(ours.result, theirs.result),
         (*notes, *why),
     )
 
@@ -204,98 +200,3 @@ def _only(ours: Sides, theirs: Sides, shared: Sequence[str]) -> tuple[str, ...]:
             "say little, levels and orders do"
         )
     return tuple(lines)
-
-
-def _table_of_groups(
-    ours: Sides,
-    theirs: Sides,
-    groups: dict[str, list[str]],
-    found: Apart,
-    values: tuple[np.ndarray, np.ndarray],
-    shared: Sequence[str],
-) -> pd.DataFrame:
-    place = {name: i for i, name in enumerate(shared)}
-    rows = []
-    for name, columns in groups.items():
-        own = [place[c] for c in columns]
-        alone = differences(values[0][:, own], values[1][:, own], columns, {name: columns})
-        rows.append({
-            "group": name,
-            "unit": theirs.result.units[columns[0]],
-            "channels": len(columns),
-            "difference": found.groups.get(name, math.nan),
-            "worst": alone.worst or columns[0],
-            "worst_difference": alone.worst_difference if alone.worst else math.nan,
-            "level_first": _level(ours.result, columns),
-            "level_second": _level(theirs.result, columns),
-        })  # fmt: skip
-    return pd.DataFrame(rows)
-
-
-def _level(result: Result, columns: Sequence[str]) -> float:
-    """Root mean square of the alternating parts over the steady part, of all columns together."""
-    values = result.data[list(columns)].to_numpy(float)[steady_part(result).rows]
-    return float(np.sqrt(values.var(axis=0).mean()))
-
-
-def _table_of_columns(
-    ours: Sides,
-    theirs: Sides,
-    shared: Sequence[str],
-    values: tuple[np.ndarray, np.ndarray],
-    units: Any,  # noqa: ANN401 (a mapping)
-) -> pd.DataFrame:
-    off = np.sqrt(np.mean((values[0] - values[1]) ** 2, axis=0))
-    spread = values[1].std(axis=0)
-    varies = spread > _SAME * np.abs(values[1]).max(axis=0)
-    relative = np.where(varies, off / np.where(varies, spread, 1.0), np.nan)
-    table = pd.DataFrame({"column": list(shared), "unit": [units[c] for c in shared]})
-    table["difference"] = relative
-    for name, side in (("first", ours), ("second", theirs)):
-        steady = side.result.data[list(shared)].to_numpy(float)[steady_part(side.result).rows]
-        table[f"mean_{name}"], table[f"rms_{name}"] = steady.mean(axis=0), steady.std(axis=0)
-    return table
-
-
-def _orders(
-    ours: Sides, theirs: Sides, groups: dict[str, list[str]]
-) -> tuple[pd.DataFrame, tuple[str, ...]]:
-    """Amplitudes of mesh orders, the largest of each group; or why there are none."""
-    names = ["group", "unit", "order", "amplitude_first", "amplitude_second"]
-    for side in (ours, theirs):
-        rows = steady_part(side.result).rows
-        if run_mesh_frequency(side.result) is None or rows.stop - rows.start < FEWEST_SAMPLES:
-            return pd.DataFrame(columns=names), (f"{side.name} has no steady mesh frequency",)
-    found = []
-    for name, columns in groups.items():
-        one, other = (mesh_amplitudes(side.result, columns) for side in (ours, theirs))
-        unit = theirs.result.units[columns[0]]
-        found += [
-            (name, unit, k + 1, float(one[k].max()), float(other[k].max())) for k in range(ORDERS)
-        ]
-    return pd.DataFrame(found, columns=names), ()
-
-
-def mesh_amplitudes(result: Result, columns: Sequence[str], count: int = ORDERS) -> np.ndarray:
-    """Amplitudes (count, columns) at multiples of the mesh frequency in the steady part.
-
-    NaN above half the record rate.
-
-    Raises:
-        ParameterError: there is no steady mesh frequency.
-    """
-    part, mesh = steady_part(result), run_mesh_frequency(result)
-    if mesh is None:
-        raise ParameterError(f"system '{result.info.system}': no steady mesh frequency is known")
-    time = result.data[TIME].to_numpy()[part.rows]
-    values = result.data[list(columns)].to_numpy(float)[part.rows]
-    found = amplitudes_at_multiples(time, values, mesh, count)
-    found[mesh * np.arange(1, count + 1) > 0.5 / part.sample_step] = math.nan
-    return found
-
-
-def _parameters(first: Result, second: Result) -> pd.DataFrame:
-    ours, theirs = first.info.parameters, second.info.parameters
-    names = [n for n in {**ours, **theirs} if ours.get(n) != theirs.get(n)]
-    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in names]
-    return pd.DataFrame(rows, columns=["parameter", "first", "second"])

@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.figures.operating_point import steady_part
+from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
 from herringbone.result.result import Result
 
@@ -54,13 +56,12 @@ def largest_lines(
     part = steady_part(result)
     if part.rows.stop - part.rows.start < FEWEST_SAMPLES:
         return []
-    found = [
-        ChannelLine(line.frequency, line.amplitude, column)
-        for column in columns
-        for line in spectral_lines(
-            result.data[column].to_numpy()[part.rows], part.sample_step, highest, count
-        )
-    ]
+    found: list[ChannelLine] = []
+    for column in columns:
+        values = result.data[column].to_numpy()[part.rows]
+        asked = values, part.sample_step, highest, count
+        lines = figure_of(partial(spectral_lines, *asked), "spectral lines", *asked)
+        found += [ChannelLine(line.frequency, line.amplitude, column) for line in lines]
     apart = _SAME_LINE / (part.end - part.begin)
     kept: list[ChannelLine] = []
     for line in sorted(found, key=lambda line: -line.amplitude):

@@ -15,11 +15,13 @@ Source: F. Fahy, P. Gardonio, Sound and Structural Vibration, 2nd ed., sections 
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.operating_point import SteadyPart, steady_part
+from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum
 from herringbone.core import ParameterError
 from herringbone.housing import ModalHousing
@@ -105,6 +107,14 @@ def radiated_power(
     """
     result = result.uniform()
     housing, forces, steady = power_inputs(result, housing, part=part)
+    data = (housing.frequency_hz, housing.damping_ratio, housing.seat_shapes, housing.gram)
+    return figure_of(
+        partial(_estimate, housing, forces, steady),
+        "radiated power", *data, housing.valid_to_hz, forces, steady,
+    )  # fmt: skip
+
+
+def _estimate(housing: ModalHousing, forces: np.ndarray, steady: SteadyPart) -> RadiatedPower:
     gram = np.asarray(housing.gram)  # it is there: see above
     velocity = modal_velocity(housing, forces, steady.sample_step)[steady.rows]
     squares, directions = np.linalg.eigh(gram)

@@ -7,6 +7,7 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.marched import March, marched
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
@@ -77,3 +78,16 @@ def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) 
 def _can_be_marched(still: Orbit) -> bool:
     """False at the speeds that no rotor has, which what was asked for may lead to."""
     return _SHORTEST <= still.period <= _LONGEST
+
+
+def motion_at(structure: Structure, point: Point) -> Motion:
+    """What is given of the motion at an operating point."""
+    condensed, problem = structure.core.condensed, structure.problem
+    signals = structure.points.signals(condensed, structure.signals, point)
+    given = np.append(signals, 1.0)[:, None].astype(complex)
+    speed = 0.0
+    if problem.free is not None:
+        speed = float((problem.turns @ condensed.modes.start).real)
+        if point.speed is not None:
+            speed = point.speed * structure.turn / (2.0 * np.pi * structure.turns_of_pinion)
+    return Motion(given, structure.turn, speed, angle=float(condensed.modes.angles[0]))

@@ -1,6 +1,7 @@
 """Steady states of one system at many operating points."""
 
 from collections.abc import Iterator, Mapping
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from herringbone.analysis.steady.guess import (
     SETTLING,
     Guess,
     begun,
+    motion_at,
     settling,
     several,
     standing,
@@ -21,6 +23,7 @@ from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Pe
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
@@ -71,18 +74,32 @@ class SteadySolver:
         system: with start values of steady rotation, see `running.prepared`; its parts are all
             components of this package.
         tolerance: error of the alternating part of each group of channels.
+        lean: what the model leaves out.
 
     Raises:
         ParameterError: the tolerance is none.
         StructureError: the system cannot be taken apart, or its motion does not repeat.
     """
 
-    def __init__(self, system: System, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, system: System, tolerance: float = TOLERANCE, *, lean: Lean = WHOLE) -> None:
         if not 0.0 < tolerance < 1.0:
             raise ParameterError(f"tolerance = {tolerance:g}: it must lie between 0 and 1")
         self._system, self.tolerance = system, tolerance
-        self._structure = Structure(system)
+        self._structure = Structure(system, lean=lean)
         self._values: Mapping[str, float | str] = {}
+
+    @property
+    def structure(self) -> Structure:
+        """The system, prepared with the values that were solved for last."""
+        return self._structure
+
+    def leaner(self, lean: Lean, tolerance: float | None = None) -> "SteadySolver":
+        """The same of a leaner model; see `Structure.leaner`. Without a tolerance, as this."""
+        found = copy(self)
+        found.tolerance = tolerance or self.tolerance
+        if lean:
+            found._structure = self._structure.leaner(lean)
+        return found
 
     def solve(self, point: Point = AS_IT_IS, near: SteadyState | None = None) -> SteadyState:
         """The steady state at an operating point.
@@ -101,7 +118,8 @@ class SteadySolver:
         point.check()
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
-            (motion, orbit, errors), notes = self._found(structure, _motion(structure, point), near)
+            given = motion_at(structure, point)
+            (motion, orbit, errors), notes = self._found(structure, given, near)
         return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)
 
     def _at(self, point: Point) -> Structure:
@@ -177,16 +195,3 @@ def _grows(unstable: Found | None) -> tuple[str, ...]:
 
 def _told(times: int) -> tuple[str, ...]:
     return (f"subharmonic: it repeats after {times} periods",) if times > 1 else ()
-
-
-def _motion(structure: Structure, point: Point) -> Motion:
-    """What is given of the motion at an operating point."""
-    condensed, problem = structure.core.condensed, structure.problem
-    signals = structure.points.signals(condensed, structure.signals, point)
-    given = np.append(signals, 1.0)[:, None].astype(complex)
-    speed = 0.0
-    if problem.free is not None:
-        speed = float((problem.turns @ condensed.modes.start).real)
-        if point.speed is not None:
-            speed = point.speed * structure.turn / (2.0 * np.pi * structure.turns_of_pinion)
-    return Motion(given, structure.turn, speed, angle=float(condensed.modes.angles[0]))

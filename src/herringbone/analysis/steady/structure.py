@@ -1,6 +1,7 @@
 """A system prepared for steady states: taken apart once, whatever operating points follow."""
 
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -10,11 +11,15 @@ from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import problem_of, turn_of
 from herringbone.analysis.steady.set_points import SetPoints
+from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import StructureError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System
+
+_MOST = 16
+"""Selections of outputs that are kept."""
 
 
 class Structure:
@@ -25,6 +30,7 @@ class Structure:
             rotation.
         like: of the same structure; what is the same is taken from it.
         same_tangents: see `Core`.
+        lean: what the model leaves out; as `like` if not given.
 
     Attributes:
         core: the system, condensed.
@@ -39,10 +45,16 @@ class Structure:
     """
 
     def __init__(
-        self, system: System, like: "Structure | None" = None, *, same_tangents: bool = False
+        self,
+        system: System,
+        like: "Structure | None" = None,
+        *,
+        same_tangents: bool = False,
+        lean: Lean | None = None,
     ) -> None:
         self.system = system
-        self.core: Core = Core(system, like.core if like else None, same_tangents=same_tangents)
+        known = like.core if like else None
+        self.core: Core = Core(system, known, same_tangents=same_tangents, lean=lean)
         condensed, twin = self.core.condensed, self.core.twin
         self.late = twin.settled
         self.problem: Problem = problem_of(condensed, self.late)
@@ -54,6 +66,22 @@ class Structure:
         ratio = abs(float(own.turned[0, 0])) if own.turned.any() else 1.0
         self.turns_of_pinion = float(turns) * ratio
         self.meshes = round(self.turns_of_pinion * self._teeth())
+
+    def leaner(self, lean: Lean) -> "Structure":
+        """The same of a leaner model, without taking the system apart again.
+
+        Args:
+            lean: what it leaves out besides what this one does.
+
+        Raises:
+            StructureError: it names what is not there.
+        """
+        found = copy(self)
+        for name in ("groups", "signals", "indicators", "start", "_kept"):
+            found.__dict__.pop(name, None)  # cached
+        found.core = self.core.leaner(lean)
+        found.problem = problem_of(found.core.condensed, self.late)
+        return found
 
     def _pinion(self) -> str:
         """Column of the first pinion's angle."""
@@ -71,8 +99,17 @@ class Structure:
         return float(self.core.twin.block[self.core.twin.index(str(column))])
 
     def wanted(self, columns: Sequence[str]) -> Wanted:
-        """Rows of outputs."""
-        return Wanted(self.core.condensed, self.core.affine, columns)
+        """Rows of outputs; those of lately are kept: points over speed ask for the same."""
+        key = tuple(columns)
+        if key not in self._kept:
+            if len(self._kept) >= _MOST:
+                self._kept.clear()
+            self._kept[key] = Wanted(self.core.condensed, self.core.affine, columns)
+        return self._kept[key]
+
+    @cached_property
+    def _kept(self) -> dict[tuple[str, ...], Wanted]:
+        return {}
 
     @cached_property
     def groups(self) -> tuple[dict[str, slice], Rows]:

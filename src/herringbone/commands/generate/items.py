@@ -68,6 +68,11 @@ ITEMS: dict[str, Item] = {
         "five minutes",
         ("-m herringbone.commands.generate.system_pages",),
     ),
+    "thesis": Item(
+        "docs/thesis",
+        "five minutes on two idle cores, once",
+        ("-m herringbone.thesis.docs",),
+    ),
     "overview": Item(
         "overview.png",
         "seconds",

@@ -44,9 +44,15 @@ def digest_of(*texts: str | bytes) -> str:
 
 
 @cache
-def kernels_key(*modules: str) -> str:
-    """Key of what is compiled from modules: their import closure, as syntax."""
-    return digest_of(*(f"{m} {_MODULES[m].digest}" for m in sorted(_closure(modules))))
+def kernels_key(*modules: str, without: str = "") -> str:
+    """Key of what is compiled from modules: their import closure, as syntax.
+
+    Args:
+        modules: of the package.
+        without: package on which what is computed does not depend, such as that of the pictures.
+    """
+    found = sorted(_closure(modules, without))
+    return digest_of(*(f"{m} {_MODULES[m].digest}" for m in found))
 
 
 @cache
@@ -100,12 +106,14 @@ def _contents(root: Path, suffixes: set[str]) -> Iterable[bytes]:
             yield file.read_bytes()
 
 
-def _closure(modules: Iterable[str]) -> set[str]:
-    """Modules of the package that are reached by imports."""
+def _closure(modules: Iterable[str], without: str = "") -> set[str]:
+    """Modules of the package that are reached by imports, those of a package left out."""
     found, todo = set(), list(modules)
     while todo:
         module = todo.pop()
         if module in found or module not in _MODULES:
+            continue
+        if without and f"{module}.".startswith(f"{without}."):
             continue
         found.add(module)
         imports = _MODULES[module].imports

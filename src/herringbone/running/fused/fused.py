@@ -19,6 +19,7 @@ from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
+from herringbone.running.lean import lean_of
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -87,7 +88,7 @@ def fused(
     """
     with same_folder(), one_blas_thread():
         with activity(f"fusing the parts of {system.name}"):
-            core = Core(system)
+            core = Core(system, lean=lean_of(scene))
             columns = core.chosen(asked.record)
             trial = _trial(core, asked, scene.t_end)
         system = with_channels(system, columns)
@@ -140,7 +141,7 @@ def verified_by_half(
     step = 0.5 * taken["step"]
     steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or TOLERANCE))
     with same_folder(), one_blas_thread():
-        core = Core(system)
+        core = Core(system, lean=lean_of(scene))
         columns = core.chosen(asked.record)
         system = with_channels(system, columns)
         recording = _marched(core, steps, columns, system, scene, progress)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.core.declaring.table import TableColumns
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.result.folder.names import (
     FORMAT,
     OTHERS,
@@ -116,7 +117,8 @@ def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = 
             write_parquet(stream, table.pieces())
     result = replace(result, files=tuple(str(shown / name) for name in names))
     write_summary(result, folder, store.run)
-    drawn = (str(shown / picture.name) for picture in write_pictures(result, folder))
+    with one_blas_thread():
+        drawn = [str(shown / picture.name) for picture in write_pictures(result, folder)]
     return replace(result, files=(*result.files, *drawn))
 
 
@@ -132,16 +134,18 @@ def write_summary(result: Result, folder: Path, run: RunFile, *, complete: bool 
     Raises:
         HerringboneError: a file cannot be written.
     """
+    with one_blas_thread():
+        figures, text = physical_results(result), summary_text(result)
     content = {
         "format": FORMAT,
         "complete": complete,
         **result.summary(),
-        "figures": physical_results(result),
+        "figures": figures,
         "units": dict(result.units),
         "parameters": dict(result.info.parameters),
         "resources": dict(result.info.resources),
     }
-    write_text(folder / TEXT, summary_text(result))
+    write_text(folder / TEXT, text)
     state = State.COMPLETE if complete else State.ROWS
     write_run_file(folder, replace(run, state=state, result=stored_result(result)))
     write_text(folder / SUMMARY, json.dumps(as_json(content), indent=2) + "\n")

@@ -9,10 +9,12 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Calls
-from herringbone.analysis.twin.condensed.modes import Modes
+from herringbone.analysis.twin.condensed.modes import Modes, make_modes
+from herringbone.analysis.twin.condensed.renewed import renewed
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import law_address, signals_address
-from herringbone.core import Instance, Laws
+from herringbone.core import Instance, Laws, StructureError
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.kernels.condensed.collocation import Table
 
 
@@ -129,3 +131,28 @@ class Condensed:
             unknown,
             np.full(calls.value[-1], np.finfo(float).tiny),
         )
+
+
+def condensed(
+    twin: Twin, equations: Equations, like: Condensed | None, *, same_tangents: bool
+) -> Condensed:
+    """A twin in modal coordinates.
+
+    Args:
+        twin: the system.
+        equations: of it.
+        like: of the same structure; what is the same is taken from it.
+        same_tangents: take its mean tangents, too.
+
+    Raises:
+        StructureError: it has no modal coordinates, or start values that are not finite.
+    """
+    modes = renewed(twin, equations, like.equations, like.modes) if like else None
+    with one_blas_thread():
+        tangent = like.modes.tangent if like and same_tangents else None
+        references = like.modes.references if like else ()
+        modes = modes or make_modes(twin, equations, tangent, references)
+        found = Condensed(twin, equations, modes)
+    if not np.isfinite(found.modes.start).all():
+        raise StructureError(f"{twin.system.name}: its start values are not finite")
+    return found

@@ -1,26 +1,25 @@
 """A system whose parts are fused: its condensed core, and the outputs that can be recorded."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import take_apart
-from herringbone.analysis.twin.condensed.modes import make_modes
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner
 from herringbone.analysis.twin.condensed.outputs import (
     Outputs,
     affine_places,
     outputs_of_kernels,
 )
-from herringbone.analysis.twin.condensed.renewed import renewed
 from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
-from herringbone.analysis.twin.condensed.system import Condensed
+from herringbone.analysis.twin.condensed.system import Condensed, condensed
 from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
 from herringbone.core.names import matches_any
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _LEAST = 0.1
@@ -58,6 +57,7 @@ class Core:
         like: of the same structure; what is the same is taken from it.
         same_tangents: take its mean tangents, too, so that harmonics of both can be compared.
         open_inputs: `instance.variable` of inputs that something outside gives.
+        lean: what the model leaves out; as `like` if not given.
 
     Attributes:
         twin: the system as one right-hand side.
@@ -65,6 +65,7 @@ class Core:
         affine: which of the places that are seen are affine.
         names: outputs that can be recorded, `instance.variable`.
         missing: outputs that only steps of the components make.
+        lean: what the model leaves out.
 
     Raises:
         StructureError: a part can neither be condensed nor stepped inside of the core.
@@ -78,8 +79,10 @@ class Core:
         *,
         same_tangents: bool = False,
         open_inputs: Sequence[str] = (),
+        lean: Lean | None = None,
     ) -> None:
         self.twin = twin = Twin(system)
+        self.lean: Lean = lean if lean is not None else like.lean if like else WHOLE
         for instance in twin.instances:
             if instance.component.samples:
                 raise StructureError(
@@ -88,7 +91,10 @@ class Core:
                 )
         places = [twin.index(name) for name in open_inputs]
         known = like.condensed if like else None
-        self.condensed: Condensed = _condensed(twin, known, places, same_tangents=same_tangents)
+        apart = leaner(
+            twin, take_apart(twin, places_seen(twin), places), self.lean, places_seen(twin)
+        )
+        self.condensed: Condensed = condensed(twin, apart, known, same_tangents=same_tangents)
         same = like is not None and self.condensed.modes.rates is like.condensed.modes.rates
         self.affine: np.ndarray = like.affine if like and same else affine_places(self.condensed)
         self.names = outputs_of_kernels(twin)
@@ -96,6 +102,21 @@ class Core:
             f"{i.name}.{v.name}" for i in twin.instances for v in i.component.declaration.outputs
         ]
         self.missing = tuple(name for name in declared if name not in set(self.names))
+
+    def leaner(self, lean: Lean) -> "Core":
+        """The core of a leaner model, without taking the system apart again.
+
+        Args:
+            lean: what it leaves out besides what this one does.
+
+        Raises:
+            StructureError: it names what is not there.
+        """
+        found, known = copy(self), self.condensed
+        found.lean = self.lean | lean
+        apart = leaner(self.twin, known.equations, lean, places_seen(self.twin))
+        found.condensed = condensed(self.twin, apart, known, same_tangents=True)
+        return found
 
     def chosen(
         self,
@@ -169,18 +190,3 @@ def endings_of(name: str) -> tuple[str, ...]:
     """An output's name, and what is left of it without the first of its paths."""
     words = name.split(".")
     return tuple(".".join(words[k:]) for k in range(len(words) - 1))
-
-
-def _condensed(
-    twin: Twin, like: Condensed | None, open_inputs: Sequence[int], *, same_tangents: bool
-) -> Condensed:
-    equations = take_apart(twin, places_seen(twin), open_inputs)
-    modes = renewed(twin, equations, like.equations, like.modes) if like else None
-    with one_blas_thread():
-        tangent = like.modes.tangent if like and same_tangents else None
-        references = like.modes.references if like else ()
-        modes = modes or make_modes(twin, equations, tangent, references)
-        found = Condensed(twin, equations, modes)
-    if not np.isfinite(found.modes.start).all():
-        raise StructureError(f"{twin.system.name}: its start values are not finite")
-    return found

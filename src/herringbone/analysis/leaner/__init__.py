@@ -1,0 +1,1 @@
+"""Leaner models of a system: what can be left out, and what that changes of what is asked."""

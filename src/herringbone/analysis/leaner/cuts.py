@@ -1,0 +1,80 @@
+"""What can be left out of a system, found by roles, ports and declared state vectors."""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.steady.structure import Structure
+from herringbone.analysis.twin.condensed.lean import Lean, state_names
+from herringbone.analysis.twin.condensed.wanted import places_seen
+from herringbone.core.declaring.roles import PortKind, Role
+
+
+class Cut(NamedTuple):
+    """Something that can be left out.
+
+    Attributes:
+        name: for people.
+        lean: the same for a model.
+    """
+
+    name: str
+    lean: Lean
+
+
+def cuts_of(structure: Structure) -> list[Cut]:
+    """What a system's roles allow to leave out, but for single modes."""
+    known = anatomy(structure.system)
+    housings = known.with_role(Role.HOUSING)
+    found = [
+        Cut("axial motion locked", Lean(tuple(_journals(structure, "z")))),
+        Cut("torsion only", Lean(tuple(_journals(structure, "xyz")))),
+    ]
+    if housings:
+        found += [
+            Cut("housing driven one way", Lean((), housings)),
+            Cut("housing rigid", Lean(tuple(_states(structure, housings)))),
+        ]
+    return [cut for cut in found if cut.lean]
+
+
+def modes_of(structure: Structure) -> list[tuple[str, str]]:
+    """Modal coordinates and their rates that the parts declare, those in use or not."""
+    found = []
+    for instance in structure.core.twin.instances:
+        vectors = {vector.name: vector for vector in instance.component.declaration.vectors}
+        for name, vector in vectors.items():
+            if rate := vectors.get(f"der({name})"):
+                found += [
+                    (f"{instance.name}.{vector.element(k)}", f"{instance.name}.{rate.element(k)}")
+                    for k in range(1, vector.capacity + 1)
+                ]
+    return found
+
+
+def _states(structure: Structure, parts: Iterable[str]) -> Iterator[str]:
+    """All states of parts."""
+    twin, own = structure.core.twin, set(parts)
+    names = state_names(twin)
+    for p, instance in enumerate(twin.instances):
+        if instance.name in own:
+            yield from names[twin.layout.state_first[p] : twin.layout.state_first[p + 1]]
+
+
+def _journals(structure: Structure, axes: str) -> Iterator[str]:
+    """States of gear pairs that their journals' motions along some axes show."""
+    twin, known = structure.core.twin, anatomy(structure.system)
+    names, rows = state_names(twin), {p: r for r, p in enumerate(places_seen(twin))}
+    shown = structure.core.condensed.equations.e
+    for pair in known.with_role(Role.GEAR_PAIR):
+        columns = [
+            f"{pair}.{port.name}.{motion}_{axis}"
+            for port in known.ports(pair, PortKind.JOURNAL)
+            for motion in "sv"
+            for axis in axes
+        ]
+        places = [rows[twin.index(c)] for c in columns if c in structure.core.names]
+        for state in np.flatnonzero(shown[places].any(axis=0)):
+            yield names[state]

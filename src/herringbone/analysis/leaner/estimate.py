@@ -1,0 +1,161 @@
+"""What a leaner model would change of a motion, without solving for that of the leaner model.
+
+One linear solve with the Jacobian J of the balance at the motion of the whole model, whatever is
+left out:
+
+    F_lean(r) = what the laws give and the motion lacks, with the leaner linear part
+    r_lean = r - J^-1 F_lean(r),    y_lean = H_lean r_lean
+
+All of the linear part, reactions included, is exact; the laws are followed along their slopes.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from herringbone.analysis.leaner.inverse import bent_by, of_a_mesh, of_many
+from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, lines_of
+from herringbone.analysis.leaner.reactions import Reactions
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.correction import (
+    Bent,
+    bent,
+    sloped,
+)
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.outputs import coefficients_of, of_rows
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.steady.structure import Structure, alternating_rows
+from herringbone.analysis.twin.condensed.wanted import Wanted
+from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
+
+
+class Estimates:
+    """Errors of leaner models at a motion of the whole one.
+
+    Args:
+        state: that motion.
+        questions: what is asked of it.
+        names: states that may be held.
+
+    Raises:
+        ParameterError: inputs of an output's part are not affine.
+    """
+
+    def __init__(
+        self, state: SteadyState, questions: Sequence[Question], names: Sequence[str]
+    ) -> None:
+        self._state, self._questions = state, questions
+        columns = dict.fromkeys(c for q in questions for c in q.columns)
+        self._place = {name: k for k, name in enumerate(columns)}
+        self._wanted = _wanted(state.structure, tuple(columns))
+        self._rows = alternating_rows(self._wanted)
+        orbit = state.orbit
+        with one_blas_thread(), np.errstate(all="ignore"):
+            self._lines = {question.name: lines_of(state, question) for question in questions}
+            problem = state.structure.problem
+            one = state.meshes == 1
+            self._found: Bent = (
+                sloped(problem, orbit.samples, every=True) if one else bent(problem, orbit.samples)
+            )
+            self._inverse = of_a_mesh(state, self._found) if one else of_many(state, self._found)
+            self._reactions = Reactions(state, names, self._found, self._rows)
+            self._still = np.zeros_like(orbit.channels)
+            self._moving = self._reactions.moving(orbit.channels)
+            self._moving[:, 0] -= self._reactions.start
+            self._whole = coefficients_of(self._wanted, orbit)
+
+    def held(self, names: Sequence[str]) -> dict[str, Apart]:
+        """Errors by question if these states are held."""
+        places = self._reactions.places
+        own = [places[name] for name in names if name in places]
+        with one_blas_thread(), np.errstate(all="ignore"):
+            push = self._reactions.holding(own, self._moving)
+            step = self._answered(own, push)
+            channels = self._still.copy()
+            channels[self._found.unknown] = step
+            moving = self._reactions.moving
+            push = push + self._reactions.holding(own, moving(channels) - moving(self._still))
+            changed = self._changed(own, push, channels)
+            return self._apart(self._whole + changed)
+
+    def alone(self, names: Sequence[str]) -> dict[str, Mapping[str, Apart]]:
+        """Errors by state and question if each of these is held alone, with what goes with it."""
+        with one_blas_thread(), np.errstate(all="ignore"):
+            every = self._reactions.alone(self._moving)
+            found: dict[str, Mapping[str, Apart]] = {}
+            for name in names:
+                if (place := self._reactions.places.get(name)) is None:
+                    continue
+                push = every[[place]]
+                channels = self._still.copy()
+                channels[self._found.unknown] = self._answered([place], push)
+                changed = self._changed([place], push, channels)
+                found[name] = self._apart(self._whole + changed)
+        return found
+
+    def of(self, structure: Structure) -> dict[str, Apart]:
+        """Errors by question of a leaner model of the same states and tangents."""
+        state, orbit = self._state, self._state.orbit
+        with one_blas_thread(), np.errstate(all="ignore"):
+            balance = Balance(structure.problem, self._period, state.motion)
+            response, missing = balance.missing(orbit)
+            orders, known = response.orders, orbit.response.orders
+            own = on(known, missing[: structure.problem.values], orders)
+            step = on(orders, own, known)
+            step[self._found.unknown] = on(orders, self._inverse(own[self._found.unknown]), known)
+            given = on(orders, orbit.channels, known)
+            given[: len(step)] += step
+            wanted = _wanted(structure, tuple(self._place))
+            q, rows = response.coordinates(given), alternating_rows(wanted)
+            values = on(known, response.outputs(rows, q, given), orders)
+            values[:, 0] += wanted.rows.still
+            return self._apart(values, wanted)
+
+    @property
+    def _period(self) -> Period:
+        state = self._state
+        per_mesh = state.orbit.places // state.meshes
+        thin = 0.0 if state.meshes == 1 else state.tolerance
+        return Period(per_mesh // 4, state.orbit.places, state.meshes, thin)
+
+    def _answered(self, own: Sequence[int], push: np.ndarray) -> np.ndarray:
+        """Changes of the laws' unknown values (unknowns, harmonics) under reactions."""
+        found, orbit = self._found, self._state.orbit
+        orders = orbit.response.orders
+        along = np.einsum("trh,rh->th", self._reactions.along[:, list(own)], push)
+        moved = in_time(along, orders, orbit.places)
+        return self._inverse(in_frequency(bent_by(found, moved), orders))
+
+    def _changed(self, own: Sequence[int], push: np.ndarray, channels: np.ndarray) -> np.ndarray:
+        """What outputs change by under reactions and changes of the channels."""
+        response = self._state.orbit.response
+        by = np.einsum("crh,rh->ch", self._reactions.outputs[:, list(own)], push)
+        by += response.outputs(self._rows, response.coordinates(channels), channels)
+        still = response.coordinates(self._still)  # a rotation that nothing drives has its speed
+        return by - response.outputs(self._rows, still, self._still)
+
+    def _apart(self, rows: np.ndarray, wanted: Wanted | None = None) -> dict[str, Apart]:
+        """Errors by question of coefficients (rows, harmonics) of all affine rows."""
+        state = self._state
+        own = of_rows(state.structure, state.orbit, wanted or self._wanted, rows).coefficients
+        found = {}
+        for question in self._questions:
+            theirs = self._lines[question.name]
+            values = own[[self._place[name] for name in question.columns]]
+            ours = Lines(values, state.orbit.response.orders, theirs.meshes, theirs.frequency)
+            found[question.name] = apart(question, ours, theirs)
+        return found
+
+
+def _wanted(structure: Structure, columns: Sequence[str]) -> Wanted:
+    wanted = structure.wanted(columns)
+    if wanted.whole:
+        names = ", ".join(columns[k] for k in wanted.there)
+        raise ParameterError(
+            f"{names}: made of what is no linear part, so that its change is not estimated; ask "
+            "for other outputs"
+        )
+    return wanted

@@ -1,0 +1,109 @@
+"""What is asked of a periodic motion, and how far an answer is from another one."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.leaner.form import Form
+from herringbone.analysis.steady.harmonic_balance.fourier import on
+from herringbone.analysis.steady.outputs import harmonics
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.core.one_thread import one_blas_thread
+
+_SAME = 1e-6
+"""Relative difference of mesh orders that are one."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is to be known, and how well.
+
+    Attributes:
+        name: for people.
+        columns: outputs.
+        form: as what.
+        tolerance: over the size of all columns together.
+        band: end of a spectrum [Hz].
+        orders: mesh orders, of amplitudes.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    form: Form
+    tolerance: float
+    band: float = np.inf
+    orders: tuple[float, ...] = ()
+
+
+class Lines(NamedTuple):
+    """Harmonics of outputs.
+
+    Attributes:
+        coefficients: (columns, harmonics), of ascending orders.
+        orders: (harmonics,) whole numbers.
+        meshes: periods of the mesh in the period.
+        frequency: of the period [Hz].
+    """
+
+    coefficients: np.ndarray
+    orders: np.ndarray
+    meshes: int
+    frequency: float
+
+    @property
+    def highest(self) -> float:
+        """Frequency of the largest line [Hz] but the mean."""
+        sizes = np.linalg.norm(self.coefficients, axis=0)
+        sizes[0] = 0.0
+        return float(self.orders[sizes.argmax()] * self.frequency)
+
+
+class Apart(NamedTuple):
+    """How far an answer is from another one.
+
+    Attributes:
+        error: of all columns together.
+        worst: the column that is farthest, over its own size.
+        worst_error: of that one.
+    """
+
+    error: float
+    worst: str
+    worst_error: float
+
+
+def lines_of(state: SteadyState, question: Question) -> Lines:
+    """Harmonics of what is asked for."""
+    with one_blas_thread():
+        found = harmonics(state.structure, state.orbit, question.columns)
+    return Lines(found.coefficients, found.orders, state.meshes, state.frequency)
+
+
+def apart(question: Question, ours: Lines, theirs: Lines) -> Apart:
+    """How far an answer is from a better one of the same period."""
+    orders = np.union1d(ours.orders, theirs.orders)
+    one, other = (
+        _asked(question, on(orders, lines.coefficients, lines.orders), orders, theirs)
+        for lines in (ours, theirs)
+    )
+    off, size = (np.linalg.norm(rows, axis=1) for rows in (one - other, other))
+    whole = float(np.linalg.norm(size))
+    single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
+    worst = int(single.argmax())
+    error = float(np.linalg.norm(off)) / whole if whole else 0.0
+    return Apart(error, question.columns[worst], float(single[worst]))
+
+
+def _asked(
+    question: Question, coefficients: np.ndarray, orders: np.ndarray, lines: Lines
+) -> np.ndarray:
+    """Rows (columns, n) whose differences count."""
+    kept = (orders > 0) & (orders * lines.frequency <= question.band)
+    if question.form is Form.LEVEL:
+        return np.linalg.norm(coefficients[:, kept], axis=1, keepdims=True)
+    if question.form is Form.ORDER:
+        mesh = orders / lines.meshes
+        near = np.isclose(mesh[:, None], np.array(question.orders)[None, :], rtol=_SAME, atol=0.0)
+        return np.abs(coefficients[:, kept & near.any(axis=1)])
+    return coefficients[:, kept]

@@ -1,0 +1,54 @@
+"""The command `plan`: how much model, and which solver, a scene's questions need."""
+
+import argparse
+import json
+from pathlib import Path
+
+from herringbone.commands.options import (
+    add_scene,
+    add_start_values,
+    files_of_parts,
+    start_values,
+)
+from herringbone.commands.output import check_writable, show
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the command's options."""
+    add_scene(sub)
+    add_start_values(sub)
+    sub.add_argument(
+        "-o", "--output", type=Path, help="folder for plan.json, and scene.toml with the choice"
+    )
+    sub.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Plan, write files if a folder is given, and show.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    from herringbone.studies.planning.plan import plan  # noqa: PLC0415 (numba)
+    from herringbone.studies.planning.text import (  # noqa: PLC0415
+        plan_summary,
+        plan_text,
+        write_plan,
+    )
+
+    if options.output:
+        check_writable(options.output)
+    files = files_of_parts(options)
+    found = plan(
+        options.system,
+        scene=options.scene,
+        values=start_values(options.set),
+        gear=files.gear,
+        housing=files.housing,
+    )
+    written = write_plan(found, options.output) if options.output else []
+    if options.json:
+        show(json.dumps({**plan_summary(found), "results": [str(f) for f in written]}))
+    else:
+        show("\n".join([*plan_text(found), *(f"Files: {f}" for f in written)]))
+    return 0

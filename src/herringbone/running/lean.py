@@ -1,0 +1,73 @@
+"""A leaner model that a scene has: what it is for the core, and what is said of its error."""
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from herringbone.core import ParameterError
+from herringbone.scenes import Model, Scene
+from herringbone.scenes.asking import Range
+
+if TYPE_CHECKING:
+    from herringbone.analysis.twin.condensed.lean import Lean
+
+_R_MIN = 30.0 / math.pi
+
+
+def lean_of(scene: Scene) -> "Lean":
+    """What a scene's model leaves out."""
+    from herringbone.analysis.twin.condensed.lean import Lean  # noqa: PLC0415 (numba)
+
+    return Lean(scene.model.hold, scene.model.one_way)
+
+
+def refuse_lean(scene: Scene) -> None:
+    """Refuse a leaner model where the whole one would be taken; raises ParameterError."""
+    if scene.model:
+        raise ParameterError(
+            f"scene {scene.name}: [model]: leaner models are of steady states, sweeps of them, and "
+            "runs with fuse, without foreign parts; drop [model] for the whole one"
+        )
+
+
+def lean_notes(
+    model: Model,
+    changed: Mapping[str, object],
+    speed: float | None = None,
+    torque: float | None = None,
+) -> tuple[str, ...]:
+    """What a user should know of the error of a leaner model; nothing of a whole one.
+
+    Args:
+        model: of the scene.
+        changed: values that the caller set besides.
+        speed, torque: operating point that the caller asked for [rad/s, N m].
+    """
+    if not model:
+        return ()
+    parts = [f"{len(model.hold)} states held"] if model.hold else []
+    parts += [f"{', '.join(model.one_way)} driven one way"] if model.one_way else []
+    said = f"leaner model: {', '.join(parts)}; its error "
+    if model.error is None:
+        return (f"{said}is not known: no plan certified it",)
+    where = f"{100.0 * model.error:.2g} % of what the scene asks{_where(model)}"
+    if changed:
+        names = ", ".join(sorted(changed))
+        return (f"{said}was {where}, but is not known with other values of {names}",)
+    if not (_within(speed, model.speed) and _within(torque, model.torque)):
+        return (f"{said}is {where}, but not known at this operating point",)
+    return (f"{said}is {where}",)
+
+
+def _within(value: float | None, ends: Range | None) -> bool:
+    return value is None or (ends is not None and ends[0] <= value <= ends[1])
+
+
+def _where(model: Model) -> str:
+    found = []
+    if model.speed:
+        low, high = (_R_MIN * speed for speed in model.speed)
+        found.append(f"{low:.5g} to {high:.5g} r/min")
+    if model.torque:
+        found.append(f"{model.torque[0]:.5g} to {model.torque[1]:.5g} N m")
+    return f", certified for {', '.join(found)}" if found else ", certified where the scene is"

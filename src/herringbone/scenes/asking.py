@@ -1,0 +1,85 @@
+"""What a scene asks: quantities, as what, how well, and where; and what its model leaves out."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from herringbone.analysis.leaner.form import Form
+
+Range = tuple[float, float]
+"""Lowest and highest value."""
+
+
+class Motion(StrEnum):
+    """What kind of motion is asked about."""
+
+    STEADY = "steady"
+    """The periodic state that a constant operating point settles to."""
+    TRANSIENT = "transient"
+    """The run of the scene, from its start to its end."""
+
+
+@dataclass(frozen=True)
+class Ask:
+    """A quantity that is to be known.
+
+    Attributes:
+        what: groups of channels, patterns of outputs, or quantities by name, see
+            `analysis.leaner.asked_for`.
+        form: as what.
+        tolerance: relative error that is allowed.
+        band: end of a spectrum [Hz]; infinite: all lines.
+        orders: mesh orders, of amplitudes.
+    """
+
+    what: tuple[str, ...]
+    form: Form = Form.SPECTRUM
+    tolerance: float = 0.01
+    band: float = math.inf
+    orders: tuple[float, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        what = ", ".join(self.what)
+        if self.form is Form.SPECTRUM:
+            return f"spectrum of {what}" + (f" to {self.band:g} Hz" if self.band < math.inf else "")
+        if self.form is Form.ORDER:
+            return f"order {', '.join(f'{k:g}' for k in self.orders)} of {what}"
+        return f"{self.form} of {what}"
+
+
+@dataclass(frozen=True)
+class Operating:
+    """Where something is asked; None: as the scene has it.
+
+    Attributes:
+        motion: what kind of.
+        speed: of the pinion [rad/s].
+        torque: at the pinion [N m].
+    """
+
+    motion: Motion = Motion.STEADY
+    speed: Range | None = None
+    torque: Range | None = None
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a model leaves out, and what is known of its error.
+
+    Attributes:
+        hold: states that keep their start values.
+        one_way: parts that are driven but not felt.
+        error: of what was asked, certified; None: unknown.
+        speed, torque: where that was certified.
+    """
+
+    hold: tuple[str, ...] = ()
+    one_way: tuple[str, ...] = ()
+    error: float | None = None
+    speed: Range | None = None
+    torque: Range | None = None
+
+    def __bool__(self) -> bool:
+        return bool(self.hold or self.one_way)

@@ -1,0 +1,162 @@
+"""What a scene asks, as text: speeds are in r/min there, as in studies."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from herringbone.analysis.leaner.form import Form
+from herringbone.core import ParameterError
+from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
+
+ASKING = {"ask", "operating", "model"}
+"""Keys of a scene that are read here."""
+_R_MIN = 30.0 / math.pi
+_ENDS = 2
+
+
+def read_asking(data: Mapping[str, Any], file: Path) -> tuple[tuple[Ask, ...], Operating, Model]:
+    """What is asked, where, and of which model.
+
+    Args:
+        data: of the scene.
+        file: it, for messages.
+
+    Raises:
+        ParameterError: unknown key, or a value of the wrong type or out of range.
+    """
+    try:
+        return (
+            tuple(_ask(each) for each in _tables(data.get("ask", []))),
+            _operating(data.get("operating", {})),
+            _model(data.get("model", {})),
+        )
+    except ParameterError as error:
+        raise ParameterError(f"{file}: {error}") from None
+
+
+def _tables(given: Any) -> list[Any]:  # noqa: ANN401 (anything from TOML)
+    if not isinstance(given, list):
+        raise ParameterError("ask: it takes tables [[ask]]")
+    return given
+
+
+def _ask(data: Any) -> Ask:  # noqa: ANN401 (anything from TOML)
+    _known(data, "ask", {"what", "as", "tolerance", "band", "orders"})
+    what = _texts(data.get("what", []), "ask: what")
+    if not what:
+        raise ParameterError('ask: what: it takes the names of what is asked, ["seat velocity"]')
+    form = data.get("as", Form.SPECTRUM.value)
+    if form not in list(Form):
+        raise ParameterError(f"ask: as = {form!r}; it must be one of {', '.join(Form)}")
+    tolerance = _number(data.get("tolerance", 0.01), "ask: tolerance")
+    if not 0.0 < tolerance < 1.0:
+        raise ParameterError(f"ask: tolerance = {tolerance:g}: it must lie between 0 and 1")
+    band = math.inf
+    if "band" in data:
+        band = _number(data["band"], "ask: band")
+        if form != Form.SPECTRUM or band <= 0.0:
+            raise ParameterError(
+                f'ask: band = {band:g} Hz: it must be positive, and is of as = "spectrum"'
+            )
+    orders = data.get("orders", [])
+    orders = tuple(_number(k, "ask: orders") for k in (orders if isinstance(orders, list) else [0]))
+    if (form == Form.ORDER) != bool(orders) or any(k <= 0.0 for k in orders):
+        raise ParameterError('ask: orders: a list of positive mesh orders goes with as = "order"')
+    return Ask(what, Form(form), tolerance, band, orders)
+
+
+def _operating(data: Any) -> Operating:  # noqa: ANN401
+    _known(data, "operating", {"motion", "speed", "torque"})
+    motion = data.get("motion", Motion.STEADY.value)
+    if motion not in list(Motion):
+        kinds = ", ".join(Motion)
+        raise ParameterError(f"operating: motion = {motion!r}; it must be one of {kinds}")
+    speed, torque = _range(data, "operating", "speed"), _range(data, "operating", "torque")
+    if speed is not None:
+        speed = (speed[0] / _R_MIN, speed[1] / _R_MIN)
+    if motion == Motion.TRANSIENT and (speed or torque):
+        raise ParameterError(
+            "operating: speed, torque: a transient has those of its cycle; set what commands them"
+        )
+    return Operating(Motion(motion), speed, torque)
+
+
+def _model(data: Any) -> Model:  # noqa: ANN401
+    _known(data, "model", {"hold", "one_way", "error", "speed", "torque"})
+    error = None if "error" not in data else _number(data["error"], "model: error")
+    speed = _range(data, "model", "speed")
+    return Model(
+        _texts(data.get("hold", []), "model: hold"),
+        _texts(data.get("one_way", []), "model: one_way"),
+        error,
+        None if speed is None else (speed[0] / _R_MIN, speed[1] / _R_MIN),
+        _range(data, "model", "torque"),
+    )
+
+
+def _known(data: Any, name: str, keys: set[str]) -> None:  # noqa: ANN401
+    if not isinstance(data, dict):
+        raise ParameterError(f"{name}: it takes a table")
+    if unknown := set(data) - keys:
+        raise ParameterError(
+            f"{name}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(keys))}"
+        )
+
+
+def _texts(given: Any, name: str) -> tuple[str, ...]:  # noqa: ANN401
+    found = [given] if isinstance(given, str) else given
+    if not isinstance(found, list) or not all(isinstance(each, str) for each in found):
+        raise ParameterError(f"{name} = {given!r}: it takes a list of names")
+    return tuple(found)
+
+
+def _number(given: Any, name: str) -> float:  # noqa: ANN401
+    if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
+        raise ParameterError(f"{name} = {given!r}: it takes a finite number")
+    return float(given)
+
+
+def _range(data: Mapping[str, Any], table: str, key: str) -> Range | None:
+    """A number, or [LOWEST, HIGHEST]."""
+    if key not in data:
+        return None
+    given = data[key] if isinstance(data[key], list) else [data[key], data[key]]
+    if len(given) != _ENDS:
+        raise ParameterError(f"{table}: {key} = {given!r}: a number, or [LOWEST, HIGHEST]")
+    low, high = (_number(end, f"{table}: {key}") for end in given)
+    if low > high or (key == "speed" and low <= 0.0 <= high):
+        raise ParameterError(
+            f"{table}: {key} = [{low:g}, {high:g}]: the lower one first, and no standstill between"
+        )
+    return low, high
+
+
+def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> Iterator[str]:
+    """Lines of a scene, as `read_asking` takes them."""
+    ends = {"speed": operating.speed, "torque": operating.torque}
+    yield from ("", "[operating]", f'motion = "{operating.motion}"', *_ranges(ends))
+    for ask in asks:
+        yield from ("", "[[ask]]", f"what = {_listed(ask.what)}", f'as = "{ask.form}"')
+        yield f"tolerance = {ask.tolerance:g}"
+        if ask.band < math.inf:
+            yield f"band = {ask.band:g}"
+        if ask.orders:
+            yield f"orders = [{', '.join(f'{k:g}' for k in ask.orders)}]"
+    if model:
+        yield from ("", "[model]", f"hold = {_listed(model.hold)}")
+        yield f"one_way = {_listed(model.one_way)}"
+        if model.error is not None:
+            yield f"error = {model.error:.3g}"
+        yield from _ranges({"speed": model.speed, "torque": model.torque})
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return "[" + ", ".join(f'"{name}"' for name in names) + "]"
+
+
+def _ranges(ends: Mapping[str, Range | None]) -> Iterator[str]:
+    for key, given in ends.items():
+        if given is not None:
+            low, high = (value * (_R_MIN if key == "speed" else 1.0) for value in given)
+            yield f"{key} = [{low:.12g}, {high:.12g}]"

@@ -1,0 +1,106 @@
+"""Certifying leaner models: lean and whole, solved at the same points, and what each costs."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from herringbone.analysis.leaner.question import Apart, Question, apart, lines_of
+from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
+from herringbone.core import ParameterError
+from herringbone.core.one_thread import one_blas_thread
+from herringbone.studies.planning.rung import Worst, worst
+
+FINER = 20.0
+"""How much finer than the tolerance models are compared."""
+_LEAST, _LOOSEST = 1e-7, 0.05
+"""Tolerances of a solver."""
+_TIMES = 3
+
+
+def tolerance_for(questions: Sequence[Question], share: float) -> float:
+    """What a solver needs for all questions, with a share of their tolerances."""
+    wanted = share * min(question.tolerance for question in questions)
+    return min(_LOOSEST, max(_LEAST, wanted))
+
+
+class Certifier:
+    """Whole and leaner models at the test points.
+
+    Args:
+        solver: of the whole model.
+        questions: what is asked.
+        points: where it is tested.
+        share: of the tolerance, for the solver.
+
+    Raises:
+        ParameterError: the whole model has no steady state at a point.
+    """
+
+    def __init__(
+        self,
+        solver: SteadySolver,
+        questions: Sequence[Question],
+        points: Sequence[Point],
+        share: float,
+    ) -> None:
+        self._questions, self.points = questions, points
+        self.fine = tolerance_for(questions, 1.0 / FINER)
+        self.tolerance = tolerance_for(questions, share)
+        self._solver = solver.leaner(WHOLE, self.fine)
+        self._whole = [found for found in self._solved(self._solver, ()) if found is not None]
+        if len(self._whole) < len(points):
+            raise ParameterError(
+                "plan: the system has no steady state that was found at all of the operating "
+                "points; narrow the range, or ask for a transient"
+            )
+        self._lines = [
+            {question.name: lines_of(state, question) for question in questions}
+            for state in self._whole
+        ]
+
+    def _solved(
+        self, solver: SteadySolver, near: Sequence[SteadyState]
+    ) -> list[SteadyState | None]:
+        found: list[SteadyState | None] = []
+        last: SteadyState | None = None
+        for k, point in enumerate(self.points):
+            state = solver.solve(point, near[k] if near else last)
+            last = state if state.converged else None
+            found.append(last)
+        return found
+
+    def error(self, lean: Lean) -> Worst | None:
+        """The worst error of a leaner model; None if it has no steady state at a point."""
+        leaner = self._solved(self._solver.leaner(lean), self._whole)
+        found: list[tuple[Point, dict[str, Apart]]] = []
+        for ours, theirs in zip(leaner, self._lines, strict=True):
+            if ours is None:
+                return None
+            by_name = {q.name: apart(q, lines_of(ours, q), theirs[q.name]) for q in self._questions}
+            found.append((ours.point, by_name))
+        return worst(self._questions, found)
+
+    def costs(self, models: Sequence[Lean]) -> list[float]:
+        """CPU time of an answer by each model [s]: medians over the points, by turns.
+
+        Of several points each state is found from the one before; of a point that is asked for
+        again, the least time counts.
+        """
+        solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
+        spent = np.full((_TIMES, len(models), len(self.points)), np.inf)
+        rounds = _TIMES if len(self.points) == 1 or self._whole[0].meshes == 1 else 1
+        with one_blas_thread():
+            for turn in range(rounds):
+                near: list[SteadyState | None] = [None] * len(models)
+                for k, point in enumerate(self.points):
+                    for m, solver in enumerate(solvers):
+                        start = time.thread_time()
+                        found = solver.solve(point, near[m])
+                        spent[turn, m, k] = time.thread_time() - start
+                        near[m] = found if found.converged else None
+        first = 1 if len(self.points) > 1 else 0  # the first of several has no neighbour
+        return np.median(spent.min(axis=0)[:, first:], axis=1).tolist()

@@ -1,0 +1,151 @@
+"""A plan for what is asked of steady states."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from herringbone.analysis.leaner.asked_for import asked_for
+from herringbone.analysis.leaner.question import Lines, Question, lines_of
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
+from herringbone.analysis.twin.fused.core import Core, Steps, closeness
+from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
+from herringbone.core import ParameterError
+from herringbone.scenes import Ask, Scene
+from herringbone.studies.planning.certified import Certifier
+from herringbone.studies.planning.estimated import Ladder
+from herringbone.studies.planning.marching import marched
+from herringbone.studies.planning.points import points_to_probe, points_to_test
+from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
+
+_TRIED = 3
+"""Rungs that are solved at most."""
+_TRIAL = 5e-3
+"""Length of a run of which the cost is measured [s]."""
+_WORTH = 0.95
+"""Cost over that of the whole model below which leaving something out is worth it."""
+
+
+def questions_of(core: Core, asks: Sequence[Ask]) -> list[Question]:
+    """What is asked, with all outputs by name.
+
+    Raises:
+        ParameterError: the system has no such output.
+    """
+    found: dict[str, Question] = {}
+    for ask in asks:
+        columns = dict.fromkeys(c for what in ask.what for c in asked_for(core, what))
+        own = Question(ask.name, tuple(columns), ask.form, ask.tolerance, ask.band, ask.orders)
+        known = found.get(ask.name)
+        if known is None or own.tolerance < known.tolerance:
+            found[ask.name] = own
+    return list(found.values())
+
+
+def steady_rungs(
+    solver: SteadySolver,
+    questions: Sequence[Question],
+    scene: Scene,
+    by_hand: Lean,
+) -> tuple[list[Rung], Certifier, list[str]]:
+    """The ladder with its choice, what it was certified with, and what is to be said.
+
+    Args:
+        solver: of the whole model, fine enough to compare models.
+        questions: what is asked.
+        scene: that asks.
+        by_hand: a leaner model that the user gave.
+
+    Raises:
+        ParameterError: there is no steady state where it is asked for.
+    """
+    states: list[SteadyState] = []
+    for point in points_to_probe(scene.operating):
+        states.append(_steady(solver, point, states[-1] if states else None))
+    ladder = Ladder(solver, states, questions)
+    rungs = list(ladder.rungs())
+    long = any(state.meshes > 1 for state in states)
+    certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
+    if by_hand:
+        rungs.append(ladder.by_hand(by_hand))
+    tried = sorted(
+        (rung for rung in rungs if ladder.allowed(rung)), key=lambda r: -len(r.lean.held)
+    )[:_TRIED]
+    hand = rungs[-1] if by_hand else None
+    certified = {
+        id(rung): replace(rung, measured=certifier.error(rung.lean))
+        for rung in (*tried, *([hand] if hand and hand not in tried else []))
+    }
+    rungs = [certified.get(id(rung), rung) for rung in rungs]
+    whole = Rung("whole model", STEADY)
+    good = [rung for rung in rungs if rung.measured and rung.measured.ratio <= SHARE]
+    costs = certifier.costs([WHOLE, *(rung.lean for rung in good)])
+    cost_of = {id(rung): cost for rung, cost in zip(good, costs[1:], strict=True)}
+    every = [replace(whole, cost=costs[0])]
+    every += [_run(solver, questions, scene)]
+    every += [replace(rung, cost=cost_of.get(id(rung))) for rung in rungs]
+    return _chosen(every), certifier, _remarks(questions, states)
+
+
+def _run(solver: SteadySolver, questions: Sequence[Question], scene: Scene) -> Rung:
+    """What a run of the core costs that waits until all has settled, by its first part."""
+    columns = tuple(dict.fromkeys(c for q in questions for c in q.columns))
+    steps = Steps(LONGEST, DEGREES[0], closeness(min(q.tolerance for q in questions)))
+    trial = min(_TRIAL, scene.t_end)
+    core, record = solver.structure.core, min(scene.record_step, trial)
+    spent = [marched(core, trial, record, steps, columns).seconds for _ in range(2)]
+    cost = min(spent) * scene.t_end / trial  # the first one may compile
+    name = f"whole model, a run of {scene.t_end:g} s to settle"
+    return Rung(name, FUSED, cost=cost, step=steps.length, why="dearer")
+
+
+def _chosen(rungs: Sequence[Rung]) -> list[Rung]:
+    """The rungs, each with why it is not the choice."""
+    priced = [rung for rung in rungs if rung.cost is not None and rung.solver == STEADY]
+    cheapest = min(priced, key=lambda rung: rung.cost or 0.0)
+    whole = rungs[0]
+    if (cheapest.cost or 0.0) > _WORTH * (whole.cost or 0.0):
+        cheapest = whole
+    return [replace(rung, why=_why(rung, cheapest)) for rung in rungs]
+
+
+def _why(rung: Rung, choice: Rung) -> str:
+    if rung is choice:
+        return ""
+    if rung.cost is not None:
+        return "no cheaper" if choice.whole else "dearer"
+    if rung.measured is not None and rung.measured.ratio > SHARE:
+        return "its measured error is above half of the tolerance"
+    return rung.why or "not tried: others leave out more"
+
+
+def _steady(solver: SteadySolver, point, near: SteadyState | None) -> SteadyState:  # noqa: ANN001
+    found = solver.solve(point, near)
+    if not found.converged:
+        raise ParameterError(
+            f"plan: {solver.structure.system.name} has no steady state that was found at "
+            f"{found.speed * 30.0 / np.pi:.5g} r/min; narrow the range, or ask for a transient"
+        )
+    return found
+
+
+def _remarks(questions: Sequence[Question], states: Sequence[SteadyState]) -> list[str]:
+    """Bands that end below what is largest, and contacts that are left."""
+    found = []
+    for question in questions:
+        for state in states:
+            lines: Lines = lines_of(state, question)
+            if lines.highest > question.band:
+                found.append(
+                    f"{question.name}: the largest line, at {lines.highest:.5g} Hz, lies beyond "
+                    "the band"
+                )
+                break
+    for state in states:
+        if state.bends:
+            where = f"{state.speed * 30.0 / np.pi:.5g} r/min"
+            found.append(f"laws bend at {where}: {', '.join(state.bends)}")
+            break
+    return found

@@ -1,0 +1,1 @@
+"""Entries: the dynamic model of the gear transmission."""

@@ -1,0 +1,1 @@
+"""Entries: modes of the housing, bearing forces, vibration of the seats."""

@@ -1,0 +1,1 @@
+"""Entries: the gear pair, its mesh stiffness, profile modification."""

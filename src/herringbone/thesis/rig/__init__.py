@@ -1,0 +1,1 @@
+"""Entries: the test rig, its sensors, and what was measured."""

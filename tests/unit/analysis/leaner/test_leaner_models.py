@@ -1,0 +1,111 @@
+"""Leaner models of the rig: what they must be, and whether the estimate knows it beforehand."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from herringbone.analysis.leaner.cuts import cuts_of, modes_of
+from herringbone.analysis.leaner.estimate import Estimates
+from herringbone.analysis.leaner.form import Form
+from herringbone.analysis.leaner.question import Question, apart, lines_of
+from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.twin.condensed.lean import Lean, held_states
+from herringbone.analysis.twin.fused.core import Core, Steps
+from herringbone.analysis.twin.fused.measured import values_at
+from herringbone.core import StructureError
+from herringbone.running.prepared import Wishes
+from herringbone.running.steady import prepared_solver
+
+_SPEED = 1310.0 * math.pi / 30.0
+
+
+@cache
+def _rig() -> tuple[SteadySolver, SteadyState, tuple[Question, ...]]:
+    point, still = Point(speed=_SPEED), {"gear_mesh.symmetry_deviation": 0.0}
+    solver, _ = prepared_solver(
+        "test_rig", point=point, wishes=Wishes(values=still), tolerance=1e-5
+    )
+    state = solver.solve(point)
+    questions = tuple(
+        Question(group, tuple(state.chosen(group)), Form.SPECTRUM, 0.01)
+        for group in ("bearing_force", "seat_velocity")
+    )
+    return solver, state, questions
+
+
+def _measured(lean: Lean) -> dict[str, float]:
+    solver, state, questions = _rig()
+    found = solver.leaner(lean).solve(state.point, state)
+    assert found.converged
+    return {q.name: apart(q, lines_of(found, q), lines_of(state, q)).error for q in questions}
+
+
+def test_of_a_rigid_and_of_a_driven_housing_the_bearings_know_the_same() -> None:
+    solver, state, questions = _rig()
+    found = {cut.name: cut.lean for cut in cuts_of(solver.structure)}
+    rigid, driven = (
+        solver.leaner(found[name]).solve(state.point)
+        for name in ("housing rigid", "housing driven one way")
+    )
+    force, velocity = questions
+    same = apart(force, lines_of(rigid, force), lines_of(driven, force))
+    assert same.error < 1e-9
+    assert not np.any(lines_of(rigid, velocity).coefficients)
+    assert lines_of(driven, velocity).coefficients[:, 1:].any()
+
+
+def test_an_estimate_is_what_the_leaner_model_then_differs_by() -> None:
+    solver, state, questions = _rig()
+    modes, cuts = modes_of(solver.structure), cuts_of(solver.structure)
+    axial = next(cut.lean for cut in cuts if cut.name == "axial motion locked")
+    held = [name for pair in modes for name in pair]
+    estimates = Estimates(state, questions, [*held, *axial.held])
+    alone = estimates.alone([pair[1] for pair in modes])
+    ranked = sorted(
+        (pair for pair in modes if pair[1] in alone),
+        key=lambda pair: max(found.error for found in alone[pair[1]].values()),
+    )
+    for names in (axial.held, *([n for p in ranked[:k] for n in p] for k in (20, 30, 40))):
+        expected, measured = estimates.held(names), _measured(Lean(tuple(names)))
+        for name, error in measured.items():
+            assert expected[name].error == pytest.approx(error, rel=0.02)
+
+
+def test_modes_are_ranked_by_what_they_do_and_not_by_their_frequency() -> None:
+    solver, state, questions = _rig()
+    modes = modes_of(solver.structure)
+    estimates = Estimates(state, questions, [name for pair in modes for name in pair])
+    alone = estimates.alone([pair[1] for pair in modes])
+    sizes = np.array([max(a.error for a in found.values()) for found in alone.values()])
+    highest = [n for pair in modes[40:] for n in pair]
+    chosen = np.argsort(sizes)[: len([pair for pair in modes[40:] if pair[1] in alone])]
+    names = list(alone)
+    least = [n for pair in modes if pair[1] in {names[k] for k in chosen} for n in pair]
+    by_frequency, by_influence = (estimates.held(held) for held in (highest, least))
+    for name in by_influence:
+        assert by_influence[name].error < 0.5 * by_frequency[name].error
+
+
+def test_held_states_stay_where_they_are_while_a_leaner_core_is_marched() -> None:
+    solver, _, _ = _rig()
+    structure = solver.structure
+    lean = next(cut.lean for cut in cuts_of(structure) if cut.name == "axial motion locked")
+    core = Core(structure.system, lean=lean)
+    names = [n for n in core.names if n.endswith(".s_z") and "gear_mesh" in n]
+    held = core.twin.state[held_states(core.twin, lean)]
+    found = values_at(core, np.linspace(0.0, 2e-3, 21), Steps(1e-4, 4), names)
+    assert np.ptp(found, axis=0).max() <= 1e-12 * max(1.0, np.abs(held).max())
+
+
+def test_what_is_not_there_cannot_be_left_out() -> None:
+    solver, _, _ = _rig()
+    with pytest.raises(StructureError, match=r"no state 'gearbox\.gear_mesh\.x'"):
+        solver.leaner(Lean(("gearbox.gear_mesh.x",)))
+    with pytest.raises(StructureError, match="cannot be held"):
+        solver.leaner(Lean(("gearbox.gear_mesh.angle",)))
+    with pytest.raises(StructureError, match="no part 'somewhere'"):
+        solver.leaner(Lean((), ("somewhere",)))

@@ -1,0 +1,77 @@
+"""What scenes ask: read, written again, and refused in one line."""
+
+import math
+import re
+
+import pytest
+
+from herringbone.analysis.leaner.form import Form
+from herringbone.core import ParameterError
+from herringbone.scenes import Ask, Model, Motion, Operating, read_scene
+from herringbone.scenes.asking_text import asking_text
+
+_ALL = """
+[operating]
+speed = [500, 3000]
+torque = 200
+[[ask]]
+what = "seat velocity"
+band = 2000
+[[ask]]
+what = ["bearing_force", "*.torque"]
+as = "order"
+orders = [1, 2]
+tolerance = 0.05
+[model]
+hold = ["housing.q[7]"]
+error = 0.002
+speed = 1000
+"""
+_R_MIN = 30.0 / math.pi
+
+
+def _read(folder, text):
+    file = folder / "mine.toml"
+    file.write_text(text, encoding="utf-8")
+    return read_scene(file)
+
+
+def test_all_that_can_be_asked(tmp_path):
+    found = _read(tmp_path, _ALL)
+    assert found.operating == Operating(
+        Motion.STEADY, (500.0 / _R_MIN, 3000.0 / _R_MIN), (200.0, 200.0)
+    )
+    assert found.asks == (
+        Ask(("seat velocity",), Form.SPECTRUM, 0.01, 2000.0),
+        Ask(("bearing_force", "*.torque"), Form.ORDER, 0.05, math.inf, (1.0, 2.0)),
+    )
+    at = 1000.0 / _R_MIN
+    assert found.model == Model(("housing.q[7]",), (), 0.002, (at, at))
+
+
+def test_what_is_written_is_read_again(tmp_path):
+    found = _read(tmp_path, _ALL)
+    again = _read(tmp_path, "\n".join(asking_text(found.asks, found.operating, found.model)))
+    assert (again.asks, again.model) == (found.asks, found.model)
+    assert again.operating.speed == pytest.approx(found.operating.speed, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('[ask]\nwhat = "x"', "ask: it takes tables [[ask]]"),
+        ("[[ask]]\ntolerance = 0.1", "ask: what: it takes the names"),
+        ('[[ask]]\nwhat = "x"\ntolerance = 1', "ask: tolerance = 1: it must lie between 0 and 1"),
+        ('[[ask]]\nwhat = "x"\nas = "sound"', "ask: as = 'sound'; it must be one of signal,"),
+        ('[[ask]]\nwhat = "x"\nas = "order"', "ask: orders: a list of positive mesh orders"),
+        ('[[ask]]\nwhat = "x"\nas = "level"\nband = 5', "ask: band = 5 Hz: it must be positive"),
+        ("[operating]\nspeed = [3, 1]", "operating: speed = [3, 1]: the lower one first"),
+        ('[operating]\nmotion = "transient"\nspeed = 9', "a transient has those of its cycle"),
+        ("[model]\nholds = []", "model: unknown key holds; known: error, hold, one_way, speed"),
+    ],
+)
+def test_refused_in_one_line(tmp_path, text, message):
+    with pytest.raises(ParameterError, match=re.escape(message)) as error:
+        _read(tmp_path, text)
+    assert str(tmp_path) in str(error.value)
+    assert "\n" not in str(error.value)
