@@ -8,7 +8,7 @@ from herringbone.analysis.steady.set_points import Point, SetPoints
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
-from herringbone.running.lean import lean_notes, lean_of
+from herringbone.running.lean import certified, lean_error, lean_notes, lean_of
 from herringbone.running.loading import load_system
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes, prepared
@@ -48,11 +48,17 @@ def steady(
     Raises:
         HerringboneError: something about the input is wrong, or the motion does not repeat.
     """
-    solver, point, notes = prepared_solver(
-        system, scene=scene, speed=speed, torque=torque, values=values, gear=gear, housing=housing,
-        tolerance=tolerance,
-    )  # fmt: skip
-    return solver.solve(point, near).noted(notes)
+    point = Point(speed, torque)
+    found = prepared_at(point, system, scene, values=values, gear=gear, housing=housing)
+    model, changed = found.scene.model, values or {}
+    solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
+    state = solver.solve(point, near)
+    notes = (*found.notes, *lean_notes(model, changed, speed, torque))
+    if model and state.converged and not certified(model, changed, speed, torque):
+        whole = SteadySolver(found.system, tolerance).solve(point, near)
+        if whole.converged:
+            notes = (*notes, lean_error(state, whole))
+    return state.noted(notes)
 
 
 def prepared_solver(
