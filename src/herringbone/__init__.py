@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from herringbone.running.modes import modes
     from herringbone.running.own_master import connections, start_values
     from herringbone.running.steady import steady
-    from herringbone.scenes import Scene
+    from herringbone.scenes import Ask, Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LI",
+    "Ask",
     "FixedPoint",
     "GaussSeidel",
     "HerringboneError",
@@ -88,6 +89,7 @@ _WHERE = {
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result.result",
     "Role": "herringbone.core.declaring.roles",
+    "Ask": "herringbone.scenes",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "modes": "herringbone.running.modes",

@@ -2,9 +2,13 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from herringbone.analysis.accuracy.error_budget import by_size
 from herringbone.core import ParameterError
+from herringbone.result.budget import BudgetRow, Known
+from herringbone.result.result import Result
 from herringbone.scenes import Model, Scene
 from herringbone.scenes.asking import Range
 
@@ -69,6 +73,16 @@ def certified(
     """True if the error of a leaner model is known; see `lean_notes`."""
     known = model.error is not None and not changed
     return known and _within(speed, model.speed) and _within(torque, model.torque)
+
+
+def with_model_row(result: Result, model: Model) -> Result:
+    """The result of a run, with what its model leaves out in the error budget."""
+    if not model:
+        return result
+    known = Known.UNKNOWN if model.error is None else Known.MEASURED
+    how = "no plan certified it" if model.error is None else f"steady states{_where(model)}"
+    row = BudgetRow("model left out", "what the scene asks", model.error, known, how)
+    return replace(result, budget=by_size([*result.budget, row]))
 
 
 def lean_error(state: "SteadyState", whole: "SteadyState") -> str:
