@@ -18,24 +18,24 @@
 
 
 #define NODES \
-    {0, -1e300, 1e300, 1, 0, 0}, {0, -1e300, 1e300, 1, 0, 1}, {0, -1e300, 1e300, 1, 0, 2}, \
-    {0, -1e300, 1e300, 1, 0, 3}, {0, -1e300, 1e300, 1, 0, 4}
+    {0, -1e300, 1e300, 1, 0, 0, 0}, {0, -1e300, 1e300, 1, 0, 1, 0}, {0, -1e300, 1e300, 1, 0, 2, 0}, \
+    {0, -1e300, 1e300, 1, 0, 3, 0}, {0, -1e300, 1e300, 1, 0, 4, 0}
 static const HbReal reals[] = {
-    {0, -1e300, 1e300, 1, 0, 0},
-    {0, -1e300, 1e300, 100, 0, 0},
-    {0, -1e300, 1e300, 10, 0, 0},
-    {0, -1e300, 1e300, 1, 0, 0},
-    {0, -1e300, 1e300, 20, 0, 0},
-    {0, -1e300, 1e300, 1, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0, 0},
+    {0, -1e300, 1e300, 100, 0, 0, 0},
+    {0, -1e300, 1e300, 10, 0, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0, 0},
+    {0, -1e300, 1e300, 20, 0, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0, 0},
     NODES,
     NODES,
     NODES,
     NODES,
-    {0, -1e300, 1e300, 1, 0, 0},
-    {0, -1e300, 1e300, 1, 0, 0},
-    {2, 1e-9, 1e9, 1, 0, 0},
-    {1, -1e9, 1e9, 1, 0, 0},
-    {0, 0, 4, 1, 1, 0},
+    {0, -1e300, 1e300, 1, 0, 0, 0},
+    {0, -1e300, 1e300, 1, 0, 0, 0},
+    {2, 1e-9, 1e9, 1, 0, 0, 0},
+    {1, -1e9, 1e9, 1, 0, 0, 0},
+    {0, 0, 4, 1, 1, 0, 0},
 };
 static const char names[] = "phi\0" "w\0" "counter[1]\0" "\0" "other[1]\0" "\0" "tau\0"
                             "flange.phi\0" "flange.w\0" "torque\0" "flange.a\0" "steps\0"
@@ -64,8 +64,8 @@ static const HbColumn inertia_columns[] = {
     {"side", NULL, side_words, 0, 0}, {"mass", kilogram, NULL, 0, 0}, {"speed", speeds, NULL, 0, 0}};
 static const HbColumn shape_columns[] = {{"point", NULL, no_words, 1, 0},
                                          {"shape", shape_units, NULL, 0, 1}};
-static const HbText texts[] = {{"inertias", "inertias.csv", inertia_columns, 3, "", 0},
-                               {"shapes", "shapes.csv", shape_columns, 2, "", 0}};
+static const HbText texts[] = {{"inertias", "inertias.csv", inertia_columns, 3, "", 0, NULL, 0},
+                               {"shapes", "shapes.csv", shape_columns, 2, "", 0, NULL, 1}};
 static const HbVector vectors[] = {{1, LENGTH, 1, "counters"}, {1, LENGTH, 1, "others"}};
 static const HbRefusal refusals[] = {{0, ": mass %g kg in row %g must be positive"},
                                      {1, ": %g rows, %g expected"}};

@@ -21,6 +21,7 @@ class Fmi2Host:
     def __init__(self, fmu: Path, folder: Path, start=0.0, tolerance=None, values=None):
         description = read_model_description(str(fmu))
         self.reference = {v.name: v.valueReference for v in description.modelVariables}
+        self.choices = {v.name for v in description.modelVariables if v.type == "Enumeration"}
         self.messages: list[str] = []
         self.slave = FMU2Slave(
             guid=description.guid,
@@ -42,8 +43,11 @@ class Fmi2Host:
         self.slave.exitInitializationMode()
 
     def set(self, values):
-        if values:
-            self.slave.setReal([self.reference[n] for n in values], list(values.values()))
+        reals = {n: x for n, x in values.items() if n not in self.choices}
+        if reals:
+            self.slave.setReal([self.reference[n] for n in reals], list(reals.values()))
+        for n in values.keys() & self.choices:
+            self.slave.setInteger([self.reference[n]], [values[n]])
 
     def get(self, *names):
         return np.array(self.slave.getReal([self.reference[n] for n in names]))

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.rigid_rotation import steady_rows, turning
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
-from herringbone.core.declaring.roles import Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
@@ -56,7 +57,7 @@ def equilibrium(system: System) -> Equilibrium:
     """
     twin = Twin(system)
     with one_blas_thread():
-        held = _held(twin)
+        held = _held(system, twin)
         try:
             return _solved(system, twin, held, _guess(twin))
         except EquilibriumError:
@@ -66,9 +67,9 @@ def equilibrium(system: System) -> Equilibrium:
             raise
 
 
-def _held(twin: Twin) -> int | None:
-    """Place of the first angle of the first gear pair among the states, under a controller."""
-    if not any(Role.CONTROLLER in i.component.declaration.roles for i in twin.instances):
+def _held(system: System, twin: Twin) -> int | None:
+    """Place of the first angle of the first gear pair among the states, if its speed is held."""
+    if not _holds_speed(system):
         return None
     for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
         declaration = instance.component.declaration
@@ -76,6 +77,14 @@ def _held(twin: Twin) -> int | None:
             angles = (i for i, v in enumerate(declaration.states) if v.steady == "rotating")
             return next((first + i for i in angles), None)
     return None
+
+
+def _holds_speed(system: System) -> bool:
+    """True if a controller's set point of the speed is joined to something."""
+    known = anatomy(system)
+    ends = {path for pair in system.connections for path in pair}
+    found = {known.column(c, Quantity.SPEED_SETPOINT) for c in known.with_role(Role.CONTROLLER)}
+    return not ends.isdisjoint(found)
 
 
 def _solved(system: System, twin: Twin, held: int | None, x: np.ndarray) -> Equilibrium:

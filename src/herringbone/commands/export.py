@@ -58,7 +58,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         help="file; if not given SYSTEM.ssp, with --as-fmu SYSTEM.fmu, and with --fmi 3 "
-        "SYSTEM_fmi3.fmu",
+        "SYSTEM_fmi3.fmu; a .ssv file with --as-fmu: start values of the scene alone",
     )
 
 

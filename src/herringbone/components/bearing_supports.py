@@ -16,6 +16,10 @@ force out, so that no power is created. With a radial clearance c,
 so that the damping acts only on the loaded part, and f = 0 where its sign is not that of gap(d): a
 bearing with clearance never pulls. Without clearance g = 1, and f may have any sign.
 
+With `seat_motion` 0 the bearings stand on rigid ground: s_seat and its rate count as zero, while
+the forces drive the housing as before. This is the one-way procedure of the thesis, chapter 4.
+Power is not balanced then: what the housing takes up nobody has given.
+
 A master that steps all FMUs in parallel sees this element one macro step h late; gear and seat then
 are stable only for h < 4/3 zeta / w with the local w, zeta; `herringbone stability` computes the
 limit of a system. A master that steps it after the bodies, over the same interval, has no delay.
@@ -155,6 +159,16 @@ _d = Declaration(
             maximum=1,
         ),
         parameter(
+            "seat_motion",
+            "1",
+            "1: the seats move the bearings, 0: bearings on rigid ground, housing driven one way",
+            1.0,
+            minimum=0,
+            maximum=1,
+            whole=True,
+            quantity=Quantity.SEAT_MOTION,
+        ),
+        parameter(
             "pressure_angle",
             "rad",
             "working transverse pressure angle alpha_wt",
@@ -202,8 +216,8 @@ _K_R, _C_R, _K_A, _C_A, _CLEARANCE = (
         "radial_clearance",
     )
 )
-_PER_SHAFT, _ANGLE, _FLANK, _DEGREE = _d.indices(
-    "axial_per_shaft", "pressure_angle", "flank", "interface_degree"
+_PER_SHAFT, _MOTION, _ANGLE, _FLANK, _DEGREE = _d.indices(
+    "axial_per_shaft", "seat_motion", "pressure_angle", "flank", "interface_degree"
 )
 
 
@@ -234,18 +248,19 @@ def _line_of_action(b: np.ndarray) -> tuple[float, float]:
 @kernel
 def _approach(b: np.ndarray, i: int, n_x: float, n_y: float) -> tuple[float, float]:
     """Radial displacement of a half against its seat [m], and its rate [m/s]."""
-    d = b[_S_Y[i]] - (n_x * b[_SEAT_S_X[i]] + n_y * b[_SEAT_S_Y[i]])
-    return d, b[_V_Y[i]] - (n_x * b[_SEAT_V_X[i]] + n_y * b[_SEAT_V_Y[i]])
+    m = b[_MOTION]
+    d = b[_S_Y[i]] - m * (n_x * b[_SEAT_S_X[i]] + n_y * b[_SEAT_S_Y[i]])
+    return d, b[_V_Y[i]] - m * (n_x * b[_SEAT_V_X[i]] + n_y * b[_SEAT_V_Y[i]])
 
 
 @kernel
 def _forces(b: np.ndarray, i: int, n_x: float, n_y: float, radial: float) -> None:
     """Write the forces of a half's bearing with a given radial force [N]."""
-    gear = i // 2
+    gear, m = i // 2, b[_MOTION]
     b[_F_Y[i]] = -radial
     b[_SEAT_F_X[i]], b[_SEAT_F_Y[i]] = radial * n_x, radial * n_y
-    axial = b[_K_A[gear]] * (b[_S_Z[i]] - b[_SEAT_S_Z[i]])
-    axial += b[_C_A[gear]] * (b[_V_Z[i]] - b[_SEAT_V_Z[i]])
+    axial = b[_K_A[gear]] * (b[_S_Z[i]] - m * b[_SEAT_S_Z[i]])
+    axial += b[_C_A[gear]] * (b[_V_Z[i]] - m * b[_SEAT_V_Z[i]])
     axial *= 1.0 - 0.5 * b[_PER_SHAFT]
     b[_F_Z[i]], b[_SEAT_F_Z[i]] = -axial, axial
 

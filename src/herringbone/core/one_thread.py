@@ -28,6 +28,18 @@ def _libraries() -> ThreadpoolController:
     return ThreadpoolController()
 
 
+def _take_control() -> None:
+    """Let the number be set from this thread, whichever has set it before.
+
+    Since 3.8 threadpoolctl lets one thread alone set it, and passes over what others ask for; here
+    the contexts take turns, so that the last one may always bring it back.
+    """
+    for library in _libraries().lib_controllers:
+        clear = getattr(library, "clear_controlling_thread", None)
+        if clear is not None:
+            clear(force=True)
+
+
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
     """Context in which linear algebra takes one thread; of no effect where there is no BLAS.
@@ -36,6 +48,7 @@ def one_blas_thread() -> Iterator[None]:
     """
     with _open.lock:
         if _open.count == 0:
+            _take_control()
             _open.limit = _libraries().limit(limits=1, user_api="blas")
         _open.count += 1
     try:
@@ -44,4 +57,5 @@ def one_blas_thread() -> Iterator[None]:
         with _open.lock:
             _open.count -= 1
             if _open.count == 0:
+                _take_control()
                 _open.limit.restore_original_limits()

@@ -33,8 +33,13 @@ def every_real(declaration: Declaration) -> dict[int, Variable]:
 
 
 def texts(declaration: Declaration) -> dict[int, Text]:
-    """The String parameters by value reference."""
-    return dict(enumerate(declaration.texts, declaration.size))
+    """The String parameters by value reference; tables that share a file have one."""
+    return {k: t for k, t in enumerate(declaration.texts, declaration.size) if not t.shared}
+
+
+def choices(declaration: Declaration) -> list[Variable]:
+    """The variables that are one of some items, Enumerations of FMI."""
+    return [v for v in reals(declaration).values() if v.items]
 
 
 def feedthrough(declaration: Declaration, variable: Variable) -> list[str]:

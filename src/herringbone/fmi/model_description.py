@@ -86,12 +86,16 @@ def model_description(component: Component, native: UsedStates | None = None) ->
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **capabilities)
     shown = (v.unit for v in (*states.values(), *(rate for _, rate in rates.values())))
     add_units(root, declaration, *shown)
+    _add_types(root, declaration)
     add_log_categories(root)
     add_experiment(root, component)
     variables = SubElement(root, "ModelVariables")
     reals = dict(sorted((interface.reals(declaration) | states).items()))
     for reference, variable in reals.items():
-        variables.append(_real(reference, variable, settled=component.hosting is not None))
+        if variable.items:
+            variables.append(_enumeration(reference, variable))
+        else:
+            variables.append(_real(reference, variable, settled=component.hosting is not None))
     for reference, text in interface.texts(declaration).items():
         variables.append(_string(reference, text))
     _add_structure(root, component, list(reals.values()))
@@ -111,6 +115,28 @@ def add_units(root: Element, declaration: Declaration, *further: str) -> None:
         if name in DISPLAY_UNITS:
             shown, factor = DISPLAY_UNITS[name]
             SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
+
+
+def _add_types(root: Element, declaration: Declaration) -> None:
+    """Add the types of variables that are one of some items; FMI forbids an empty list of types."""
+    if choices := interface.choices(declaration):
+        types = SubElement(root, "TypeDefinitions")
+        for variable in choices:
+            enumeration = SubElement(
+                SubElement(types, "SimpleType", name=type_name(variable)), "Enumeration"
+            )
+            add_items(enumeration, variable)
+
+
+def type_name(variable: Variable) -> str:
+    """Name of the type of a variable that is one of some items, other than any variable's."""
+    return f"{variable.name}_type"
+
+
+def add_items(enumeration: Element, variable: Variable) -> None:
+    """Add the items of an enumeration; the same in FMI 2.0 and 3.0."""
+    for number, item in enumerate(variable.items):
+        SubElement(enumeration, "Item", name=item, value=str(number))
 
 
 def add_log_categories(root: Element) -> None:
@@ -178,6 +204,17 @@ def _real(reference: int, variable: Variable, *, settled: bool = False) -> Eleme
     return scalar
 
 
+def _enumeration(reference: int, variable: Variable) -> Element:
+    scalar = _scalar(
+        reference, variable.name, variable.description, variable.variability, variable.causality
+    )
+    scalar.set("initial", "exact")
+    SubElement(
+        scalar, "Enumeration", declaredType=type_name(variable), start=str(int(variable.start))
+    )
+    return scalar
+
+
 def _string(reference: int, text: Text) -> Element:
     scalar = _scalar(reference, text.name, text.description, "fixed", Causality.PARAMETER)
     scalar.set("initial", "exact")
@@ -206,7 +243,7 @@ def _add_structure(root: Element, component: Component, reals: list[Variable]) -
     unknowns = SubElement(structure, "InitialUnknowns")
     position = {v.name: i for i, v in enumerate(reals, 1)}
     exact = [position[v.name] for v in starting(component)]
-    exact += range(len(reals) + 1, len(reals) + 1 + len(declaration.texts))
+    exact += range(len(reals) + 1, len(reals) + 1 + len(interface.texts(declaration)))
     for variable in reals:
         if variable.causality is not Causality.OUTPUT:
             continue

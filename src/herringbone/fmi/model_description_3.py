@@ -16,6 +16,7 @@ from herringbone.fmi import interface
 from herringbone.fmi.model_description import (
     AUTHOR,
     add_experiment,
+    add_items,
     add_log_categories,
     add_units,
     child,
@@ -23,6 +24,7 @@ from herringbone.fmi.model_description import (
     initial,
     sizes,
     starting,
+    type_name,
 )
 from herringbone.fmi.used_states import UsedStates
 
@@ -69,13 +71,17 @@ def model_description_3(used: UsedStates) -> Element:
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **_STEPS, **_CAPABILITIES)
     shown = [*(v for v, _ in states.values()), *(rate for _, rate in rates.values())]
     add_units(root, declaration, _TIME_UNIT, *(v.unit for v in shown))
+    _add_types(root, declaration)
     add_log_categories(root)
     add_experiment(root, component)
     variables = SubElement(root, "ModelVariables")
     references = dict(sorted((_references(declaration) | states).items()))
     for reference, (variable, extent) in references.items():
         settled = component.hosting is not None
-        variables.append(_float64(reference, variable, extent, settled=settled))
+        if variable.items:
+            variables.append(_enumeration(reference, variable))
+        else:
+            variables.append(_float64(reference, variable, extent, settled=settled))
     for reference, text in interface.texts(declaration).items():
         string = SubElement(
             variables,
@@ -101,6 +107,27 @@ def model_description_3(used: UsedStates) -> Element:
         _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
         _add_indicators(root, component)
     return root
+
+
+def _add_types(root: Element, declaration: Declaration) -> None:
+    if choices := interface.choices(declaration):
+        types = SubElement(root, "TypeDefinitions")
+        for variable in choices:
+            add_items(SubElement(types, "EnumerationType", name=type_name(variable)), variable)
+
+
+def _enumeration(reference: int, variable: Variable) -> Element:
+    return Element(
+        "Enumeration",
+        name=variable.name,
+        valueReference=str(reference),
+        description=variable.description,
+        causality=variable.causality.value,
+        variability=variable.variability.value,
+        declaredType=type_name(variable),
+        initial="exact",
+        start=str(int(variable.start)),
+    )
 
 
 def _references(declaration: Declaration) -> dict[int, tuple[Variable, int]]:

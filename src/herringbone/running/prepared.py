@@ -17,6 +17,7 @@ from herringbone.running.loading import load_scene, load_system, with_options, w
 from herringbone.running.pairs.gears import Gear, with_gears
 from herringbone.running.pairs.impacts import with_impacts
 from herringbone.running.pairs.open_flanges import balanced, unbalanced
+from herringbone.running.rigid_ground import driven_one_way
 from herringbone.running.start import started
 from herringbone.scenes import Scene
 
@@ -87,9 +88,7 @@ def prepared(
     gears: dict[str, Gear] = _merged(
         structure, Role.GEAR_PAIR, structure.gears, chosen.gears, _by_path(w.gear)
     )
-    housings: dict[str, str | Path] = _merged(
-        structure, Role.HOUSING, structure.housings, chosen.housings, _by_path(w.housing)
-    )
+    housings = housings_of(structure, chosen, w)
     if (gears or housings) and is_ssp(Path(folder)):
         raise ParameterError(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
@@ -100,13 +99,18 @@ def prepared(
     check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)
     structure = balanced(structure)
-    lines = unbalanced(structure)
+    lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
         structure, notes = started(structure, chosen)
     except EquilibriumError as error:
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
     structure, impacts = with_impacts(structure, jobs)
     return Prepared(structure, chosen, (*said, *lines, *notes, *impacts, *broken))
+
+
+def housings_of(system: System, scene: Scene, wishes: Wishes) -> dict[str, str | Path]:
+    """Data, dimensions or FMUs of housings by their whole paths; raises ParameterError."""
+    return _merged(system, Role.HOUSING, system.housings, scene.housings, _by_path(wishes.housing))
 
 
 def _merged(system: System, role: Role, *levels: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,18 +1,23 @@
-"""Periodic steady states of systems, by name."""
+"""Steady states of systems, by name: by harmonic balance, or of a run where parts are foreign."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point, SetPoints
-from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
+from herringbone.analysis.steady.settled import SettledState
+from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.lean import certified, lean_error, lean_notes, lean_of
-from herringbone.running.loading import load_system
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes, prepared
+from herringbone.running.settled import LONGEST, settled, with_known_values
 from herringbone.scenes import Scene, Start
+
+NOTHING = Wishes()
 
 
 def steady(
@@ -24,10 +29,16 @@ def steady(
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
+    replace_parts: Mapping[str, str | Path] | None = None,
     tolerance: float = TOLERANCE,
     near: SteadyState | None = None,
-) -> SteadyState:
-    """The periodic steady state of a system at an operating point, by harmonic balance.
+    longest: float = LONGEST,
+) -> SteadyState | SettledState:
+    """The steady state of a system at an operating point: by harmonic balance.
+
+    With foreign parts, whose equations nobody knows, it is what a run settles to: the system is run
+    until levels and means of all groups of channels change by less than the tolerance from the
+    third to the last quarter, see `SettledState`.
 
     Set points that change with time are taken as they are in the end.
 
@@ -37,10 +48,11 @@ def steady(
         speed: of the pinion [rad/s], where the system declares a set point of it, or nothing is
             joined to its gear pair; the scene's if not given.
         torque: at the pinion [N m], likewise.
-        values, gear, housing: see `herringbone.run`.
+        values, gear, housing, replace_parts: see `herringbone.run`.
         tolerance: error of the alternating part of each group of channels, harmonics left out
-            included.
+            included; of a run see above.
         near: a state nearby, to begin from; it decides on the branch where there are several.
+        longest: duration of a run that is tried at most [s].
 
     Returns:
         A state; ask it whether it is `converged`.
@@ -48,46 +60,54 @@ def steady(
     Raises:
         HerringboneError: something about the input is wrong, or the motion does not repeat.
     """
+    wishes = Wishes(
+        values=values or {}, gear=gear, housing=housing, replace_parts=replace_parts or {}
+    )
     point = Point(speed, torque)
-    found = prepared_at(point, system, scene, values=values, gear=gear, housing=housing)
-    model, changed = found.scene.model, values or {}
+    if is_foreign(system, scene, wishes):
+        point.check()
+        check_tolerance(tolerance)
+        return settled(system, scene, point, wishes, tolerance, longest)
+    found = prepared_at(point, system, scene, wishes)
+    model = found.scene.model
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
     state = solver.solve(point, near)
-    notes = (*found.notes, *lean_notes(model, changed, speed, torque))
-    if model and state.converged and not certified(model, changed, speed, torque):
+    notes = (*found.notes, *lean_notes(model, wishes.values, speed, torque))
+    if model and state.converged and not certified(model, wishes.values, speed, torque):
         whole = SteadySolver(found.system, tolerance).solve(point, near)
         if whole.converged:
             notes = (*notes, lean_error(state, whole))
     return state.noted(notes)
 
 
+def is_foreign(
+    system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes
+) -> bool:
+    """True if a part of a system is foreign, so that no equations of it are known."""
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    known = with_known_values(structure, load_scene(folder, scene), wishes)
+    return bool(known.foreign_parts)
+
+
 def prepared_solver(
     system: str | Path | System,
-    *,
     scene: str | Path | Scene | None = None,
-    speed: float | None = None,
-    torque: float | None = None,
-    values: Mapping[str, float | str | Path] | None = None,
-    gear: Gear | Mapping[str, Gear] | None = None,
-    housing: Named | None = None,
+    point: Point = AS_IT_IS,
+    wishes: Wishes = NOTHING,
     tolerance: float = TOLERANCE,
-) -> tuple[SteadySolver, Point, tuple[str, ...]]:
-    """What solves for steady states, the operating point asked for, and notes; see `steady`."""
-    point = Point(speed, torque)
-    found = prepared_at(point, system, scene, values=values, gear=gear, housing=housing)
+) -> tuple[SteadySolver, tuple[str, ...]]:
+    """What solves for steady states near an operating point, and notes; see `steady`."""
+    found = prepared_at(point, system, scene, wishes)
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
-    said = lean_notes(found.scene.model, values or {}, speed, torque)
-    return solver, point, (*found.notes, *said)
+    said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
+    return solver, (*found.notes, *said)
 
 
 def prepared_at(
     point: Point,
     system: str | Path | System,
     scene: str | Path | Scene | None = None,
-    *,
-    values: Mapping[str, float | str | Path] | None = None,
-    gear: Gear | Mapping[str, Gear] | None = None,
-    housing: Named | None = None,
+    wishes: Wishes = NOTHING,
 ) -> Prepared:
     """A system in the equilibrium of an operating point; see `steady`.
 
@@ -95,16 +115,9 @@ def prepared_at(
         HerringboneError: something about the input is wrong.
     """
     point.check()
-    wishes = Wishes(
-        values=values or {},
-        gear=gear,
-        housing=housing,
-        start=Start.REST,
-        start_offset={},
-        lean=True,
-    )
+    asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
     structure = system if isinstance(system, System) else load_system(system)[0]
-    if point.torque is not None and gear:  # what balances it at the wheel follows from the pair
-        structure = prepared(system, scene, wishes).system
-    wanted = {**SetPoints(structure).values(point), **(values or {})}
-    return prepared(system, scene, replace(wishes, values=wanted, start=Start.EQUILIBRIUM))
+    if point.torque is not None and wishes.gear:  # what balances it follows from the pair
+        structure = prepared(system, scene, asked).system
+    wanted = {**SetPoints(structure).values(point), **wishes.values}
+    return prepared(system, scene, replace(asked, values=wanted, start=Start.EQUILIBRIUM))

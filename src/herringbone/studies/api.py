@@ -9,16 +9,18 @@ from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.cosim.structure.system import System
+from herringbone.running.commanded import commanded
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
+from herringbone.running.settled import with_known_values
 from herringbone.studies.axes import numbers
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
+from herringbone.studies.evaluators.settled import Settled
 from herringbone.studies.evaluators.steady import Steady
-from herringbone.studies.evaluators.transient import Transient, with_known_values
+from herringbone.studies.evaluators.transient import Transient
 from herringbone.studies.keys import base_settings
-from herringbone.studies.set_points import commanded
 from herringbone.studies.study import SET_POINTS, Study, Value, grid
 from herringbone.studies.sweep import Asked, Progress, Sweep, Told, computed
 from herringbone.studies.working.executors import Workers
@@ -59,8 +61,8 @@ def sweep(
         study: points, in place of `speed`, `torque` and `vary`.
         scene, values, gear, housing, replace_parts, t_end, record_step, start: of all points, as in
             `herringbone.run`.
-        evaluator: what computes a point; periodic steady states (`Steady`) if not given, or runs
-            (`Transient`) with foreign parts.
+        evaluator: what computes a point; periodic steady states (`Steady`) if not given; with
+            foreign parts what a run settles to (`Settled`), or with t_end such a run (`Transient`).
         executor: any of `concurrent.futures`, or such as that of `dask.distributed`; processes of
             our own if not given.
         workers: number of these; as many as there are cores, and as are worth it, if not given.
@@ -114,11 +116,11 @@ def sweep(
 
 
 def _suited(system: System, wishes: Wishes) -> Evaluator:
-    """Steady states where all equations are known, and nothing is asked of a run."""
+    """Steady states, of runs where parts are foreign; these runs as long as asked for, if so."""
     of_runs = {"t_end": wishes.t_end, "record_step": wishes.record_step, "start": wishes.start}
     given = [name for name, value in of_runs.items() if value is not None]
-    if system.foreign_parts or wishes.replace_parts:
-        return Transient()
+    if system.foreign_parts:
+        return Settled() if wishes.t_end is None else Transient()
     if given:
         raise _of_runs(", ".join(given))
     return Steady()

@@ -87,3 +87,21 @@ def test_the_last_context_brings_threads_back():
         assert threads() == {1}
         second.__exit__(None, None, None)
         assert threads() == before
+
+
+def test_a_thread_has_its_context_whoever_had_one_before():
+    with threadpool_limits(limits=2, user_api="blas"):
+        with one_blas_thread():
+            pass
+        found = []
+
+        def work():
+            with one_blas_thread():
+                found.append(threads())
+
+        for _ in range(2):
+            worker = Thread(target=work)
+            worker.start()
+            worker.join()
+        assert found == [{1}, {1}]
+        assert threads() == {2}

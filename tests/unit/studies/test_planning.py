@@ -12,6 +12,7 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import apart, lines_of
 from herringbone.core import ParameterError
 from herringbone.running.lean import lean_of
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.studies.planning.plan import Plan, plan
@@ -38,7 +39,7 @@ def test_the_choice_meets_its_tolerance_where_nothing_was_tested():
     found = _levels()
     assert found.choice.measured is not None
     assert found.choice.measured.ratio <= SHARE
-    whole, _, _ = prepared_solver("test_rig", values=_STILL, tolerance=1e-4)
+    whole, _ = prepared_solver("test_rig", wishes=Wishes(values=_STILL), tolerance=1e-4)
     lean = whole.leaner(lean_of(found.scene))
     (question,) = found.questions
     for speed in (1217.0, 1283.0, 1391.0):

@@ -104,3 +104,42 @@ def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
     assert not (tmp_path / "table.csv").exists()
     found = swept(tmp_path, evaluator=Cheap(seconds=0.05))
     assert found.table.equals(serial)
+
+
+_FORKED = """
+import os, sys
+from pathlib import Path
+from threading import Event, Thread
+from herringbone.running.output.claim import FolderLock
+from herringbone.studies.working.forked import can_fork
+from herringbone.studies.working.processes import WorkerProcesses
+
+def held():
+    numbers = [entry.name for entry in Path("/proc/self/fd").iterdir()]
+    files = [Path("/proc/self/fd", n) for n in numbers]
+    return os.getppid(), [str(f.readlink()) for f in files if f.exists() or f.is_symlink()]
+
+assert can_fork()
+waiting = Event()
+thread = Thread(target=waiting.wait)
+thread.start()
+assert not can_fork()
+waiting.set()
+thread.join()
+lock = FolderLock(Path(sys.argv[1]))
+executor = WorkerProcesses(2, forked=True)
+parent, files = executor.submit(held).result()
+assert parent == os.getpid()
+assert sys.argv[1] not in files
+assert sum(name.startswith("pipe:") for name in files) == 2, files
+lock.release()
+FolderLock(Path(sys.argv[1])).release()
+executor.shutdown()
+"""
+
+
+def test_a_forked_worker_holds_nothing_of_its_parent(tmp_path):
+    """Neither the lock of a folder nor the pipes of its sibling; and a thread is not copied."""
+    with (tmp_path / "errors").open("w") as errors:
+        done = subprocess.run([sys.executable, "-c", _FORKED, tmp_path], check=False, stderr=errors)
+    assert done.returncode == 0, (tmp_path / "errors").read_text()

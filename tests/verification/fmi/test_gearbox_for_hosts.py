@@ -102,7 +102,7 @@ def test_start_at_any_operating_point(speed, torque, exported, tmp_path):
 def test_start_on_the_coast_flank(exported, tmp_path):
     """Torque reversed: the mirror image of the same load, to what the apex deviation changes."""
     found = [
-        Fmi2Host(exported(0), tmp_path / str(t), values={**load(t), "start_mode": 1.0})
+        Fmi2Host(exported(0), tmp_path / str(t), values={**load(t), "start_mode": 1})
         for t in (200.0, -200.0)
     ]
     drive, coast = (h.get("mesh_left.force", "bearing.pinion_left.f_y") for h in found)
@@ -127,7 +127,7 @@ def test_no_equilibrium_is_told(exported, tmp_path):
     (line,) = [m for m in host.messages if "no equilibrium" in m]
     assert "they start undeformed" in line
     assert host.get("transmission_error")[0] == 0.0
-    as_set = Fmi2Host(exported(0), tmp_path / "s", values={**load(200.0), "start_mode": 0.0})
+    as_set = Fmi2Host(exported(0), tmp_path / "s", values={**load(200.0), "start_mode": 0})
     assert as_set.get("transmission_error")[0] == 0.0
     assert not [m for m in as_set.messages if "no equilibrium" in m]
 

@@ -90,6 +90,22 @@ def _ports_at_seats(result: Result, part: str) -> dict[str, str]:
     }
 
 
+def modal_velocity_amplitudes(
+    housing: ModalHousing, frequency_hz: np.ndarray, forces: np.ndarray
+) -> np.ndarray:
+    """Velocities (modes, k) [kg^1/2 m/s] of the oscillators under harmonic forces, complex.
+
+    Args:
+        housing: of n oscillators.
+        frequency_hz: (k,) of the forces, not 0 if there are rigid modes [Hz].
+        forces: (12, k) amplitudes at the seats [N], in the order of `SEAT_DOFS`.
+    """
+    omega = 2.0 * math.pi * np.asarray(frequency_hz, dtype=float)
+    own = 2.0 * math.pi * housing.frequency_hz[:, None]
+    inverse = own**2 - omega**2 + 2j * housing.damping_ratio[:, None] * own * omega
+    return 1j * omega * (housing.seat_shapes.T @ forces) / inverse
+
+
 def modal_velocity(housing: ModalHousing, forces: np.ndarray, step: float) -> np.ndarray:
     """Velocities (n, modes) [kg^1/2 m/s] of the oscillators, at rest under the first forces.
 

@@ -9,13 +9,14 @@ import numpy as np
 
 from herringbone.analysis.accuracy.apart import groups_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.spectra import hann_weight
 from herringbone.result.result import TIME, Result
 
 _MUCH = 0.05
 _FEWEST_ROWS = 80
 _FEWEST_PERIODS = 8.0
 _ROUNDING = 1e-9
-_ROTATING = {"rad", "m", "deg", "rev"}
+ROTATING = {"rad", "m", "deg", "rev"}
 """Units of outputs, in no group of channels, that may go on for ever."""
 
 
@@ -29,21 +30,10 @@ def unsettled(result: Result) -> list[str]:
     Args:
         result: of a run, records equidistant.
     """
-    time = result.data[TIME].to_numpy()
-    if not result.outcome.completed or time.size < _FEWEST_ROWS or not steady_part(result).steady:
+    found = changes(result)
+    if not found:
         return []
-    frequency = run_mesh_frequency(result)
-    if frequency is not None and frequency * (time[-1] - time[0]) < _FEWEST_PERIODS:
-        return []
-    changes = {
-        name: change
-        for name, columns in groups_of(result).items()
-        if (name in result.channels or result.units[columns[0]] not in _ROTATING)
-        and (change := _change(result.data[columns].to_numpy(float), time)) is not None
-    }
-    if not changes:
-        return []
-    name, change = max(changes.items(), key=lambda item: item[1])
+    name, change = max(found.items(), key=lambda item: item[1])
     if change <= _MUCH:
         return []
     return [
@@ -52,13 +42,63 @@ def unsettled(result: Result) -> list[str]:
     ]
 
 
-def _change(values: np.ndarray, time: np.ndarray) -> float | None:
+def changes(result: Result, *, smooth: bool = False) -> dict[str, float] | None:
+    """What groups of channels change by, over their alternating parts; see `unsettled`.
+
+    Args:
+        result: of a run, records equidistant.
+        smooth: weigh both quarters by Hann windows, so that it does not matter how many periods of
+            the motion they hold; else by none.
+
+    Returns:
+        By group; groups that stand still are left out. None: too little was recorded to say so, or
+        the speed is not steady.
+    """
+    time = result.data[TIME].to_numpy()
+    if not result.outcome.completed or time.size < _FEWEST_ROWS or not steady_part(result).steady:
+        return None
+    frequency = run_mesh_frequency(result)
+    if frequency is not None and frequency * (time[-1] - time[0]) < _FEWEST_PERIODS:
+        return None
+    return {
+        name: change
+        for name, columns in settling_groups(result).items()
+        if (change := _change(result.data[columns].to_numpy(float), time, smooth=smooth))
+        is not None
+    }
+
+
+def settling_groups(result: Result) -> dict[str, list[str]]:
+    """Columns by group, without outputs that may go on for ever."""
+    return {
+        name: columns
+        for name, columns in groups_of(result).items()
+        if name in result.channels or result.units[columns[0]] not in ROTATING
+    }
+
+
+def _change(values: np.ndarray, time: np.ndarray, *, smooth: bool) -> float | None:
     """Larger of both changes, of channels (times, n) together; None if they stand still."""
     since = time - time[0]  # of a long run, the last rows are there
     third = values[(since >= 0.5 * since[-1]) & (since < 0.75 * since[-1])]
     last = values[since >= 0.75 * since[-1]]
+    if smooth:
+        return _smooth_change(third, last)
     before, after = (float(np.sqrt(part.var(axis=0).sum())) for part in (third, last))
     if max(before, after) <= _ROUNDING * np.abs(values).max(initial=0.0):
         return None
     shift = float(np.linalg.norm(last.mean(axis=0) - third.mean(axis=0)))
     return max(abs(after - before), shift) / max(before, after)
+
+
+def _smooth_change(third: np.ndarray, last: np.ndarray) -> float | None:
+    """As `_change`, of samples weighed by Hann windows."""
+    means, sizes = [], []
+    for part in (third, last):
+        weight = hann_weight(len(part))
+        means.append(weight @ part)
+        sizes.append(float(np.sqrt((weight @ np.square(part - means[-1])).sum())))
+    if max(sizes) <= _ROUNDING * np.abs(third).max(initial=0.0):
+        return None
+    shift = float(np.linalg.norm(means[1] - means[0]))
+    return max(abs(sizes[1] - sizes[0]), shift) / max(sizes)

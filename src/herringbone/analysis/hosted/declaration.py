@@ -4,22 +4,32 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from herringbone.analysis.hosted.boundary import Boundary, HostFlange
+from herringbone.analysis.hosted.gear_data import texts_with_gear_data
 from herringbone.analysis.twin.composite_parts import (
     Parts,
     feedthrough_of,
     full_name,
-    texts_of,
     vectors_of,
 )
-from herringbone.core import Declaration, Instance, Variable, local, output, parameter, state
+from herringbone.core import (
+    Declaration,
+    Instance,
+    Variable,
+    choice,
+    local,
+    output,
+    parameter,
+    state,
+)
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.declaring.hosting import Given
 from herringbone.core.declaring.roles import Port, PortKind, Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.kernels.stepping.adaptive import FIRST, LARGEST, adaptive_work
 
-AS_SET, EQUILIBRIUM, PERIODIC = range(3)
-"""Start modes."""
+START_MODES = ("as_set", "equilibrium", "periodic")
+AS_SET, EQUILIBRIUM, PERIODIC = range(len(START_MODES))
+"""Start modes, and their numbers."""
 START_MODE, INITIAL_SPEED = "start_mode", "initial_speed"
 TOLERANCE, NEXT_STEP, INNER_STEP, STEP_START, STEPPING, FLANK = (
     "tolerance", "next_inner_step", "longest_inner_step", "step_start", "stepping",
@@ -79,7 +89,7 @@ def host_declaration(
         system.name,
         system.description,
         variables,
-        texts=texts_of(parts.instances),
+        texts=texts_with_gear_data(parts.instances, boundary.pair),
         vectors=vectors_of(parts.instances, parts.layout.block_first),
         tables=sum(i.component.declaration.size for i in parts.instances) + scratch,
         work=adaptive_work(own + parts.layout.state_first[-1], inputs),
@@ -191,16 +201,13 @@ def _locals(boundary: Boundary, tolerance: float) -> Iterator[Variable]:
 
 
 def _parameters(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
-    yield parameter(
+    yield choice(
         START_MODE,
-        "1",
-        "start of the elastic coordinates; 2: periodic, they vibrate as they do when all has "
-        "settled; 1: equilibrium, they move as one with the gears; 0: as_set, undeformed or as "
-        "the states were set",
-        float(PERIODIC),
-        minimum=AS_SET,
-        maximum=PERIODIC,
-        whole=True,
+        "start of the elastic coordinates; periodic: they vibrate as they do when all has settled; "
+        "equilibrium: they move as one with the gears; as_set: undeformed or as the states were "
+        "set",
+        START_MODES,
+        PERIODIC,
     )
     if all(f.given is Given.TORQUE for f in boundary.flanges):
         yield parameter(

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.settled import SettledState
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.files import replacing
 from herringbone.result.tables import pieces_of, write_csv
 
-_R_MIN = 30.0 / math.pi
 _FEW = 10
 """Meshes of a period whose multipliers take no second."""
 _LINES = 5
@@ -20,38 +21,75 @@ ORDERS, SUMMARY = "orders.csv", "steady.json"
 
 def per_second(speed: float) -> float:
     """Speed [rad/s] of one in r/min."""
-    return speed / _R_MIN
+    return speed / R_MIN
 
 
-def steady_summary(state: SteadyState) -> dict:
-    """Figures of a state, for JSON; SI units."""
-    return {
-        "system": state.structure.system.name,
+def steady_summary(state: SteadyState | SettledState) -> dict:
+    """Figures of a state, for JSON; SI units, None where something is not known."""
+    levels = {group: state.level(group) for group in state.channels}
+    known = {
+        "system": state.system_name,
         "converged": state.converged,
-        "speed": state.speed,
-        "period": state.period,
-        "meshes": state.meshes,
+        "speed": _known(state.speed),
+        "period": _known(state.period),
+        "meshes": state.meshes or None,
         "tolerance": state.tolerance,
-        "left_out": dict(state.errors.left_out),
-        "change": dict(state.errors.change),
-        "iterations": state.orbit.iterations,
-        "places": state.orbit.places,
-        "drift": state.drift,
-        "largest_multiplier": (
-            state.multipliers.largest if state.converged and state.meshes <= _FEW else None
-        ),
-        "bends": list(state.bends),
-        "levels": {group: state.level(group) for group in state.channels},
-        "notes": list(state.notes),
     }
+    if isinstance(state, SettledState):
+        own: dict = {"duration": state.run.outcome.time, "change": dict(state.changes)}
+    else:
+        own = {
+            "left_out": dict(state.errors.left_out),
+            "change": dict(state.errors.change),
+            "iterations": state.orbit.iterations,
+            "places": state.orbit.places,
+            "drift": state.drift,
+            "largest_multiplier": state.multipliers.largest if _are_cheap(state) else None,
+            "bends": list(state.bends),
+        }
+    return {**known, **own, "levels": levels, "notes": list(state.notes)}
 
 
-def steady_text(state: SteadyState) -> list[str]:
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _are_cheap(state: SteadyState) -> bool:
+    """True if multipliers are known, and take no second."""
+    return state.converged and state.meshes <= _FEW
+
+
+def steady_text(state: SteadyState | SettledState) -> list[str]:
     """Lines for people."""
+    lines = _of_run(state) if isinstance(state, SettledState) else _of_balance(state)
+    for group in state.channels:
+        lines += ["", *_group(state, group)]
+    return lines
+
+
+def _of_run(state: SettledState) -> list[str]:
+    """Head of what a run has settled to."""
+    found = "settled" if state.converged else "UNSETTLED: figures below still change"
+    lines = [f"Steady state of {state.system_name}: {found}, in a run as parts are foreign"]
+    if math.isfinite(state.speed):
+        known = math.isfinite(state.ending.rest)
+        meshes = f", repeats after {state.meshes} mesh periods ({state.period:.6g} s)"
+        lines.append(f"  speed {state.speed * R_MIN:.6g} r/min{meshes if known else ''}")
+    if math.isfinite(state.error):
+        lines.append(
+            f"  levels and means change by {state.error:.2g} of the alternating part (asked "
+            f"{state.tolerance:g}) from the third to the last quarter of "
+            f"{state.run.outcome.time:g} s"
+        )
+    return lines
+
+
+def _of_balance(state: SteadyState) -> list[str]:
+    """Head of what harmonic balance has found."""
     found = "periodic" if state.converged else "NOT CONVERGED: no figure below can be trusted"
     lines = [
-        f"Steady state of {state.structure.system.name}: {found}",
-        f"  speed {state.speed * _R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
+        f"Steady state of {state.system_name}: {found}",
+        f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
         f"({state.period:.6g} s)",
         f"  harmonics left out {state.errors.worst:.2g} of the alternating part (asked "
         f"{state.tolerance:g}), last correction "
@@ -60,7 +98,7 @@ def steady_text(state: SteadyState) -> list[str]:
     ]
     if state.bends:
         lines.append(f"  laws bend within the period: {', '.join(state.bends)}")
-    if state.converged and state.meshes <= _FEW:
+    if _are_cheap(state):
         largest = state.multipliers.largest
         word = "stable" if state.stable else "UNSTABLE: a run would leave it"
         lines.append(f"  {word}: deviations are multiplied by {largest:.4g} in a period")
@@ -69,14 +107,12 @@ def steady_text(state: SteadyState) -> list[str]:
             f"  nothing holds the speed: it would change by {state.drift:.3g} rad/s2, which is left"
             " out"
         )
-    for group in state.channels:
-        lines += ["", *_group(state, group)]
     return lines
 
 
-def _group(state: SteadyState, group: str) -> list[str]:
+def _group(state: PeriodicMotion, group: str) -> list[str]:
     columns = state.chosen(group)
-    unit = state.structure.core.unit(columns[0])
+    unit = state.unit(columns[0])
     squares = np.abs(state.amplitudes(group)) ** 2 / 2.0
     sizes = np.sqrt(np.mean(squares, axis=0))
     largest = [k for k in np.argsort(sizes[1:])[::-1][:_LINES] + 1 if sizes[k] > 0.0]
@@ -93,7 +129,7 @@ def _group(state: SteadyState, group: str) -> list[str]:
     ]
 
 
-def write_steady(state: SteadyState, folder: Path) -> list[Path]:
+def write_steady(state: SteadyState | SettledState, folder: Path) -> list[Path]:
     """Write `orders.csv`, one row per output and harmonic, and `steady.json`; returns their names.
 
     Amplitudes have the unit of their row.

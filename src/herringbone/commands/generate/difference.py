@@ -36,6 +36,7 @@ def differences(names: Collection[str], root: Path) -> list[str]:
         made = sorted([
             *(file for file in (copy / "fmus").rglob("*") if file.is_file()),
             *(copy / "system_models").rglob("*.md"),
+            *(copy / "docs").rglob("*.csv"),
         ])  # fmt: skip
         found = ((file.relative_to(copy), file) for file in made)
         return [f"{name}: {why}" for name, file in found if (why := difference(root / name, file))]

@@ -5,9 +5,12 @@ import json
 from pathlib import Path
 
 from herringbone.commands.options import (
+    add_cells,
+    add_replacements,
     add_scene,
     add_start_values,
     files_of_parts,
+    replacements,
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
@@ -20,6 +23,12 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error, 1e-3")
     add_start_values(sub)
+    add_replacements(sub)
+    add_cells(sub)
+    sub.add_argument(
+        "--longest", type=float, default=10.0, metavar="SECONDS",
+        help="with foreign parts, which are run until they settle: duration at most, 10 s",
+    )  # fmt: skip
     sub.add_argument("-o", "--output", type=Path, help="folder for orders.csv and steady.json")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -49,7 +58,9 @@ def run(options: argparse.Namespace) -> int:
         values=start_values(options.set),
         gear=files.gear,
         housing=files.housing,
+        replace_parts=replacements(options),
         tolerance=options.tolerance,
+        longest=options.longest,
     )
     for note in state.notes:
         say(note)

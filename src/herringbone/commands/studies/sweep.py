@@ -23,6 +23,7 @@ from herringbone.commands.output import check_writable, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
+    from herringbone.running.prepared import Wishes
     from herringbone.studies.evaluators.evaluator import Evaluator
     from herringbone.studies.sweep import Sweep
 
@@ -45,7 +46,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     add_start_values(sub, varied=f"{_AXES} is varied; ")
     sub.add_argument(
         "--transient", action="store_true",
-        help="points by runs; by periodic steady states if not given and no part is foreign",
+        help="points by runs of the same duration; steady states if not given, with foreign parts "
+        "what a run settles to",
     )  # fmt: skip
     sub.add_argument("--t-end", type=float, help="duration of each run in s")
     sub.add_argument("--record-step", type=float, help="time between records in s")
@@ -78,6 +80,7 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
+    from herringbone.running.prepared import Wishes  # noqa: PLC0415
     from herringbone.studies.api import sweep  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.studies.study import PER_MINUTE, grid  # noqa: PLC0415
     from herringbone.studies.study_file import read_study_file  # noqa: PLC0415
@@ -92,6 +95,9 @@ def run(options: argparse.Namespace) -> int:
     else:
         study = read_study_file(options.study)
     files = files_of_parts(options)
+    replaced = replacements(options)
+    evaluator = _evaluator(options, Wishes(housing=files.housing, replace_parts=replaced))
+    tqdm.monitor_interval = 0  # a thread, and what has threads is not forked
     with tqdm(unit=" points", disable=None) as bar:
         found = sweep(
             options.system,
@@ -100,11 +106,11 @@ def run(options: argparse.Namespace) -> int:
             values=fixed,
             gear=files.gear,
             housing=files.housing,
-            replace_parts=replacements(options),
+            replace_parts=replaced,
             t_end=options.t_end,
             record_step=options.record_step,
             start=options.start,
-            evaluator=_evaluator(options),
+            evaluator=evaluator,
             workers=options.workers,
             series=options.series,
             parquet=options.parquet,
@@ -142,29 +148,30 @@ def _points(options: argparse.Namespace) -> tuple[dict[str, Any], dict[str, Any]
     return start_values(fixed), points
 
 
-def _evaluator(options: argparse.Namespace) -> "Evaluator | None":
+def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | None":
     """What was asked for; None: chosen by the system.
 
     Raises:
         ParameterError: something is asked of runs, and not the runs.
     """
+    from herringbone.running.steady import is_foreign  # noqa: PLC0415
+    from herringbone.studies.evaluators.settled import Settled  # noqa: PLC0415
     from herringbone.studies.evaluators.steady import Steady  # noqa: PLC0415
     from herringbone.studies.evaluators.transient import Transient  # noqa: PLC0415
 
     columns = tuple(options.column)
-    of_runs = [n for n in ("step", "algorithm") if getattr(options, n) is not None]
-    if options.transient or options.replace:
-        return Transient(
-            step=options.step,
-            tolerance=options.tolerance,
-            algorithm=options.algorithm,
-            columns=columns,
-        )
-    if of_runs:
-        raise ParameterError(f"--{of_runs[0]}: of runs; add --transient")
-    if options.tolerance is None and not columns:
-        return None
+    of_runs = {n: v for n in ("step", "algorithm") if (v := getattr(options, n)) is not None}
     tolerance = {} if options.tolerance is None else {"tolerance": options.tolerance}
+    if options.transient:
+        return Transient(columns=columns, **of_runs, **tolerance)
+    if not (of_runs or columns or tolerance):
+        return None
+    if is_foreign(options.system, options.scene, wishes):
+        if options.t_end is not None:
+            return Transient(columns=columns, **of_runs, **tolerance)
+        return Settled(columns=columns, **of_runs, **tolerance)
+    if of_runs:
+        raise ParameterError(f"--{next(iter(of_runs))}: of runs; add --transient")
     return Steady(columns=columns, **tolerance)
 
 

@@ -86,5 +86,6 @@ class Quantity(StrEnum):
     INERTIA = "inertia"
     MICRO_STEP = "micro step"
     LOAD_RAMP_TIME = "load ramp time"
+    SEAT_MOTION = "seat motion"
     MODES = "modes"
     SHAPES = "shapes"

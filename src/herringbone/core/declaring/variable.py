@@ -46,6 +46,8 @@ class Variable:
         minimum, maximum: range of a parameter, in `unit`.
         nominal: usual size of a state, in `unit`, by which integrators scale their tolerance.
         whole: a parameter that takes whole numbers only.
+        items: names of the numbers 0, 1, ... that a parameter takes; in native FMUs it is an
+            Enumeration. Empty: it is a number.
         rate: the output that is the time derivative of this output, if there is one.
         quantity, place: what it means to those who ask for the component's role, and where.
         at_rest: of a parameter, the input whose value in steady rotation it takes at the start.
@@ -65,6 +67,7 @@ class Variable:
     maximum: float = math.inf
     nominal: float = 1.0
     whole: bool = False
+    items: tuple[str, ...] = ()
     rate: str = ""
     quantity: Quantity | None = None
     place: str = ""
@@ -130,6 +133,9 @@ class Text:
     A relative name is looked up in the component's resources folder. `quantity` is what the file
     means to those who ask for the component's role. The file may have a comment line
     `# header: ...` with `header_count` numbers.
+
+    Several tables may lie in one file: each is the `section` that follows a line `# section: NAME`,
+    and of all but one of them `shared` names that one, which alone is a String parameter.
     """
 
     name: str
@@ -140,6 +146,8 @@ class Text:
     place: str = ""
     header: str = ""
     header_count: int = 0
+    section: str = ""
+    shared: str = ""
 
 
 def input_(
@@ -249,4 +257,20 @@ def parameter(
         quantity=quantity,
         place=place,
         at_rest=at_rest,
+    )
+
+
+def choice(name: str, description: str, items: tuple[str, ...], start: int) -> Variable:
+    """A parameter that is one of some items, by its number from 0."""
+    return Variable(
+        name,
+        "1",
+        Causality.PARAMETER,
+        Variability.FIXED,
+        description,
+        float(start),
+        minimum=0.0,
+        maximum=float(len(items) - 1),
+        whole=True,
+        items=items,
     )

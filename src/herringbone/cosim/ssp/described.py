@@ -12,6 +12,7 @@ from herringbone.core import ParameterError
 from herringbone.core.part import PartVariable
 from herringbone.core.places.part_path import PartPath, flat_name
 from herringbone.cosim.fmu.file import is_fmi3, read_fmu
+from herringbone.cosim.fmu.values import as_value
 from herringbone.cosim.fmu.variables import read_variables
 from herringbone.cosim.structure.system import Values
 
@@ -58,11 +59,20 @@ class DescribedPart:
                     f"{self.name}.{name} = {value!r}: SSP 1.0 has no value of type {kind}, and its "
                     "masters run FMI 2.0; replace this part by an FMU 2.0, or drop the value"
                 )
+            if kind == "Enumeration":
+                yield name, kind, self._item(name, value)
+                continue
             if kind not in _TO_TEXT or (kind == "String") != isinstance(value, str):
                 raise ParameterError(
                     f"{self.name}.{name} = {value!r}: this {kind} has no place in an SSP 1.0 file"
                 )
             yield name, kind, _TO_TEXT[kind](value)
+
+    def _item(self, name: str, value: float | str) -> str:
+        """What an Enumeration is set to: the name of the item, as SSP asks."""
+        items = self.variables[name].items
+        number = as_value("Enumeration", value, f"{self.name}.{name} = {value!r}", items)
+        return next((item for item, known in items if known == number), str(number))
 
     @property
     def values_file(self) -> str:

@@ -14,7 +14,7 @@ stay out, so that other masters hold inputs over a step.
 """
 
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import cast
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -66,7 +66,7 @@ def write_ssp(
     network = build_network(system, cast("list[Part]", parts))
     sources = _resource_names(parts)
     entries = {source: part.read_bytes() for part, source in sources.items()}
-    entries |= {part.values_file: _text(_parameter_set(part)) for part in parts if part.values}
+    entries |= {p.values_file: parameter_set(p.typed_values()) for p in parts if p.values}
     entries[OSP_FILE] = _text(osp_structure(parts, network, sources, step))
     whole = structure(system, parts, network, sources, step, t_end, nested=nested)
     entries[STRUCTURE_FILE] = _text(whole)
@@ -93,13 +93,14 @@ def _resource_names(parts: Sequence[DescribedPart]) -> dict[Path, str]:
     return names
 
 
-def _parameter_set(part: DescribedPart) -> Element:
+def parameter_set(values: Iterable[tuple[str, str, str]]) -> bytes:
+    """A parameter file; of each value name, FMI 2.0 type and text."""
     root = xml_root("ssv:ParameterSet", ("ssv", "ssc"), name=PARAMETER_SET)
     parameters = SubElement(root, "ssv:Parameters")
-    for name, kind, text in part.typed_values():
+    for name, kind, text in values:
         parameter = SubElement(parameters, "ssv:Parameter", name=name)
         SubElement(parameter, f"ssv:{kind}", value=text)
-    return root
+    return _text(root)
 
 
 def _text(root: Element) -> bytes:

@@ -2,7 +2,7 @@
 
 import math
 import string
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
@@ -57,7 +57,7 @@ def component_source(used: UsedStates) -> str:
         *_grammars(declaration.texts),
         _array("HbRunsOn runs_on", _runs_on(component)),
         _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
-        _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
+        _array("HbText texts", _text_entries(declaration.texts)),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
     entries = {
@@ -149,7 +149,8 @@ def _number(value: float) -> str:
 
 def _real(variable: Variable, node: int) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
-    return f"{{{', '.join(map(_number, numbers))}, {int(variable.whole)}, {node}}}"
+    kinds = int(variable.whole), node, int(bool(variable.items))
+    return f"{{{', '.join([*map(_number, numbers), *map(str, kinds)])}}}"
 
 
 def _block(used: UsedStates) -> list[Variable | None]:
@@ -184,7 +185,7 @@ def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[s
     nodes = _nodes(declaration)
     for index, variable in enumerate(block):
         node = nodes.get(index, 0)
-        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0}"
+        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0, 0}"
 
 
 def _access(
@@ -210,7 +211,7 @@ def _extents(used: UsedStates) -> list[int]:
     extents = [0] * declaration.first_table
     for variable in declaration.variables:
         first = declaration.index[variable.name]
-        extents[first] = 1
+        extents[first] = int(not variable.items)
         if variable.nodes and node_name(variable.name, 1) not in declaration.hidden:
             extents[first + 1] = NODES
     for first, (_, extent) in used.arrays().items():
@@ -251,7 +252,11 @@ def _grammars(texts: Iterable[Text]) -> Iterable[str]:
         yield _array(f"HbColumn columns_{i}", rows)
 
 
-def _text(i: int, text: Text) -> str:
-    name, start, header = (_string(s) for s in (text.name, text.start, text.header))
-    counts = len(text.columns), text.header_count
-    return f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}}}"
+def _text_entries(texts: Sequence[Text]) -> Iterable[str]:
+    place = {text.name: i for i, text in enumerate(texts)}
+    for i, text in enumerate(texts):
+        name, start, header = (_string(s) for s in (text.name, text.start, text.header))
+        counts = len(text.columns), text.header_count
+        section = _string(text.section) if text.section else "NULL"
+        where = f"{section}, {place[text.shared or text.name]}"
+        yield f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}, {where}}}"

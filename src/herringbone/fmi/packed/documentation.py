@@ -74,7 +74,8 @@ def licence() -> bytes:
 def _variables(component: Component) -> str:
     shown = interface.reals(component.declaration).values()
     texts = (
-        (t.name, "parameter", "", t.start, "", t.description) for t in component.declaration.texts
+        (t.name, "parameter", "", t.start, "", t.description)
+        for t in interface.texts(component.declaration).values()
     )
     return _table([_HEAD, *map(_row, shown), *texts])
 
@@ -94,6 +95,10 @@ def _row(v: Variable) -> tuple[str, ...]:
     limits = (v.minimum, v.maximum)
     ends = [quantity(x, v.unit) if math.isfinite(x) else "" for x in limits]
     range_ = " ... ".join(ends) if any(ends) else ""
+    if v.items:
+        named = (f"{number}: {item}" for number, item in enumerate(v.items))
+        kind = f"{v.causality}, enumeration"
+        return v.name, kind, "", v.items[int(v.start)], ", ".join(named), v.description
     tunable = ", tunable" if v.variability is Variability.TUNABLE else ""
     start = repr(float(v.start)) if v.causality in {"input", "parameter"} else ""
     return v.name, f"{v.causality}{tunable}", v.unit, start, range_, v.description

@@ -1,15 +1,17 @@
 """A whole system as one native FMU."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from herringbone.analysis.hosted.boundary import is_gearbox
 from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.composite import make_composite
-from herringbone.core import ParameterError
+from herringbone.core import Component, ParameterError
 from herringbone.core.declaring.hosting import Wanted
+from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.files import write_whole
+from herringbone.cosim.ssp.write import parameter_set
+from herringbone.fmi import interface
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
 from herringbone.running.exporting.export import ready, written
@@ -31,15 +33,18 @@ def export_fmu(
     fmi: int = 2,
     wanted: Wanted | None = None,
 ) -> Path:
-    """Write a system as one native FMU, without any coupling delay inside.
+    """Write a system as one native FMU, without any coupling delay inside, or its start values.
 
     A gearbox, one pair with its bearings and housing, can be made for hosts: few variables, its own
     equilibrium at the start, inner steps by tolerance. Other systems keep all variables of their
     parts, start where the scene does, and have fixed inner steps.
 
+    A parameter file (.ssv) has the start values alone: inputs, parameters, and states that are set,
+    for an FMU that was exported at another operating point. It says nothing of resource files.
+
     Args:
         system: name of a shipped system, folder with system.toml, or .ssp file; no foreign FMUs.
-        file: the .fmu file to write.
+        file: the .fmu file to write, or the .ssv file.
         outside: instances that stay outside; what they feed becomes inputs of the FMU.
         scene: name or file of the scene that gives start values; the system's default if not given.
         values: variables to set, by `instance.variable`.
@@ -56,8 +61,11 @@ def export_fmu(
         HerringboneError: something about the input is wrong, or the FMU cannot be built.
     """
     file = Path(file)
-    if file.suffix != ".fmu":
-        raise ParameterError(f"{file}: the name of an exported FMU must end in .fmu")
+    if file.suffix not in {".fmu", ".ssv"}:
+        raise ParameterError(
+            f"{file}: the name of an exported FMU must end in .fmu, that of its start values in "
+            ".ssv"
+        )
     structure, chosen = ready(system, scene, values, gear, housing)
     hosted = wanted is not None and not outside and is_gearbox(structure)
     if wanted not in (None, Wanted()) and not hosted:
@@ -70,13 +78,35 @@ def export_fmu(
         composite = make_hosted(structure, wanted)
     else:
         composite = make_composite(structure, tuple(outside))
+    if file.suffix == ".ssv":
+        with written(file):
+            write_whole(file, parameter_set(_started(composite.component)))
+        return file
     model = Model(
         composite.component,
         (make_composite.__module__, make_hosted.__module__),
         composite.resources,
-        identity=repr((asdict(structure), tuple(outside), wanted)),
+        identity=_kernels_of(composite.component),
     )
     (built,) = build_models([model], platforms=platforms, fmi=fmi).values()
     with written(file):
         write_whole(file, built.read_bytes())
     return file
+
+
+def _kernels_of(component: Component) -> str:
+    """What decides on the kernels: the generated source, whose name is its digest, and the layout.
+
+    Start values do not, so that another operating point needs no compilation.
+    """
+    d = component.declaration
+    return repr((component.kernels.out.__module__, d.index, d.size, d.work, d.tables))
+
+
+def _started(component: Component) -> Iterator[tuple[str, str, str]]:
+    """Start values of an FMU; states count where it does not calculate them."""
+    for v in interface.reals(component.declaration).values():
+        state = v.state and component.hosting is None
+        if state or v.causality in {Causality.INPUT, Causality.PARAMETER}:
+            named = ("Enumeration", v.items[int(v.start)]) if v.items else None
+            yield v.name, *(named or ("Real", repr(float(v.start))))

@@ -1,23 +1,25 @@
 """Points by periodic steady states: each from its neighbour, without any run."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
+from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.running.commanded import commanded
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.settled import with_known_values
 from herringbone.running.steady import prepared_solver
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
     order_figures,
     prefixed,
 )
-from herringbone.studies.evaluators.transient import with_known_values
-from herringbone.studies.set_points import commanded
 from herringbone.studies.study import Point
 
 STEADY, UNSETTLED = "steady", "not_converged"
@@ -74,10 +76,10 @@ class _States:
         found = solver.solve(SteadyPoint(**at, values=changed), state)
         if not found.converged:
             message = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
-            return Evaluated(UNSETTLED, message, self._figures(found))
+            return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
         bends = found.bends
         message = f"laws bend within the period: {', '.join(bends)}" if bends else ""
-        figures = self._figures(found)
+        figures = figures_of(found, self._asked.columns)
         return Evaluated(STEADY, message, figures, _Near(found, solver, prepared))
 
     def _split(self, point: Point) -> tuple[dict[str, float], Point]:
@@ -91,30 +93,27 @@ class _States:
         return own, commanded(self._known, rest)
 
     def _prepared(self, at: dict[str, float], values: Point) -> SteadySolver:
-        wishes = self._wishes
-        solver, _, _ = prepared_solver(
-            self._system,
-            scene=self._scene,
-            **at,
-            values={**wishes.values, **values},
-            gear=wishes.gear,
-            housing=wishes.housing,
-            tolerance=self._asked.tolerance,
-        )
-        return solver
+        wishes = replace(self._wishes, values={**self._wishes.values, **values})
+        where = SteadyPoint(at.get(SPEED), at.get(TORQUE))
+        return prepared_solver(self._system, self._scene, where, wishes, self._asked.tolerance)[0]
 
-    def _figures(self, state: SteadyState) -> dict[str, Figure]:
-        meshes = state.meshes * state.frequency
-        figures = {"mesh_frequency": Figure(meshes, "Hz")}
-        chosen = state.chosen(*self._asked.columns) if self._asked.columns else []
-        for name, columns in {**state.channels, **{name: [name] for name in chosen}}.items():
-            unit = state.structure.core.unit(columns[0])
-            amplitudes = state.amplitudes(name)
-            figures |= prefixed(name, _moments(amplitudes), unit)
-            size = np.sqrt(np.mean(np.square(np.abs(amplitudes[:, 1:])), axis=0))
-            figures |= order_figures(name, state.mesh_orders[1:], size, unit)
-        figures["error"] = Figure(state.errors.worst, "1")
-        return figures
+
+def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figure]:
+    """Figures of all groups of channels of a state, and of further columns."""
+    known = state.meshes > 0
+    frequency = state.meshes * state.frequency if known else np.nan
+    figures = {"mesh_frequency": Figure(frequency, "Hz")}
+    chosen = state.chosen(*columns) if columns else []
+    for name, own in {**state.channels, **{name: [name] for name in chosen}}.items():
+        unit = state.unit(own[0])
+        amplitudes = state.amplitudes(name)
+        figures |= prefixed(name, _moments(amplitudes), unit)
+        size = np.sqrt(np.mean(np.square(np.abs(amplitudes[:, 1:])), axis=0))
+        orders = state.mesh_orders[1:]
+        kept = slice(None) if known else slice(0)
+        figures |= order_figures(name, orders[kept], size[kept], unit)
+    figures["error"] = Figure(state.error, "1")
+    return figures
 
 
 def _is_given(found: Any) -> bool:  # noqa: ANN401

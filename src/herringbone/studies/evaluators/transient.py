@@ -5,15 +5,12 @@ from typing import Any
 
 from herringbone.analysis.figures.settling import unsettled
 from herringbone.core import HerringboneError, OutcomeKind
-from herringbone.core.places.files import as_texts
-from herringbone.cosim.structure.system import System
 from herringbone.running.api import run
-from herringbone.running.loading import load_scene, load_system, with_replacements
-from herringbone.running.prepared import Wishes
-from herringbone.scenes import Scene
+from herringbone.running.commanded import commanded
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.settled import with_known_values
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation
 from herringbone.studies.evaluators.levels import levels_over_time
-from herringbone.studies.set_points import commanded
 from herringbone.studies.study import Point
 
 
@@ -93,9 +90,3 @@ class _Runs:
 def _variables(point: Point) -> Point:
     """Values of a point that name a variable."""
     return {name: value for name, value in point.items() if "." in name}
-
-
-def with_known_values(system: System, scene: Scene, wishes: Wishes) -> System:
-    """A system with what decides on its set points: values and replaced parts."""
-    system, _ = with_replacements(system, wishes.replace_parts)
-    return system.with_values({**scene.values, **as_texts(wishes.values)})

@@ -11,6 +11,7 @@ from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, 
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.points import first_point, points_to_probe
@@ -96,9 +97,7 @@ def asked_of(system: str, scene: str | None, housing: Path | None) -> Asked:
 
 def _solver(system: str, scene: Scene, housing: Path | None) -> SteadySolver:
     at = first_point(scene.operating)
-    return prepared_solver(system, scene=scene, speed=at.speed, torque=at.torque, housing=housing)[
-        0
-    ]
+    return prepared_solver(system, scene, at, Wishes(housing=housing))[0]
 
 
 def _lines(

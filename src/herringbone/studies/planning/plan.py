@@ -106,7 +106,7 @@ def plan(
         tolerance = min(question.tolerance for question in questions)
     else:
         at = first_point(asking.operating)
-        found = prepared_at(at, system, scene, values=values, gear=gear, housing=housing)
+        found = prepared_at(at, system, scene, own)
         refuse_foreign_parts(found.system)
         solver = SteadySolver(found.system)
         questions = questions_of(solver.structure.core, asking.asks)

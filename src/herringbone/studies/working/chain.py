@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import HerringboneError
+from herringbone.core.freed_memory import keep_freed_memory
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.result.result import Result
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Evaluator
@@ -70,6 +71,7 @@ def run_chain(job: Job) -> Done:
     Raises:
         HerringboneError: the system itself cannot be loaded.
     """
+    keep_freed_memory()
     before = cpu_seconds()
     rows, series = [], {}
     units: dict[str, str] = {}

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from herringbone.core import ParameterError
+from herringbone.studies.working.forked import can_fork
 from herringbone.studies.working.processes import WorkerProcesses
 
 _AHEAD = 3
 """Chains that are handed to a worker before it is done with one."""
 _WINDOW = 512
 """Chains that are handed to an executor of the caller, whose workers are not known."""
-_WORTH = 10.0
-"""CPU time [s] that a further process must save: each loads the code that is compiled first."""
+_WORTH, _FORK_WORTH = 10.0, 1.0
+"""CPU time [s] that a further process must save: one that is started anew loads all code first."""
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,13 @@ def working(asked: Workers, cpu: float, chains: int) -> Iterator[Working]:
         yield Working(asked.executor, _WINDOW, f"on {type(asked.executor).__name__}")
         return
     fitting = max(1, _cores() // asked.cores)
-    worth = max(1, int(cpu / _WORTH))
+    forked = asked.cores == 1 and can_fork()  # a part of others may have threads of its own
+    worth = max(1, int(cpu / (_FORK_WORTH if forked else _WORTH)))
     count = min(asked.count or min(fitting, worth), max(chains, 1))
     if count == 1:
         yield Working(ThisProcess(), 1, "in this process")
         return
-    processes = WorkerProcesses(count)
+    processes = WorkerProcesses(count, forked=forked)
     try:
         yield Working(processes, _AHEAD * count, f"in {count} processes")
     except BaseException:

@@ -8,7 +8,7 @@ import pickle
 import sys
 from queue import SimpleQueue
 from threading import Thread
-from typing import BinaryIO
+from typing import BinaryIO, NoReturn
 
 
 def main() -> None:
@@ -16,6 +16,11 @@ def main() -> None:
     source = sys.stdin.buffer
     target = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what parts print is no answer
+    serve(source, target)
+
+
+def serve(source: BinaryIO, target: BinaryIO) -> NoReturn:
+    """Do what is called for; the process ends with the source."""
     calls: SimpleQueue[tuple] = SimpleQueue()
     Thread(target=_listen, args=(source, calls), daemon=True).start()
     while True:

@@ -16,11 +16,13 @@ from typing import Any
 
 from herringbone.core import HerringboneError
 from herringbone.core.places.paths import PACKAGE
+from herringbone.studies.working.forked import ForkedProcess
 
 _MODULE = "herringbone.studies.working.process"
 _ATTEMPTS = 3
 """Processes that may die of the same chain."""
 
+Process = subprocess.Popen | ForkedProcess
 Task = tuple[Future, Callable, tuple, dict]
 
 
@@ -29,13 +31,16 @@ class WorkerProcesses(Executor):
 
     Args:
         count: of processes.
+        forked: the first ones are copies of this process, see `can_fork`. Else, and in place of
+            those that die, they are started anew, and load what they need.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, *, forked: bool = False) -> None:
         self._tasks: SimpleQueue[Task | None] = SimpleQueue()
-        self._processes: set[subprocess.Popen] = set()
+        first = [ForkedProcess() if forked else None for _ in range(count)]
+        self._processes: set[Process] = {each for each in first if each is not None}
         self._lock, self._ended = Lock(), False
-        self._threads = [Thread(target=self._serve, daemon=True) for _ in range(count)]
+        self._threads = [Thread(target=self._serve, args=(each,), daemon=True) for each in first]
         for thread in self._threads:
             thread.start()
 
@@ -58,9 +63,8 @@ class WorkerProcesses(Executor):
             for thread in self._threads:
                 thread.join()
 
-    def _serve(self) -> None:
+    def _serve(self, process: Process | None) -> None:
         """Hand tasks to one process after the other."""
-        process: subprocess.Popen | None = None
         while (task := self._tasks.get()) is not None:
             if self._ended or not task[0].set_running_or_notify_cancel():
                 continue
@@ -70,7 +74,7 @@ class WorkerProcesses(Executor):
             process.wait()
             self._forget(process)
 
-    def _done(self, process: subprocess.Popen | None, task: Task) -> subprocess.Popen | None:
+    def _done(self, process: Process | None, task: Task) -> Process | None:
         """Do a task; returns the process that is alive then."""
         future, *work = task
         try:
@@ -120,7 +124,7 @@ class WorkerProcesses(Executor):
                 process.kill()
         return process
 
-    def _forget(self, process: subprocess.Popen) -> None:
+    def _forget(self, process: Process) -> None:
         with self._lock:
             self._processes.discard(process)
         for stream in (process.stdin, process.stdout):

@@ -1,5 +1,6 @@
 """The report as Markdown pages with pictures beside them."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 from herringbone.thesis.entry import Finding, Verdict
@@ -12,6 +13,7 @@ from herringbone.thesis.report.words import (
     header,
     is_small,
     told_number,
+    typeset,
 )
 
 PICTURES = "pictures"
@@ -31,7 +33,9 @@ def markdown_pages(entries: Sequence[Shown]) -> dict[str, str]:
 def picture_name(shown: Shown, name: str) -> str:
     """File of a picture beside the pages."""
     entry = shown.done.entry.name
-    return f"{PICTURES}/{entry}.png" if name == entry else f"{PICTURES}/{entry}.{name}.png"
+    if len(shown.pictures) == 1:
+        return f"{PICTURES}/{entry}.png"
+    return f"{PICTURES}/{entry}.{re.sub(r'[^A-Za-z0-9]+', '_', name)}.png"
 
 
 def _index(groups: dict[str, list[Shown]]) -> Iterator[str]:
@@ -60,9 +64,9 @@ def _counted(found: dict[Verdict, int]) -> str:
 
 
 def _row(finding: Finding) -> str:
-    why = f"<br>*{_cell(finding.why)}*" if finding.why else ""
+    why = f"<br>*{_cell(typeset(finding.why))}*" if finding.why else ""
     told = _cell(told_number(finding)) + why
-    return f"| {_cell(finding.sentence)} | {finding.verdict.value} | {told} |"
+    return f"| {_cell(typeset(finding.sentence))} | {finding.verdict.value} | {told} |"
 
 
 def _cell(text: str) -> str:

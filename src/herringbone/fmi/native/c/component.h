@@ -35,6 +35,7 @@ typedef struct {
     double nominal; /* of a state; 1 otherwise */
     uint8_t whole;  /* a parameter that takes whole numbers only */
     uint8_t node;   /* number of a signal's node, 1 ...; 0: the variable itself */
+    uint8_t choice; /* an Enumeration for FMI, whole from 0; no real */
 } HbReal;
 
 /* A column of a resource file. */
@@ -55,6 +56,9 @@ typedef struct {
     uint32_t column_count;
     const char *header;
     uint32_t header_count;
+    const char *section; /* the part of the file behind the line "# section: ..."; NULL: all of it */
+    uint32_t file;       /* the text whose file it is: itself, or another one, of which alone FMI
+                            knows, as a String */
 } HbText;
 
 /* Why the load or verify kernel refuses: `text` is the resource file at fault (index in `texts`; -1:
@@ -101,7 +105,7 @@ typedef struct {
        would have to be relocated whenever the library is loaded. */
     const char *names, *units;
     const uint8_t *access;  /* HbAccess */
-    const uint8_t *extents; /* FMI 3: length of the array variable that starts here; 0: none does.
+    const uint8_t *extents; /* FMI 3: length of the array of Float64 that starts here; 0: none does.
                                A signal with nodes is the scalar X and the array X.node[4], a state
                                vector is one array, and so are its derivatives. */
     const uint32_t *rates;  /* index of the output or state that is the entry's time derivative, 0:

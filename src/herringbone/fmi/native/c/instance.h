@@ -100,15 +100,17 @@ const char *real_name(uint32_t reference);
 const char *real_node(uint32_t reference);
 const char *real_unit(uint32_t reference);
 
-/* values.c: reals and Strings by value reference. */
-Status instance_get(Instance *instance, const uint32_t references[], size_t count,
-                    double values[]);
-Status instance_set(Instance *instance, const uint32_t references[], size_t count,
-                    const double values[]);
+/* text_values.c: Strings by value reference. */
 Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
                           const char *values[]);
 Status instance_set_texts(Instance *instance, const uint32_t references[], size_t count,
                           const char *const values[]);
+
+/* values.c: reals by value reference. */
+Status instance_get(Instance *instance, const uint32_t references[], size_t count,
+                    double values[]);
+Status instance_set(Instance *instance, const uint32_t references[], size_t count,
+                    const double values[]);
 /* Tell that there are no variables of these references and type. */
 Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
                         size_t count);
@@ -116,6 +118,9 @@ Status instance_unknown(Instance *instance, const char *type, const uint32_t ref
 void instance_stamp(Instance *instance);
 void instance_stamp_set(Instance *instance, const uint32_t references[], size_t count);
 bool instance_is_real(uint32_t reference);
+/* Enumerations by value reference. */
+Status instance_get_choice(Instance *instance, uint32_t reference, int64_t *value);
+Status instance_set_choice(Instance *instance, uint32_t reference, int64_t value);
 /* An input itself, none of its nodes. */
 bool instance_is_input(uint32_t reference);
 /* Of an input or one of its nodes: which of the inputs, from 0. */

@@ -8,8 +8,16 @@ static bool is_finite(double value) {
     return value - value == 0.0;
 }
 
-bool instance_is_real(uint32_t reference) {
+static bool is_variable(uint32_t reference) {
     return reference < hb_component.first_table && hb_component.access[reference] != HB_HIDDEN;
+}
+
+static bool is_choice(uint32_t reference) {
+    return is_variable(reference) && hb_component.reals[reference].choice;
+}
+
+bool instance_is_real(uint32_t reference) {
+    return is_variable(reference) && !hb_component.reals[reference].choice;
 }
 
 bool instance_is_input(uint32_t reference) {
@@ -38,10 +46,6 @@ uint32_t reference_of_time(void) {
 
 uint32_t last_reference(void) {
     return reference_of_time() + hb_component.indicators_count;
-}
-
-static bool is_text(uint32_t reference) {
-    return reference - hb_component.size < hb_component.texts_count;
 }
 
 Status instance_unknown(Instance *instance, const char *type, const uint32_t references[],
@@ -135,10 +139,14 @@ static bool may_be_set(const Instance *instance, uint8_t access) {
     return instance->now.phase < PHASE_STEP && (access == HB_STATE || access == HB_FIXED);
 }
 
+static void outdate(Instance *instance) {
+    instance->outdated =
+        instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_INSTANTIATED;
+    instance->rates_outdated = true;
+}
+
 /* Set what is not simply a finite input. */
 static Status set_checked(Instance *instance, uint32_t reference, double value) {
-    if (!instance_is_real(reference))
-        return instance_unknown(instance, "Real", &reference, 1);
     Status status = check_value(instance, reference, value);
     if (status != STATUS_OK)
         return status;
@@ -177,58 +185,33 @@ Status instance_set(Instance *instance, const uint32_t references[], size_t coun
             is_finite(values[i])) {
             instance->block[reference] = values[i];
         } else {
-            Status status = set_checked(instance, reference, values[i]);
+            Status status = instance_is_real(reference)
+                                ? set_checked(instance, reference, values[i])
+                                : instance_unknown(instance, "Real", &reference, 1);
             worst = status > worst ? status : worst;
         }
     }
     if (hb_component.runs_on_count)
         instance_stamp_set(instance, references, count);
-    instance->outdated =
-        instance->now.phase != PHASE_STEP && instance->now.phase != PHASE_INSTANTIATED;
-    instance->rates_outdated = true;
+    outdate(instance);
     return worst;
 }
 
-Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,
-                          const char *values[]) {
+Status instance_get_choice(Instance *instance, uint32_t reference, int64_t *value) {
     if (instance->now.phase == PHASE_INSTANTIATED)
-        return instance_refuse(instance, "getString");
-    for (size_t i = 0; i < count; i++) {
-        if (!is_text(references[i]))
-            return instance_unknown(instance, "String", &references[i], 1);
-        values[i] = instance->texts->values[references[i] - hb_component.size];
-    }
+        return instance_refuse(instance, "getInteger");
+    if (!is_choice(reference))
+        return instance_unknown(instance, "Integer", &reference, 1);
+    *value = (int64_t)instance->block[reference];
     return STATUS_OK;
 }
 
-static Status set_text(Instance *instance, uint32_t reference, const char *value) {
-    if (!is_text(reference))
-        return instance_unknown(instance, "String", &reference, 1);
-    uint32_t k = reference - hb_component.size;
-    const char *name = hb_component.texts[k].name;
-    if (!value)
-        return instance_fail(instance, STATUS_ERROR, "%s.%s: it takes a file name",
-                             instance->name, name);
-    if (instance->now.phase >= PHASE_STEP)
-        return instance_fail(instance, STATUS_ERROR, "%s.%s = '%s': it cannot be set now",
-                             instance->name, name, value);
-    if (strcmp(value, instance->texts->values[k]) == 0)
-        return STATUS_OK;
-    Texts *changed = texts_with(instance->texts, k, value);
-    if (!changed)
-        return instance_fail(instance, STATUS_ERROR, "%s: out of memory", instance->name);
-    instance->texts = changed;
-    instance->now.tables = 0;
-    instance->outdated = instance->now.phase == PHASE_INITIALISATION;
-    return STATUS_OK;
-}
-
-Status instance_set_texts(Instance *instance, const uint32_t references[], size_t count,
-                          const char *const values[]) {
-    Status worst = STATUS_OK;
-    for (size_t i = 0; i < count; i++) {
-        Status status = set_text(instance, references[i], values[i]);
-        worst = status > worst ? status : worst;
-    }
-    return worst;
+Status instance_set_choice(Instance *instance, uint32_t reference, int64_t value) {
+    if (instance->now.phase == PHASE_TERMINATED)
+        return instance_refuse(instance, "setInteger");
+    if (!is_choice(reference))
+        return instance_unknown(instance, "Integer", &reference, 1);
+    Status status = set_checked(instance, reference, (double)value);
+    outdate(instance);
+    return status;
 }

@@ -84,33 +84,44 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t 
     return c ? (fmi2Status)instance_set_texts(c, vr, n, v) : fmi2Error;
 }
 
-/* There are no variables of other types. */
-static fmi2Status none(fmi2Component c, const char *type, const fmi2ValueReference vr[], size_t n) {
-    return !c ? fmi2Error : n ? (fmi2Status)instance_unknown(c, type, vr, n) : fmi2OK;
-}
-
+/* There are no Integers, but Enumerations. */
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                           fmi2Integer v[]) {
-    (void)v;
-    return none(c, "Integer", vr, n);
+    Status worst = c ? STATUS_OK : STATUS_ERROR;
+    for (size_t i = 0; c && i < n; i++) {
+        int64_t value = 0;
+        Status status = instance_get_choice(c, vr[i], &value);
+        v[i] = (fmi2Integer)value;
+        worst = status > worst ? status : worst;
+    }
+    return (fmi2Status)worst;
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                           const fmi2Integer v[]) {
-    (void)v;
-    return none(c, "Integer", vr, n);
+    Status worst = c ? STATUS_OK : STATUS_ERROR;
+    for (size_t i = 0; c && i < n; i++) {
+        Status status = instance_set_choice(c, vr[i], v[i]);
+        worst = status > worst ? status : worst;
+    }
+    return (fmi2Status)worst;
+}
+
+/* There are no variables of type Boolean. */
+static fmi2Status none(fmi2Component c, const fmi2ValueReference vr[], size_t n) {
+    return !c ? fmi2Error : n ? (fmi2Status)instance_unknown(c, "Boolean", vr, n) : fmi2OK;
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                           fmi2Boolean v[]) {
     (void)v;
-    return none(c, "Boolean", vr, n);
+    return none(c, vr, n);
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t n,
                           const fmi2Boolean v[]) {
     (void)v;
-    return none(c, "Boolean", vr, n);
+    return none(c, vr, n);
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {

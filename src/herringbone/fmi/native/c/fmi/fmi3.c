@@ -184,23 +184,49 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     return (fmi3Status)status;
 }
 
-static bool refuse_text_count(Instance *instance, size_t count, size_t value_count) {
+static bool refuse_count(Instance *instance, const char *types, size_t count, size_t value_count) {
     if (count != value_count)
-        instance_fail(instance, STATUS_ERROR, "%s: %zu values for %zu Strings", instance->name,
-                      value_count, count);
+        instance_fail(instance, STATUS_ERROR, "%s: %zu values for %zu %s", instance->name,
+                      value_count, count, types);
     return count != value_count;
+}
+
+/* Int64 are Enumerations, all scalars. */
+fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Int64 v[],
+                        size_t value_count) {
+    if (!c || refuse_count(c, "Enumerations", n, value_count))
+        return fmi3Error;
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < n; i++) {
+        v[i] = 0;
+        Status status = instance_get_choice(c, vr[i], &v[i]);
+        worst = status > worst ? status : worst;
+    }
+    return (fmi3Status)worst;
+}
+
+fmi3Status fmi3SetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
+                        const fmi3Int64 v[], size_t value_count) {
+    if (!c || refuse_count(c, "Enumerations", n, value_count))
+        return fmi3Error;
+    Status worst = STATUS_OK;
+    for (size_t i = 0; i < n; i++) {
+        Status status = instance_set_choice(c, vr[i], v[i]);
+        worst = status > worst ? status : worst;
+    }
+    return (fmi3Status)worst;
 }
 
 fmi3Status fmi3GetString(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3String v[],
                          size_t value_count) {
-    if (!c || refuse_text_count(c, n, value_count))
+    if (!c || refuse_count(c, "Strings", n, value_count))
         return fmi3Error;
     return (fmi3Status)instance_get_texts(c, vr, n, v);
 }
 
 fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference vr[], size_t n,
                          const fmi3String v[], size_t value_count) {
-    if (!c || refuse_text_count(c, n, value_count))
+    if (!c || refuse_count(c, "Strings", n, value_count))
         return fmi3Error;
     return (fmi3Status)instance_set_texts(c, vr, n, v);
 }

@@ -1,30 +1,34 @@
-"""Speed and torque of a study's points, as values of variables."""
+"""Speed and torque of an operating point, as values of variables."""
+
+from collections.abc import Mapping
 
 from herringbone.analysis.set_points import QUANTITIES, at_pinion, set_point
 from herringbone.components.registry import component
 from herringbone.core import Instance, ParameterError
 from herringbone.cosim.structure.system import System
-from herringbone.studies.study import Point
+
+Point = Mapping[str, float | str]
+"""Values by parameter: `speed`, `torque`, or `instance.variable`."""
 
 
-def commanded(system: System, point: Point) -> Point:
+def commanded(system: System, point: Point) -> dict[str, float | str]:
     """A point whose speed [rad/s] and torque [N m] are values of variables.
 
     Args:
         system: with all values but these.
-        point: of a study.
+        point: speed, torque and others.
 
     Raises:
         HerringboneError: see `set_point`; or what commands cannot have the value.
     """
-    values = {name: value for name, value in point.items() if name not in QUANTITIES}
-    for name in QUANTITIES:
-        if name in point:
-            values |= _values(system, name, float(point[name]))
+    values = dict(point)
+    asked = {name: float(values.pop(name)) for name in QUANTITIES if name in point}
+    for name, value in asked.items():
+        values |= _values(system, name, value)
     return values
 
 
-def _values(system: System, name: str, value: float) -> Point:
+def _values(system: System, name: str, value: float) -> dict[str, float]:
     found = set_point(system, name)
     if found is None:
         return dict(at_pinion(system, **{name: value}))
