@@ -1,6 +1,8 @@
 """Plans of systems that they were not made with: estimates against the truth, rung by rung.
 
-    python -m campaigns.plans [COUNT [SEED [SECONDS]]]      (in tests/; the seed is the last commit's)
+    python -m campaigns.plans [COUNT [SEED [SECONDS]]]
+
+in tests/; the seed is the last commit's.
 
 Pairs, housings, operating points and questions are drawn. Each rung of a plan's ladder is solved,
 whatever its estimate is, at the points where it was estimated; what the plan chose is held against
