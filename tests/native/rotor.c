@@ -64,8 +64,8 @@ static const HbColumn inertia_columns[] = {
     {"side", NULL, side_words, 0, 0}, {"mass", kilogram, NULL, 0, 0}, {"speed", speeds, NULL, 0, 0}};
 static const HbColumn shape_columns[] = {{"point", NULL, no_words, 1, 0},
                                          {"shape", shape_units, NULL, 0, 1}};
-static const HbText texts[] = {{"inertias", "inertias.csv", inertia_columns, 3, "", 0},
-                               {"shapes", "shapes.csv", shape_columns, 2, "", 0}};
+static const HbText texts[] = {{"inertias", "inertias.csv", inertia_columns, 3, "", 0, NULL, 0},
+                               {"shapes", "shapes.csv", shape_columns, 2, "", 0, NULL, 1}};
 static const HbVector vectors[] = {{1, LENGTH, 1, "counters"}, {1, LENGTH, 1, "others"}};
 static const HbRefusal refusals[] = {{0, ": mass %g kg in row %g must be positive"},
                                      {1, ": %g rows, %g expected"}};

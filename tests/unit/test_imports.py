@@ -86,7 +86,7 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"plotting"},
     "pypardiso": {"housing/eigenmodes.py"},
     "gmsh": {"housing/welded/mesher.py"},
-    "pyuff": {"housing/importers/uff.py"},
+    "pyuff": {"core/reading/universal.py"},
     "skfem": {"housing/welded/elasticity.py", "gears/finite_elements/layer.py"},
 }
 """Where heavy packages may be imported: folders or files of the package."""

@@ -3,21 +3,23 @@
 from collections.abc import Iterator
 
 from herringbone.analysis.asked import by_half, shaft_side
+from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.radiated_power import power_inputs
 from herringbone.analysis.figures.sensors import sensor_figures
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, SIDES, Quantity, Role
 from herringbone.result.result import Result
 
+_POWER = "power"
 _QUESTIONS: tuple[tuple[str, Role, Quantity, str | None], ...] = (
     ("pinion speed", Role.GEAR_PAIR, Quantity.SPEED, "pinion"),
     *(("mesh force", Role.GEAR_PAIR, Quantity.MESH_FORCE, side) for side in SIDES),
     *(
-        ("power", Role.DRIVE, quantity, None)
+        (_POWER, Role.DRIVE, quantity, None)
         for quantity in (Quantity.ELECTRICAL_POWER, Quantity.TORQUE, Quantity.SPEED)
     ),
     *(
-        ("power", Role.LOAD, quantity, None)
+        (_POWER, Role.LOAD, quantity, None)
         for quantity in (Quantity.RECOVERED_POWER, Quantity.LOSS_POWER)
     ),
 )
@@ -43,8 +45,10 @@ def unanswered(result: Result) -> dict[str, list[str]]:
 
 
 def _missing(result: Result) -> Iterator[tuple[str, str]]:
+    told = mean_powers(result)
     for what, role, quantity, place in _QUESTIONS:
-        yield from ((what, why) for why in _unoffered(result, role, quantity, place))
+        if what != _POWER or told is None:
+            yield from ((what, why) for why in _unoffered(result, role, quantity, place))
     if result.parts_with(Role.GEAR_PAIR):
         yield from (("number of teeth, mesh orders", why) for why in _untoothed(result))
     yield from (("torque", why) for why in _unmeasured(result))

@@ -13,6 +13,7 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.roles import Role
 from herringbone.running.loading import load_system
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 
 _SYSTEM = "test_rig"
@@ -63,7 +64,8 @@ def measure(repeats: int = 7, speeds: int = 500) -> list[Cost]:
 
 def _solver(tolerance: float, values: Mapping[str, float]) -> SteadySolver:
     """A solver that has solved once."""
-    solver, _, _ = prepared_solver(_SYSTEM, values=values, tolerance=tolerance)
+    wishes = Wishes(values=values)
+    solver, _ = prepared_solver(_SYSTEM, wishes=wishes, tolerance=tolerance)
     solver.solve()
     return solver
 

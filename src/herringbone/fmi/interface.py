@@ -33,8 +33,8 @@ def every_real(declaration: Declaration) -> dict[int, Variable]:
 
 
 def texts(declaration: Declaration) -> dict[int, Text]:
-    """The String parameters by value reference."""
-    return dict(enumerate(declaration.texts, declaration.size))
+    """The String parameters by value reference; tables that share a file have one."""
+    return {k: t for k, t in enumerate(declaration.texts, declaration.size) if not t.shared}
 
 
 def choices(declaration: Declaration) -> list[Variable]:

@@ -243,7 +243,7 @@ def _add_structure(root: Element, component: Component, reals: list[Variable]) -
     unknowns = SubElement(structure, "InitialUnknowns")
     position = {v.name: i for i, v in enumerate(reals, 1)}
     exact = [position[v.name] for v in starting(component)]
-    exact += range(len(reals) + 1, len(reals) + 1 + len(declaration.texts))
+    exact += range(len(reals) + 1, len(reals) + 1 + len(interface.texts(declaration)))
     for variable in reals:
         if variable.causality is not Causality.OUTPUT:
             continue

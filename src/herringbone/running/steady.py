@@ -1,20 +1,23 @@
 """Steady states of systems, by name: by harmonic balance, or of a run where parts are foreign."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.steady.set_points import Point, SetPoints
 from herringbone.analysis.steady.settled import SettledState
-from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
+from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.lean import lean_notes, lean_of
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.running.prepared import Named, Prepared, Wishes, prepared
 from herringbone.running.settled import LONGEST, settled, with_known_values
 from herringbone.scenes import Scene, Start
+
+NOTHING = Wishes()
 
 
 def steady(
@@ -65,10 +68,7 @@ def steady(
         point.check()
         check_tolerance(tolerance)
         return settled(system, scene, point, wishes, tolerance, longest)
-    solver, point, notes = prepared_solver(
-        system, scene=scene, speed=speed, torque=torque, values=values, gear=gear, housing=housing,
-        tolerance=tolerance,
-    )  # fmt: skip
+    solver, notes = prepared_solver(system, scene, point, wishes, tolerance)
     return solver.solve(point, near).noted(notes)
 
 
@@ -83,29 +83,33 @@ def is_foreign(
 
 def prepared_solver(
     system: str | Path | System,
-    *,
     scene: str | Path | Scene | None = None,
-    speed: float | None = None,
-    torque: float | None = None,
-    values: Mapping[str, float | str | Path] | None = None,
-    gear: Gear | Mapping[str, Gear] | None = None,
-    housing: Named | None = None,
+    point: Point = AS_IT_IS,
+    wishes: Wishes = NOTHING,
     tolerance: float = TOLERANCE,
-) -> tuple[SteadySolver, Point, tuple[str, ...]]:
-    """What solves for steady states, the operating point asked for, and notes; see `steady`."""
-    structure = system if isinstance(system, System) else load_system(system)[0]
-    point = Point(speed, torque)
-    point.check()
-    wanted = {**SetPoints(structure).values(point), **(values or {})}
-    wishes = Wishes(
-        values=wanted,
-        gear=gear,
-        housing=housing,
-        start=Start.EQUILIBRIUM,
-        start_offset={},
-        lean=True,
-    )
-    found = prepared(system, scene, wishes)
+) -> tuple[SteadySolver, tuple[str, ...]]:
+    """What solves for steady states near an operating point, and notes; see `steady`."""
+    found = prepared_at(point, system, scene, wishes)
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
-    said = lean_notes(found.scene.model, values or {}, speed, torque)
-    return solver, point, (*found.notes, *said)
+    said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
+    return solver, (*found.notes, *said)
+
+
+def prepared_at(
+    point: Point,
+    system: str | Path | System,
+    scene: str | Path | Scene | None = None,
+    wishes: Wishes = NOTHING,
+) -> Prepared:
+    """A system in the equilibrium of an operating point; see `steady`.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    point.check()
+    asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
+    structure = system if isinstance(system, System) else load_system(system)[0]
+    if point.torque is not None and wishes.gear:  # what balances it follows from the pair
+        structure = prepared(system, scene, asked).system
+    wanted = {**SetPoints(structure).values(point), **wishes.values}
+    return prepared(system, scene, replace(asked, values=wanted, start=Start.EQUILIBRIUM))

@@ -43,7 +43,7 @@ def base_settings(base: Base, evaluator: Evaluator) -> dict[str, str]:
     Raises:
         HerringboneError: something about the system or scene is wrong.
     """
-    asked = replace(base.wishes, start=Start.REST.value)
+    asked = replace(base.wishes, start=Start.REST.value, lean=True)
     with chdir(base.folder):
         own = load_scene(load_system(base.system)[1], base.scene)
         system, scene, _ = prepared(base.system, own, asked)

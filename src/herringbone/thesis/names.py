@@ -2,4 +2,12 @@
 
 RIG = "test_rig"
 GEARBOX = "gearbox"
+ON_GROUND = "on_ground"
+GRADUAL = "gradual"
+"""Its scene with the thesis' start."""
+GEAR = "gear_mesh"
+BEARINGS = "bearing_supports"
+HOUSING = "modal_housing"
+CONTROLLER = "bench_controller"
+SEAT_MOTION = "bearing_supports.seat_motion"
 SYMMETRY_DEVIATION = "gear_mesh.symmetry_deviation"

@@ -17,7 +17,7 @@ from herringbone.thesis.entry import UNITS, Entry, Finding, Outcome, Verdict, ta
 from herringbone.thesis.registry import ENTRIES, GROUPS
 from herringbone.thesis.report.markdown import markdown_pages
 from herringbone.thesis.report.pictures import shown
-from herringbone.thesis.report.words import number
+from herringbone.thesis.report.words import number, typeset
 from herringbone.thesis.store import read_outcome, write_outcome
 from herringbone.thesis.study import study
 from herringbone.thesis.working import compute_entry
@@ -161,3 +161,9 @@ def test_entries_are_computed_in_processes(entries):
 )
 def test_numbers_as_people_write_them(value, text):
     assert number(value) == text
+
+
+def test_signs_and_units():
+    assert typeset("ISO 6336-1 at -7.5 % of 200 N m") == (
+        "ISO 6336-1 at \N{MINUS SIGN}7.5\N{NO-BREAK SPACE}% of 200\N{NO-BREAK SPACE}N m"
+    )

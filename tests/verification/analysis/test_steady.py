@@ -14,6 +14,7 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.fused.core import Steps
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 
 GROUPS = ("bearing_force", "seat_velocity")
@@ -55,7 +56,7 @@ def error(state: hb.SteadyState, group: str, periods: int = PERIODS) -> float:
 
 @pytest.fixture(scope="module")
 def solver() -> SteadySolver:
-    return prepared_solver("test_rig", values=STILL, tolerance=1e-4)[0]
+    return prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-4)[0]
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
@@ -126,7 +127,7 @@ def test_run_outs_make_the_period_long():
 def test_sensitivities_are_differences():
     """Central differences of the same problem: what is left is the second order of their steps."""
     speed, name = 1300.0 * np.pi / 30.0, "gear_mesh.mesh_damping_ratio"
-    solver = prepared_solver("test_rig", values=STILL, tolerance=1e-5)[0]
+    solver = prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-5)[0]
     state = solver.solve(Point(speed=speed))
     found = sensitivities(state, "bearing_force", [name])[name]
     sides = [

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.figures.flange_power import flange_powers
 from herringbone.analysis.rigid_rotation import rigid_rotation
 from herringbone.analysis.stability.steps.step_verdict import step_verdicts
 from herringbone.analysis.twin.monolithic import Twin
@@ -174,3 +175,49 @@ def test_the_ship_s_engine_shakes_its_flywheel_by_its_orders():
         "gearbox.gear_mesh.wheel.w"
     ][rows].mean()  # fmt: skip
     assert ratio == pytest.approx(77.0 / 31.0, rel=1e-3)
+
+
+def energies(result):
+    """Energy [J] that each mass and each shaft has taken at the end, from its own state."""
+    known, end = result.info.parameters, (0, -1)
+    time = result.data["time"].to_numpy()
+    for part, component in result.info.model.items():
+        at = {name: known.get(f"{part}.{name}") for name in ("inertia", "stiffness", "damping")}
+        columns = {c.removeprefix(f"{part}."): result.data[c].to_numpy()
+                   for c in result.data if c.startswith(f"{part}.")}  # fmt: skip
+        if component == "rotating_inertia":
+            first, last = columns["flange_a.w"][list(end)]
+            yield part, 0.5 * at["inertia"] * (last**2 - first**2)
+        elif component == "shaft_coupling":
+            rate, torque = columns["w_rel"], columns["torque"]
+            spring = torque - at["damping"] * rate
+            first, last = spring[list(end)] ** 2 / (2.0 * at["stiffness"])
+            yield part, last - first + np.trapezoid(at["damping"] * rate**2, time)
+        elif component == "torque_source":
+            yield part, -np.trapezoid(columns["power"], time)
+        elif component == "geared_shaft":
+            spring = columns["torque"] - at["damping"] * columns["w_rel"]
+            first, last = spring[list(end)] ** 2 / (2.0 * at["stiffness"])
+            yield part, last - first + np.trapezoid(columns["loss_power"], time)
+
+
+@pytest.mark.parametrize(("name", "scene"), SCENES)
+def test_powers_are_what_is_stored_and_lost(name, scene):
+    """Each part by its own law; all of them, gearboxes too, take what they give each other.
+
+    Flanges are coupled to the promised error, here over what passes the most loaded one.
+    """
+    result = ran(name, scene)
+    powers = flange_powers(result)
+    time = result.data["time"].to_numpy()
+    taken = {part: np.trapezoid(power, time) for part, power in powers.taken.items()}
+    passing = powers.passing * time[-1]
+    found = dict(energies(result))
+    assert len(found) >= 2
+    for part, energy in found.items():
+        assert taken[part] == pytest.approx(energy, abs=PROMISE * passing), part
+    assert sum(taken.values()) == pytest.approx(0.0, abs=1e-9 * passing)
+    gears = [part for part in taken if part.endswith("gear_mesh")]
+    assert gears
+    for gear in gears:  # 1 % of the power, at the most, is stored or lost in steady rotation
+        assert abs(taken[gear]) < 0.01 * passing

@@ -17,6 +17,7 @@ from herringbone.analysis.hosted.declaration import (
     own_states,
     since,
 )
+from herringbone.analysis.hosted.gear_data import resources_with_gear_data
 from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice
@@ -27,7 +28,6 @@ from herringbone.analysis.twin.composite_parts import (
     loader_of,
     make_parts,
     nominals_of,
-    resources_of,
 )
 from herringbone.analysis.twin.composite_source import composite_source
 from herringbone.analysis.twin.source import twin_source
@@ -119,7 +119,7 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
             lambda: advice(composite, boundary.flanges),
         ),
     )
-    composite = Composite(component, dict(resources_of(parts.instances)))
+    composite = Composite(component, resources_with_gear_data(parts.instances, boundary.pair))
     return composite
 
 

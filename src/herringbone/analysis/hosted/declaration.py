@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from herringbone.analysis.hosted.boundary import Boundary, HostFlange
+from herringbone.analysis.hosted.gear_data import texts_with_gear_data
 from herringbone.analysis.twin.composite_parts import (
     Parts,
     feedthrough_of,
     full_name,
-    texts_of,
     vectors_of,
 )
 from herringbone.core import (
@@ -89,7 +89,7 @@ def host_declaration(
         system.name,
         system.description,
         variables,
-        texts=texts_of(parts.instances),
+        texts=texts_with_gear_data(parts.instances, boundary.pair),
         vectors=vectors_of(parts.instances, parts.layout.block_first),
         tables=sum(i.component.declaration.size for i in parts.instances) + scratch,
         work=adaptive_work(own + parts.layout.state_first[-1], inputs),

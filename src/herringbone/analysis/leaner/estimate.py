@@ -9,34 +9,27 @@ left out:
 All of the linear part, reactions included, is exact; the laws are followed along their slopes.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
 
+from herringbone.analysis.leaner.inverse import bent_by, of_a_mesh, of_many
 from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, lines_of
 from herringbone.analysis.leaner.reactions import Reactions
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.correction import (
     Bent,
     bent,
-    jacobian,
-    packed,
     sloped,
-    unpacked,
 )
-from herringbone.analysis.steady.harmonic_balance.families import Families
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
-from herringbone.analysis.steady.harmonic_balance.krylov import gmres
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
-from herringbone.analysis.steady.harmonic_balance.response import Rows
+from herringbone.analysis.steady.outputs import coefficients_of, of_rows
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
+from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
-
-_CLOSE = 0.01
-"""Residual of the linear equations of a period of many meshes."""
 
 
 class Estimates:
@@ -44,11 +37,11 @@ class Estimates:
 
     Args:
         state: that motion.
-        questions: what is asked of it; outputs that are affine.
+        questions: what is asked of it.
         names: states that may be held.
 
     Raises:
-        ParameterError: an output is a product of others.
+        ParameterError: inputs of an output's part are not affine.
     """
 
     def __init__(
@@ -57,51 +50,50 @@ class Estimates:
         self._state, self._questions = state, questions
         columns = dict.fromkeys(c for q in questions for c in q.columns)
         self._place = {name: k for k, name in enumerate(columns)}
-        self._rows = _rows(state.structure, tuple(columns))
+        self._wanted = _wanted(state.structure, tuple(columns))
+        self._rows = alternating_rows(self._wanted)
         orbit = state.orbit
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             self._lines = {question.name: lines_of(state, question) for question in questions}
             problem = state.structure.problem
             one = state.meshes == 1
             self._found: Bent = (
                 sloped(problem, orbit.samples, every=True) if one else bent(problem, orbit.samples)
             )
-            self._inverse: Callable[[np.ndarray], np.ndarray] = (
-                self._of_a_mesh() if one else self._of_many()
-            )
+            self._inverse = of_a_mesh(state, self._found) if one else of_many(state, self._found)
             self._reactions = Reactions(state, names, self._found, self._rows)
+            self._still = np.zeros_like(orbit.channels)
             self._moving = self._reactions.moving(orbit.channels)
-            self._whole = orbit.response.outputs(self._rows, orbit.q, orbit.channels)
+            self._moving[:, 0] -= self._reactions.start
+            self._whole = coefficients_of(self._wanted, orbit)
 
     def held(self, names: Sequence[str]) -> dict[str, Apart]:
         """Errors by question if these states are held."""
         places = self._reactions.places
         own = [places[name] for name in names if name in places]
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             push = self._reactions.holding(own, self._moving)
             step = self._answered(own, push)
-            channels = np.zeros_like(self._state.orbit.channels)
+            channels = self._still.copy()
             channels[self._found.unknown] = step
-            again = self._reactions.moving(channels)
-            push = push + self._reactions.holding(own, again)
+            moving = self._reactions.moving
+            push = push + self._reactions.holding(own, moving(channels) - moving(self._still))
             changed = self._changed(own, push, channels)
-        return self._apart(self._whole + changed, self._state.orbit.response.orders)
+            return self._apart(self._whole + changed)
 
     def alone(self, names: Sequence[str]) -> dict[str, Mapping[str, Apart]]:
         """Errors by state and question if each of these is held alone, with what goes with it."""
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(all="ignore"):
             every = self._reactions.alone(self._moving)
             found: dict[str, Mapping[str, Apart]] = {}
-            nothing = np.zeros_like(self._state.orbit.channels)
             for name in names:
                 if (place := self._reactions.places.get(name)) is None:
                     continue
                 push = every[[place]]
-                channels = nothing.copy()
+                channels = self._still.copy()
                 channels[self._found.unknown] = self._answered([place], push)
                 changed = self._changed([place], push, channels)
-                orders = self._state.orbit.response.orders
-                found[name] = self._apart(self._whole + changed, orders)
+                found[name] = self._apart(self._whole + changed)
         return found
 
     def of(self, structure: Structure) -> dict[str, Apart]:
@@ -116,9 +108,11 @@ class Estimates:
             step[self._found.unknown] = on(orders, self._inverse(own[self._found.unknown]), known)
             given = on(orders, orbit.channels, known)
             given[: len(step)] += step
-            rows = _rows(structure, tuple(self._place))
-            values = response.outputs(rows, response.coordinates(given), given)
-        return self._apart(values, orders)
+            wanted = _wanted(structure, tuple(self._place))
+            q, rows = response.coordinates(given), alternating_rows(wanted)
+            values = on(known, response.outputs(rows, q, given), orders)
+            values[:, 0] += wanted.rows.still
+            return self._apart(values, wanted)
 
     @property
     def _period(self) -> Period:
@@ -133,66 +127,35 @@ class Estimates:
         orders = orbit.response.orders
         along = np.einsum("trh,rh->th", self._reactions.along[:, list(own)], push)
         moved = in_time(along, orders, orbit.places)
-        off = np.zeros((found.unknown.size, orbit.places))
-        for tangent, unknown in enumerate(found.owner):
-            if unknown >= 0:
-                off[unknown] += found.bends[:, tangent] * moved[tangent]
-        return self._inverse(in_frequency(off, orders))
+        return self._inverse(in_frequency(bent_by(found, moved), orders))
 
     def _changed(self, own: Sequence[int], push: np.ndarray, channels: np.ndarray) -> np.ndarray:
         """What outputs change by under reactions and changes of the channels."""
         response = self._state.orbit.response
         by = np.einsum("crh,rh->ch", self._reactions.outputs[:, list(own)], push)
-        return by + response.outputs(self._rows, response.coordinates(channels), channels)
+        by += response.outputs(self._rows, response.coordinates(channels), channels)
+        still = response.coordinates(self._still)  # a rotation that nothing drives has its speed
+        return by - response.outputs(self._rows, still, self._still)
 
-    def _of_a_mesh(self) -> Callable[[np.ndarray], np.ndarray]:
-        """J^-1 for a period of one mesh."""
-        order = self._state.orbit.response.orders.size // 2
-        factors = lu_factor(jacobian(self._state.orbit.response, self._found, order))
-
-        def solve(off: np.ndarray) -> np.ndarray:
-            found = off.copy()
-            packed_off = packed(off[:, : order + 1])
-            found[:, : order + 1] = unpacked(lu_solve(factors, packed_off), order)
-            return found
-
-        return solve
-
-    def _of_many(self) -> Callable[[np.ndarray], np.ndarray]:
-        """J^-1 for a period of many meshes."""
-        state, found, orbit = self._state, self._found, self._state.orbit
-        problem, answer = state.structure.problem, orbit.response
-        per_mesh = orbit.places // state.meshes
-        families = Families(answer.orders, state.meshes, per_mesh // 4)
-        inverses = families.inverses(problem, answer, found)
-        gains = answer.gain(found.along, found.along_angle, found.unknown, answer.orders.size)
-        owners = found.owner
-
-        def product(values: np.ndarray) -> np.ndarray:
-            moved = in_time(np.einsum("tuh,uh->th", gains, values), answer.orders, orbit.places)
-            bends = np.zeros((len(values), orbit.places))
-            for tangent, unknown in enumerate(owners):
-                if unknown >= 0:
-                    bends[unknown] += found.bends[:, tangent] * moved[tangent]
-            return values - in_frequency(bends, answer.orders)
-
-        return lambda off: gmres(product, lambda v: families.solve(inverses, v), off, _CLOSE)
-
-    def _apart(self, values: np.ndarray, orders: np.ndarray) -> dict[str, Apart]:
+    def _apart(self, rows: np.ndarray, wanted: Wanted | None = None) -> dict[str, Apart]:
+        """Errors by question of coefficients (rows, harmonics) of all affine rows."""
+        state = self._state
+        own = of_rows(state.structure, state.orbit, wanted or self._wanted, rows).coefficients
         found = {}
         for question in self._questions:
             theirs = self._lines[question.name]
-            own = values[[self._place[name] for name in question.columns]]
-            ours = Lines(own, orders, theirs.meshes, theirs.frequency)
+            values = own[[self._place[name] for name in question.columns]]
+            ours = Lines(values, state.orbit.response.orders, theirs.meshes, theirs.frequency)
             found[question.name] = apart(question, ours, theirs)
         return found
 
 
-def _rows(structure: Structure, columns: Sequence[str]) -> Rows:
+def _wanted(structure: Structure, columns: Sequence[str]) -> Wanted:
     wanted = structure.wanted(columns)
-    if wanted.there.size:
+    if wanted.whole:
         names = ", ".join(columns[k] for k in wanted.there)
         raise ParameterError(
-            f"{names}: a product of others, whose change is not estimated; ask for other outputs"
+            f"{names}: made of what is no linear part, so that its change is not estimated; ask "
+            "for other outputs"
         )
-    return alternating_rows(wanted)
+    return wanted

@@ -5,6 +5,7 @@ that are held, the reactions l follow from v = V r + G_v l = 0, harmonic by harm
 
     y = H r - G_y G_v^-1 V r
 
+and, in the mean, from where the states are held instead of from their rates,
 so that nothing is taken apart or decomposed again, whatever is held (the receptance method,
 R. E. D. Bishop and D. C. Johnson, The Mechanics of Vibration, 1960).
 """
@@ -17,6 +18,7 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.correction import Bent
 from herringbone.analysis.steady.harmonic_balance.response import Response, Rows
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.twin.condensed.equations import Equations
 from herringbone.analysis.twin.condensed.lean import state_names
 
 
@@ -30,6 +32,7 @@ class Reactions:
         rows: of the outputs.
 
     Attributes:
+        start: (reactions,) places at which states are held.
         places: where a state's reaction acts, among all of them.
         along: (tangents, reactions, harmonics) what the tangents are along.
         outputs: (rows, reactions, harmonics).
@@ -39,20 +42,13 @@ class Reactions:
         problem, orbit = state.structure.problem, state.orbit
         modes = state.structure.core.condensed.modes
         known = {name: k for k, name in enumerate(state_names(state.structure.core.twin))}
-        equations = state.structure.core.condensed.equations
         wanted = [known[name] for name in names]
-        rates = set(wanted)
-        own = [  # that can move, and not only with another one that is held, as positions do
-            k
-            for k in wanted
-            if modes.back[:, k].any()
-            and not (
-                np.count_nonzero(equations.a[k]) == 1
-                and int(equations.a[k].argmax()) in rates - {k}
-                and not equations.b[k].any()
-            )
-        ]
+        rates = _rates(state.structure.core.condensed.equations, wanted)
+        own = [k for k in wanted if modes.back[:, k].any() and rates.get(k) not in wanted]
+        position = {rate: k for k, rate in rates.items()}
+        places = [position.get(k, k) for k in own]
         self.places = {state_names(state.structure.core.twin)[k]: at for at, k in enumerate(own)}
+        self.start: np.ndarray = state.structure.core.twin.state[places]
         orders, self._count = orbit.response.orders, problem.inputs.shape[1]
         extended = replace(
             problem,
@@ -67,27 +63,38 @@ class Reactions:
         gains = answer.gain(every, angle, self._count + np.arange(len(own)), orders.size)
         ends = np.cumsum([len(found.along), len(own)])
         self.along, self._held, self.outputs = np.split(gains, ends)
-        self._shapes = shapes
+        self._shapes, self._positions = shapes, modes.shapes[places]
+        chosen = self._count + np.arange(len(own))
+        self._held[:, :, 0] = answer.gain(self._positions, still, chosen, 1)[:, :, 0]
         self._answer: Response = answer
 
     def moving(self, channels: np.ndarray) -> np.ndarray:
-        """Rates (reactions, harmonics) that the states would have under channels."""
+        """Rates (reactions, harmonics) of the states under channels; first, their mean places."""
         more = np.zeros((len(self._shapes), channels.shape[1]), dtype=complex)
         q = self._answer.coordinates(np.vstack([channels, more]))
-        return self._answer.of(self._shapes, q)
+        found = self._answer.of(self._shapes, q)
+        found[:, 0] = self._answer.of(self._positions, q)[:, 0]
+        return found
 
     def holding(self, places: Sequence[int], moving: np.ndarray) -> np.ndarray:
-        """What keeps some states from moving (chosen, harmonics); none at rest."""
+        """What takes away the motion of some states (chosen, harmonics)."""
         own = list(places)
-        found = np.zeros((len(own), moving.shape[1]), dtype=complex)
-        if own:
-            gains = self._held[np.ix_(own, own)].transpose(2, 0, 1)[1:]
-            found[:, 1:] = -np.linalg.solve(gains, moving[own].T[1:, :, None])[:, :, 0].T
-        return found
+        if not own:
+            return np.zeros((0, moving.shape[1]), dtype=complex)
+        gains = self._held[np.ix_(own, own)].transpose(2, 0, 1)
+        return -np.linalg.solve(gains, moving[own].T[:, :, None])[:, :, 0].T
 
     def alone(self, moving: np.ndarray) -> np.ndarray:
-        """What keeps each state from moving if no other is held (reactions, harmonics)."""
+        """What takes away the motion of each state if no other is held (reactions, harmonics)."""
         own = np.arange(len(moving))
-        found = np.zeros_like(moving)
-        found[:, 1:] = -moving[:, 1:] / self._held[own, own, 1:]
-        return found
+        return -moving / self._held[own, own]
+
+
+def _rates(equations: Equations, states: Sequence[int]) -> dict[int, int]:
+    """States that only follow others, as positions do, and which is their rate."""
+    found = {}
+    for k in states:
+        (row,) = np.nonzero(equations.a[k])
+        if row.size == 1 and row[0] != k and not equations.b[k].any():
+            found[k] = int(row[0])
+    return found

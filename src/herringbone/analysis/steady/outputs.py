@@ -8,6 +8,7 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time
 from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
+from herringbone.analysis.twin.condensed.wanted import Wanted
 
 
 class Harmonics(NamedTuple):
@@ -36,17 +37,36 @@ def harmonics(structure: Structure, orbit: Orbit, columns: Sequence[str]) -> Har
 
     Those that are not affine are computed by their own parts' kernels, at places in time.
     """
-    wanted, response = structure.wanted(columns), orbit.response
-    rows, count = wanted.rows, wanted.here.size
+    wanted = structure.wanted(columns)
+    return of_rows(structure, orbit, wanted, coefficients_of(wanted, orbit))
+
+
+def coefficients_of(wanted: Wanted, orbit: Orbit) -> np.ndarray:
+    """Coefficients (rows, harmonics) of all affine rows of what is wanted, less what grows."""
+    rows, response = wanted.rows, orbit.response
     found = response.of(rows.modal, orbit.q)
     found += rows.channels @ orbit.channels
     found[:, 0] += rows.still
-    slope = np.zeros(len(found))
     if rows.turned.shape[1]:
         found += rows.turned[:, :1] * orbit.angle
+    return found
+
+
+def of_rows(structure: Structure, orbit: Orbit, wanted: Wanted, found: np.ndarray) -> Harmonics:
+    """Coefficients of outputs from those of all affine rows (rows, harmonics).
+
+    Args:
+        structure: of the system.
+        orbit: whose period and places are taken; its states, too, where `wanted` is `whole`.
+        wanted: the outputs.
+        found: of the orbit's harmonics.
+    """
+    rows, response, count = wanted.rows, orbit.response, wanted.here.size
+    slope = np.zeros(len(found))
+    if rows.turned.shape[1]:
         slope = rows.turned[:, 0] * response.speed
-    values = np.empty((len(columns), found.shape[1]), dtype=complex)
-    slopes = np.zeros(len(columns))
+    values = np.empty((len(wanted.columns), found.shape[1]), dtype=complex)
+    slopes = np.zeros(len(wanted.columns))
     values[wanted.here], slopes[wanted.here] = found[:count], slope[:count]
     if wanted.there.size:
         times = structure.late + np.arange(orbit.places) / orbit.places * orbit.period

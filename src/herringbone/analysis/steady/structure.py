@@ -18,6 +18,9 @@ from herringbone.core import StructureError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System
 
+_MOST = 16
+"""Selections of outputs that are kept."""
+
 
 class Structure:
     """A system taken apart, with what harmonic balance needs.
@@ -74,7 +77,7 @@ class Structure:
             StructureError: it names what is not there.
         """
         found = copy(self)
-        for name in ("groups", "signals", "indicators", "start"):
+        for name in ("groups", "signals", "indicators", "start", "_kept"):
             found.__dict__.pop(name, None)  # cached
         found.core = self.core.leaner(lean)
         found.problem = problem_of(found.core.condensed, self.late)
@@ -96,8 +99,17 @@ class Structure:
         return float(self.core.twin.block[self.core.twin.index(str(column))])
 
     def wanted(self, columns: Sequence[str]) -> Wanted:
-        """Rows of outputs."""
-        return Wanted(self.core.condensed, self.core.affine, columns)
+        """Rows of outputs; those of lately are kept: points over speed ask for the same."""
+        key = tuple(columns)
+        if key not in self._kept:
+            if len(self._kept) >= _MOST:
+                self._kept.clear()
+            self._kept[key] = Wanted(self.core.condensed, self.core.affine, columns)
+        return self._kept[key]
+
+    @cached_property
+    def _kept(self) -> dict[tuple[str, ...], Wanted]:
+        return {}
 
     @cached_property
     def groups(self) -> tuple[dict[str, slice], Rows]:

@@ -37,6 +37,17 @@ def run(options: argparse.Namespace) -> OutcomeKind:
 
     if options.resume is None and options.system is None:
         raise ParameterError("give a system to run, or --resume FOLDER; see 'herringbone list'")
+    if options.plan and options.resume is None:
+        from herringbone.commands.run.planned import (  # noqa: PLC0415 (numba)
+            as_chosen,
+            planned,
+            run_steady,
+        )
+
+        found = planned(options)
+        if not found.choice.step:
+            return run_steady(options, found)
+        options = as_chosen(options, found)
     result = _ran(options) if options.resume is None else _resumed(options)
     show(result.to_json() if options.json else summary_text(result))
     if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:

@@ -52,6 +52,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--record", action="append", default=[], metavar="OUTPUTS",
         help="with --fuse: group of channels or pattern of outputs to record; all if none is given",
     )  # fmt: skip
+    sub.add_argument(
+        "--plan", action="store_true",
+        help="find the least model and the solver that answer what the scene asks, and run these",
+    )  # fmt: skip
     memory = "memory grows with the duration"
     sub.add_argument(
         "--reference", action="store_true", help=f"errors against the monolithic twin; {memory}"

@@ -7,6 +7,7 @@ left,56.306,0.0,8.22e8
 
 import re
 from collections.abc import Mapping
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from herringbone.core.reading.texts import LARGEST_TEXT, AnyPath, lines_of, read
 _Table = tuple[dict[str, np.ndarray], dict[str, str]]
 _tables: Remembered[_Table] = Remembered(64)
 _headers: Remembered[np.ndarray] = Remembered(64)
+_SECTION = "# section: "
 _BLANK = " \t\v\f"
 _QUOTED = re.compile(r'"((?:[^"]++|"")*+)"([^,]*)')
 _PLAIN = re.compile(r"()([^,]*)")
@@ -51,6 +53,7 @@ def read_flat_csv(
     numbers: Mapping[str, tuple[str, ...]],
     *,
     more: str = "",
+    section: str = "",
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Read a flat CSV file.
 
@@ -59,6 +62,8 @@ def read_flat_csv(
         texts: columns of text.
         numbers: columns of numbers, with the units that each may have.
         more: if given, all further columns are numbers with the unit that stands under this name.
+        section: what is read lies behind the line `# section: ...`, up to the next such line;
+            "": it is the whole file.
 
     Returns:
         Columns by name, and the unit of each column of numbers.
@@ -68,9 +73,9 @@ def read_flat_csv(
     """
     key = _content(file)
     if not key:
-        return _read(file, texts, numbers, more)
-    asked = key, texts, tuple(numbers.items()), more
-    columns, units = _tables(asked, lambda: _read(file, texts, numbers, more))
+        return _read(file, texts, numbers, more, section)
+    asked = key, texts, tuple(numbers.items()), more, section
+    columns, units = _tables(asked, lambda: _read(file, texts, numbers, more, section))
     return {name: values.copy() for name, values in columns.items()}, dict(units)
 
 
@@ -81,16 +86,33 @@ def _content(file: AnyPath) -> str:
     return content_key(file)
 
 
+def _section(file: AnyPath, section: str) -> tuple[int, list[str]]:
+    """Number of the first line of a section in the file, and its lines; raises ResourceError."""
+    lines = lines_of(read_text(file))
+    if not section:
+        return 1, lines
+    mark = _SECTION + section
+    if mark not in lines:
+        raise ResourceError(f"{file}: it has no line '{mark}'")
+    first = lines.index(mark) + 1
+    inside = list(takewhile(lambda line: not line.startswith(_SECTION), lines[first:]))
+    return first + 1, inside
+
+
 def _read(
-    file: AnyPath, texts: tuple[str, ...], numbers: Mapping[str, tuple[str, ...]], more: str
+    file: AnyPath,
+    texts: tuple[str, ...],
+    numbers: Mapping[str, tuple[str, ...]],
+    more: str,
+    section: str,
 ) -> _Table:
     """See `read_flat_csv`."""
-    lines = lines_of(read_text(file))
+    first, lines = _section(file, section)
     units = _units(lines[0] if lines else "", file)
     check_units(units, numbers, file)
     rows = [
         (n, _fields(line, file, n))
-        for n, line in enumerate(lines, 1)
+        for n, line in enumerate(lines, first)
         if line and not line.startswith("#")
     ]
     if len(rows) < 2:
@@ -118,7 +140,7 @@ def _read(
     return {name: np.array(values) for name, values in columns.items()}, units
 
 
-def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
+def read_header(file: AnyPath, name: str, count: int, section: str = "") -> np.ndarray:
     """Numbers of the comment line `# name: ...` of a flat CSV file; the last such line counts.
 
     Returns:
@@ -129,20 +151,22 @@ def read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
     """
     key = _content(file)
     if not (key and count):
-        return _read_header(file, name, count)
-    return _headers((key, name, count), lambda: _read_header(file, name, count)).copy()
+        return _read_header(file, name, count, section)
+    asked = key, name, count, section
+    return _headers(asked, lambda: _read_header(file, name, count, section)).copy()
 
 
-def _read_header(file: AnyPath, name: str, count: int) -> np.ndarray:
+def _read_header(file: AnyPath, name: str, count: int, section: str) -> np.ndarray:
     """See `read_header`."""
     mark, last = f"# {name}:", 0
-    lines = lines_of(read_text(file)) if count else []
-    for line, text in enumerate(lines, 1):
+    first, lines = _section(file, section) if count else (1, [])
+    for line, text in enumerate(lines, first):
         last = line if text.startswith(mark) else last
     if last == 0:
         return np.full(count, np.nan)
+    words = lines[last - first].removeprefix(mark).split()
     try:
-        found = np.array([number(word) for word in lines[last - 1].removeprefix(mark).split()])
+        found = np.array([number(word) for word in words])
     except ValueError:
         found = np.empty(0)
     if len(found) != count:

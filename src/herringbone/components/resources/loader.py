@@ -70,9 +70,9 @@ class ResourceLoader:
 
     def __call__(self, block: np.ndarray, files: Mapping[str, Path]) -> None:
         """Read the files, given by String parameter; raises ResourceError."""
-        paths = [files[text.name] for text in self.texts]
+        paths = self._paths(files)
         read = [
-            read_numbers(p, text.columns, text.header, text.header_count)
+            read_numbers(p, text.columns, text.header, text.header_count, text.section)
             for p, text in zip(paths, self.texts, strict=True)
         ]
         values = np.concatenate([numbers for numbers, _ in read])
@@ -89,12 +89,18 @@ class ResourceLoader:
         report = np.zeros(REPORT)
         refusal = self.check(block, report)
         if refusal:
-            paths = [files[text.name] for text in self.texts]
-            raise self.refusals[refusal - 1].error(paths, report)
+            raise self.refusals[refusal - 1].error(self._paths(files), report)
+
+    def _paths(self, files: Mapping[str, Path]) -> list[Path]:
+        return [files[text.shared or text.name] for text in self.texts]
 
 
 def read_numbers(
-    file: AnyPath, columns: tuple[Column, ...], header: str = "", header_count: int = 0
+    file: AnyPath,
+    columns: tuple[Column, ...],
+    header: str = "",
+    header_count: int = 0,
+    section: str = "",
 ) -> tuple[np.ndarray, tuple[int, int]]:
     """Read a flat CSV file as numbers; see `Text` for its grammar.
 
@@ -109,7 +115,8 @@ def read_numbers(
     words = tuple(c for c in columns if c.words)
     rest = next((c.name for c in columns if c.rest), "")
     wanted = {c.name: c.units for c in columns if c.units and not c.rest}
-    table, units = read_flat_csv(file, tuple(c.name for c in words), wanted, more=rest)
+    names = tuple(c.name for c in words)
+    table, units = read_flat_csv(file, names, wanted, more=rest, section=section)
     check_units(units, {c.name: c.units for c in columns if c.units}, file)
     for column in words:
         table[column.name] = _numbered(column, table[column.name], file)
@@ -117,7 +124,7 @@ def read_numbers(
     order = [*declared, *(name for name in table if name not in declared)]
     rows = np.column_stack([table[name] for name in order])
     used = [float(c.units.index(units[c.name].strip())) if c.units else 0.0 for c in columns]
-    given = read_header(file, header, header_count)
+    given = read_header(file, header, header_count, section)
     return np.concatenate([used, given, rows.ravel()]), rows.shape
 
 

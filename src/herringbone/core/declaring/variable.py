@@ -133,6 +133,9 @@ class Text:
     A relative name is looked up in the component's resources folder. `quantity` is what the file
     means to those who ask for the component's role. The file may have a comment line
     `# header: ...` with `header_count` numbers.
+
+    Several tables may lie in one file: each is the `section` that follows a line `# section: NAME`,
+    and of all but one of them `shared` names that one, which alone is a String parameter.
     """
 
     name: str
@@ -143,6 +146,8 @@ class Text:
     place: str = ""
     header: str = ""
     header_count: int = 0
+    section: str = ""
+    shared: str = ""
 
 
 def input_(

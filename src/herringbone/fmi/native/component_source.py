@@ -2,7 +2,7 @@
 
 import math
 import string
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
@@ -57,7 +57,7 @@ def component_source(used: UsedStates) -> str:
         *_grammars(declaration.texts),
         _array("HbRunsOn runs_on", _runs_on(component)),
         _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
-        _array("HbText texts", (_text(i, t) for i, t in enumerate(declaration.texts))),
+        _array("HbText texts", _text_entries(declaration.texts)),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
     entries = {
@@ -252,7 +252,11 @@ def _grammars(texts: Iterable[Text]) -> Iterable[str]:
         yield _array(f"HbColumn columns_{i}", rows)
 
 
-def _text(i: int, text: Text) -> str:
-    name, start, header = (_string(s) for s in (text.name, text.start, text.header))
-    counts = len(text.columns), text.header_count
-    return f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}}}"
+def _text_entries(texts: Sequence[Text]) -> Iterable[str]:
+    place = {text.name: i for i, text in enumerate(texts)}
+    for i, text in enumerate(texts):
+        name, start, header = (_string(s) for s in (text.name, text.start, text.header))
+        counts = len(text.columns), text.header_count
+        section = _string(text.section) if text.section else "NULL"
+        where = f"{section}, {place[text.shared or text.name]}"
+        yield f"{{{name}, {start}, columns_{i}, {counts[0]}, {header}, {counts[1]}, {where}}}"

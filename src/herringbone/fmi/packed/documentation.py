@@ -74,7 +74,8 @@ def licence() -> bytes:
 def _variables(component: Component) -> str:
     shown = interface.reals(component.declaration).values()
     texts = (
-        (t.name, "parameter", "", t.start, "", t.description) for t in component.declaration.texts
+        (t.name, "parameter", "", t.start, "", t.description)
+        for t in interface.texts(component.declaration).values()
     )
     return _table([_HEAD, *map(_row, shown), *texts])
 

@@ -1,13 +1,8 @@
 """Importer of universal files with modes: nodes 15 or 2411, shapes 55 or 2414, units 164.
 
-Reading is done by pyuff (extra `import`). It drops a last data set that does not end; this is
-checked here.
-
-Source: Universal File Formats for Modal Analysis Testing, University of Cincinnati, SDRL.
+Reading is done by pyuff, see `core.reading.universal`.
 """
 
-import contextlib
-import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core import HerringboneError, ResourceError
-from herringbone.core.reading.texts import LARGEST_MODEL, read_bytes
+from herringbone.core import ResourceError
+from herringbone.core.reading.universal import universal_sets
 from herringbone.housing.importers.mode_set import (
     ModeSet,
     check_modal_mass,
@@ -25,6 +20,7 @@ from herringbone.housing.importers.mode_set import (
 )
 from herringbone.housing.importers.seat_file import SeatFile
 
+_KINDS = {15, 55, 164, 2411, 2414}
 _NORMAL, _COMPLEX = 2, 3
 _DISPLACEMENT = (0, 1, 8)
 """Specific data types that can be displacements: unknown, general, displacement."""
@@ -43,7 +39,7 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
             complex, or the units disagree.
     """
     path = Path(path)
-    sets = _read_sets(path)
+    sets = universal_sets(path, _KINDS)
     units = [s for s in sets if s.get("type") == 164]
     try:
         if units:
@@ -63,32 +59,6 @@ def read_uff(path: str | Path, seats: SeatFile) -> ModeSet:
         np.stack(shapes, axis=-1),
         {"tool": "universal file", "file": path.name},
     )
-
-
-def _read_sets(path: Path) -> list[dict[str, Any]]:
-    try:
-        import pyuff  # noqa: PLC0415 (optional)
-    except ImportError as error:
-        raise HerringboneError(
-            "universal files need pyuff: pip install 'herringbone[import]'"
-        ) from error
-    lines = read_bytes(path, LARGEST_MODEL).splitlines()
-    marks = sum(line.rstrip() == b"    -1" for line in lines)
-    if marks == 0:
-        raise ResourceError(f"{path} is no universal file: it has no mark '    -1'")
-    if marks % 2:
-        raise ResourceError(f"{path} is truncated: the last data set does not end with '    -1'")
-    n, kind = 0, "none"
-    found = []
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):  # it prints what it does not know
-            file = pyuff.UFF(str(path))
-            for n, kind in enumerate(file.get_set_types(), 1):
-                if kind in {15, 55, 164, 2411, 2414}:
-                    found.append(file.read_sets(n - 1))
-    except Exception as error:  # pyuff raises bare Exception for every defect
-        raise ResourceError(f"{path}: data set {n} ({kind}) is malformed") from error
-    return found
 
 
 def _check_units(units: Mapping[str, Any], seats: SeatFile) -> None:

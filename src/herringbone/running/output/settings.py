@@ -25,7 +25,8 @@ def settings_of(system: System, scene: Scene, options: object) -> dict[str, str]
     structure = (system.connections, sorted(system.channels.items()))
     parts = [f"{p.name} {p.component} {p.fmu and digest_of_file(p.fmu)}" for p in system.parts]
     values = [f"{p.name}.{told}" for p in system.parts for told in values_of(p)]
-    scene_told = (plain.name, plain.t_end, plain.record_step, plain.start, plain.start_offset)
+    told = (plain.name, plain.t_end, plain.record_step, plain.start, plain.start_offset)
+    scene_told = (*told, plain.model) if plain.model else told
     return {
         "system": digest_of(system.name, repr(structure)),
         "parts and FMUs": digest_of(*parts),

@@ -10,6 +10,7 @@ from typing import Any
 
 from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
 from herringbone.analysis.figures.channels import largest_lines, moments
+from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.operating_point import (
     power_balance,
     run_mesh_frequency,
@@ -41,6 +42,8 @@ def physical_results(result: Result) -> dict[str, Any]:
     found["steady"] = part.steady
     if power is not None:
         found["power_W"] = vars(power)
+    elif taken := mean_powers(result):
+        found["power_taken_W"] = dict(taken.taken)
     if sensors := sensor_values(result):
         found["sensors"] = sensors
     boxes = by_gearbox(result)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torques, signal
 from herringbone.analysis.figures.channels import largest_lines, moments
+from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.operating_point import (
     power_balance,
     run_mesh_frequency,
@@ -195,6 +196,7 @@ def _of_gear_pair(result: Result, gear: str) -> Iterator[tuple[str, str]]:
 def _power(result: Result) -> Iterator[str]:
     power = power_balance(result)
     if power is None:
+        yield from _flange_powers(result)
         return
     yield _line("Power", f"drive motor {power.drive_electrical:.0f} W from the supply, "
                 f"{power.recovered:.0f} W recovered, {power.supplied:.0f} W net")  # fmt: skip
@@ -203,6 +205,17 @@ def _power(result: Result) -> Iterator[str]:
                 f"{power.load_loss:.0f} W")  # fmt: skip
     yield _line("", "between the rotors, lost or stored: "
                 f"{round(power.transmission_loss, 1) + 0.0:.1f} W")  # fmt: skip
+
+
+def _flange_powers(result: Result) -> Iterator[str]:
+    """What the parts of a drivetrain give and take through their flanges."""
+    powers = mean_powers(result)
+    if powers is None:
+        return
+    yield _line("Power, mean", f"through flanges up to {powers.passing:.4g} W")
+    for part, power in powers.visible:
+        yield _line("", f"{part} {'gives' if power < 0.0 else 'takes'} {abs(power):.4g} W")
+    yield _line("", "(what is not taken by loads is lost or stored)")
 
 
 def _seats(result: Result) -> Iterator[str]:

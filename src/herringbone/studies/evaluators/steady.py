@@ -1,7 +1,7 @@
 """Points by periodic steady states: each from its neighbour, without any run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,17 +115,9 @@ class _States:
         return own, commanded(self._known, rest)
 
     def _prepared(self, at: dict[str, float], values: Point) -> SteadySolver:
-        wishes = self._wishes
-        solver, _, _ = prepared_solver(
-            self._system,
-            scene=self._scene,
-            **at,
-            values={**wishes.values, **values},
-            gear=wishes.gear,
-            housing=wishes.housing,
-            tolerance=self._asked.tolerance,
-        )
-        return solver
+        wishes = replace(self._wishes, values={**self._wishes.values, **values})
+        where = SteadyPoint(at.get(SPEED), at.get(TORQUE))
+        return prepared_solver(self._system, self._scene, where, wishes, self._asked.tolerance)[0]
 
 
 def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figure]:

@@ -7,21 +7,24 @@ from pathlib import Path
 
 from herringbone.analysis.leaner.question import Question
 from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
+from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.lean import lean_of
+from herringbone.running.loading import load_scene, load_system
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
-from herringbone.scenes import Model, Motion, Scene, Start
-from herringbone.studies.planning.certified import tolerance_for
+from herringbone.running.steady import prepared_at
+from herringbone.scenes import Model, Motion, Scene
+from herringbone.studies.planning.certified import FINER, tolerance_for
+from herringbone.studies.planning.points import first_point
 from herringbone.studies.planning.rung import Rung
 from herringbone.studies.planning.steady_plan import questions_of, steady_rungs
 from herringbone.studies.planning.transient_plan import transient_rungs
-
-_FINER = 20.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -88,53 +91,52 @@ def plan(
         HerringboneError: something about the input is wrong, or a part is a foreign FMU.
     """
     begin = time.process_time()
-    wishes = Wishes(values=values or {}, gear=gear, housing=housing, lean=True)
-    found = prepared(system, scene, wishes)
-    asking = _with_files(found.scene, gear, housing)
+    own = Wishes(values=values or {}, gear=gear, housing=housing, lean=True)
+    asking = _with_files(_scene(system, scene), gear, housing)
     if not asking.asks:
         raise ParameterError(
-            f"scene {asking.name}: it asks nothing; add [[ask]], see docs/plans.md, or the "
-            "command 'template scene'"
+            f"scene {asking.name}: it asks nothing; add [[ask]], see docs/plans.md"
         )
-    refuse_foreign_parts(found.system)
     if asking.operating.motion is Motion.TRANSIENT:
+        found = prepared(system, scene, own)
+        refuse_foreign_parts(found.system)
         core = Core(found.system)
         questions = questions_of(core, asking.asks)
         rungs, said = transient_rungs(core, questions, asking)
         tolerance = min(question.tolerance for question in questions)
     else:
-        still = replace(wishes, start=Start.EQUILIBRIUM, start_offset={})
-        found = prepared(system, scene, still)
+        at = first_point(asking.operating)
+        found = prepared_at(at, system, scene, own)
+        refuse_foreign_parts(found.system)
         solver = SteadySolver(found.system)
         questions = questions_of(solver.structure.core, asking.asks)
-        solver = solver.leaner(lean_of(replace(asking, model=Model())), _fine(questions))
-        by_hand = lean_of(asking)
-        rungs, certifier, said = steady_rungs(solver, questions, asking, by_hand)
+        fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
+        rungs, certifier, said = steady_rungs(fine, questions, asking, lean_of(asking))
         tolerance = certifier.tolerance
+    asking = replace(asking, values={**asking.values, **as_texts(values)})
     return _made(found.system, asking, questions, rungs, tolerance, begin, (*found.notes, *said))
+
+
+def _scene(system: str | Path | System, scene: str | Path | Scene | None) -> Scene:
+    folder = Path.cwd() if isinstance(system, System) else load_system(system)[1]
+    return load_scene(folder, scene)
 
 
 def _with_files(scene: Scene, gear: object, housing: object) -> Scene:
     """A scene with the files that the caller gave besides, so that it is whole."""
-    gears, housings = (
-        {"": given} if isinstance(given, str | Path) else dict(given or {})  # type: ignore[call-overload]
-        for given in (gear, housing)
-    )
-    if any(not isinstance(given, str | Path) for given in gears.values()):
-        raise ParameterError("plan: gear: give a file, which the planned scene can name")
-    files = {
-        key: {path: Path(file) for path, file in own.items()}
-        for key, own in (("gears", gears), ("housings", housings))
-    }
-    return replace(
-        scene,
-        gears={**scene.gears, **files["gears"]},
-        housings={**scene.housings, **files["housings"]},
-    )
+    gears, housings = _files(gear, "gear"), _files(housing, "housing")
+    return replace(scene, gears={**scene.gears, **gears}, housings={**scene.housings, **housings})
 
 
-def _fine(questions: list[Question]) -> float:
-    return tolerance_for(questions, 1.0 / _FINER)
+def _files(given: object, name: str) -> dict[str, Path]:
+    """Files by path of their part; "": of the only one."""
+    own = dict(given) if isinstance(given, Mapping) else {} if given is None else {"": given}
+    found = {}
+    for path, file in own.items():
+        if not isinstance(file, str | Path):
+            raise ParameterError(f"plan: {name}: give a file, which the planned scene can name")
+        found[str(path)] = Path(file)
+    return found
 
 
 def _made(

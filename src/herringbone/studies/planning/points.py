@@ -8,32 +8,42 @@ import numpy as np
 from herringbone.analysis.steady.set_points import Point
 from herringbone.scenes.asking import Operating, Range
 
-TESTS = 12
+TESTS, _FEW = 12, 5
+"""Points of a range that are tested at; where the period has many meshes."""
 _PROBES = {"speed": (0.0, 0.5, 1.0), "torque": (0.0, 1.0)}
 _SPREAD = 0.754877666, 0.569840291
 """Steps of a sequence that fills a square evenly (M. Roberts, 2018): powers of the inverse of the
 plastic number."""
 
 
-def probes(operating: Operating) -> list[Point]:
+def first_point(operating: Operating) -> Point:
+    """The lowest of the ranges."""
+    return points_to_probe(operating)[0]
+
+
+def points_to_probe(operating: Operating) -> list[Point]:
     """Ends and middle of the ranges; the scene's own point without any."""
     ends = {"speed": operating.speed, "torque": operating.torque}
     values = {key: _at(given, _PROBES[key]) for key, given in ends.items()}
     return [Point(speed, torque) for torque, speed in product(values["torque"], values["speed"])]
 
 
-def tests(operating: Operating, count: int = TESTS) -> list[Point]:
+def points_to_test(operating: Operating, *, long: bool = False) -> list[Point]:
     """Points that fill the ranges, by ascending speed; none of them is probed at.
+
+    Args:
+        operating: the ranges.
+        long: the period has many meshes.
 
     Without a range, the scene's own point, where nothing else is asked.
     """
     if all(given is None or given[0] == given[1] for given in (operating.speed, operating.torque)):
-        return probes(operating)[:1]
-    shares = np.mod(0.5 + np.outer(np.arange(1, count + 1), _SPREAD), 1.0)
-    return sorted(_tests(operating, shares), key=lambda point: abs(point.speed or 0.0))
+        return points_to_probe(operating)[:1]
+    shares = np.mod(0.5 + np.outer(np.arange(1, (_FEW if long else TESTS) + 1), _SPREAD), 1.0)
+    return sorted(_spread(operating, shares), key=lambda point: abs(point.speed or 0.0))
 
 
-def _tests(operating: Operating, shares: np.ndarray) -> Iterator[Point]:
+def _spread(operating: Operating, shares: np.ndarray) -> Iterator[Point]:
     for own in shares:
         speed, torque = (
             _at(given, (float(share),))[0]

@@ -1,5 +1,24 @@
 """The entries of this room, in the order of the thesis."""
 
+from herringbone.thesis.dynamics import (
+    backlash,
+    damping,
+    deviations,
+    frequencies,
+    impact,
+    speed,
+    start,
+    torque,
+)
 from herringbone.thesis.entry import Entry
 
-ENTRIES: tuple[Entry, ...] = ()
+ENTRIES: tuple[Entry, ...] = (
+    frequencies.ENTRY,
+    damping.ENTRY,
+    backlash.ENTRY,
+    impact.ENTRY,
+    start.ENTRY,
+    deviations.ENTRY,
+    torque.ENTRY,
+    speed.ENTRY,
+)

@@ -21,7 +21,7 @@ from herringbone.thesis.pair.given import JOB
 
 FILE = Path(__file__).with_name("data") / "finite_elements.csv"
 TORQUES = (
-    *(50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 1500.0, 2000.0),
+    *(50.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 1250.0, 1500.0, 1750.0, 2000.0),
     *(3000.0, 4000.0, 5000.0, 6500.0, 8000.0, 11000.0, 15000.0, 20000.0),
 )
 """Of the pinion [N m]; the table begins at zero."""

@@ -84,12 +84,13 @@ def _findings(pair: GearPair) -> tuple[Finding, ...]:
             "The table rounds to 0.1 mm.",
         ),
         Finding(
-            "The face width is not in the table, although the mesh stiffness needs it.",
+            "Table 2.1 lists the basic parameters of the pair.",
             Verdict.NEEDS_AN_ASSUMPTION,
             _MM * pair.face_width,
             "mm",
             "per half, with which ISO 6336-1 gives the thesis' mean stiffness",
-            "We take the width from the published stiffness.",
+            "The face width is not listed, although the stiffness needs it: ours follows from the "
+            "published stiffness.",
         ),
     )
 

@@ -87,8 +87,8 @@ def _findings(means: pd.DataFrame) -> tuple[Finding, ...]:
             held["change"],
             "%",
             f"k_L + k_R against none, {case}",
-            f"The pinion must be held axially, which the thesis' own model does not: floating it "
-            f"is {floating['change']:.3f} %. Rigid it is {rigid['change']:+.0f} %, because the "
+            "The pinion must be held axially, which the thesis' own model does not: floating it is "
+            f"{abs(floating['change']):.2f} %. Rigid it is {rigid['change']:+.0f} %, because the "
             "right half does not touch.",
             margin=1e-3,
         ),

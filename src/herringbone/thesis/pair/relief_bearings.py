@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.set_points import Point
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.names import GEARBOX, SYMMETRY_DEVIATION
@@ -40,9 +41,9 @@ def compute() -> Outcome:
 def _levels(relief: str) -> list[tuple[int, float]]:
     """RMS of the alternating bearing forces [N] over speed."""
     job = replace(JOB, modification=modification(relief), method="coupled-slices")
-    first = _SPEEDS[0] * math.pi / 30.0
-    solver, _, _ = prepared_solver(
-        GEARBOX, gear=job, values={SYMMETRY_DEVIATION: 0.0}, speed=first, torque=_TORQUE
+    first = Point(speed=_SPEEDS[0] * math.pi / 30.0, torque=_TORQUE)
+    solver, _ = prepared_solver(
+        GEARBOX, point=first, wishes=Wishes(gear=job, values={SYMMETRY_DEVIATION: 0.0})
     )
     near, found = None, []
     for n in _SPEEDS:

@@ -1,5 +1,6 @@
 """The entries of this room, in the order of the thesis."""
 
 from herringbone.thesis.entry import Entry
+from herringbone.thesis.readings import which
 
-ENTRIES: tuple[Entry, ...] = ()
+ENTRIES: tuple[Entry, ...] = (which.ENTRY,)

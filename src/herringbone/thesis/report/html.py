@@ -18,6 +18,7 @@ from herringbone.thesis.report.words import (
     header,
     is_small,
     told_number,
+    typeset,
 )
 
 _CLASS = {
@@ -51,15 +52,28 @@ def html_page(entries: Sequence[Shown], data: str) -> str:
 
 
 def _head(entries: Sequence[Shown]) -> Iterator[str]:
-    found = counts([f for shown in entries for f in findings_of(shown.done)])
     yield "<h1>The thesis on herringbone gears, sentence by sentence</h1>"
     yield f"<p>{_ABOUT}</p>"
-    yield '<p class="counts">' + " ".join(
-        f"<span>{_chip(verdict)} <b>{count}</b></span>" for verdict, count in found.items()
-    ) + f"<span>{sum(found.values())} sentences, {len(entries)} studies</span></p>"  # fmt: skip
+    yield from _by_group(entries)
     if failed := [shown for shown in entries if shown.error]:
         names = ", ".join(_link(shown) for shown in failed)
         yield f'<p class="error">Failed: {names}</p>'
+
+
+def _by_group(entries: Sequence[Shown]) -> Iterator[str]:
+    """How many sentences of each group have which verdict."""
+    yield '<table class="counts"><thead><tr><th></th>'
+    yield "".join(f"<th>{_chip(verdict)}</th>" for verdict in Verdict) + "</tr></thead><tbody>"
+    for group, title in GROUPS.items():
+        members = [shown for shown in entries if shown.done.entry.group == group]
+        if members:
+            found = counts([f for shown in members for f in findings_of(shown.done)])
+            numbers = "".join(f"<td>{count or ''}</td>" for count in found.values())
+            yield f'<tr><td><a href="#{group}">{escape(title)}</a></td>{numbers}</tr>'
+    every = counts([f for shown in entries for f in findings_of(shown.done)])
+    told = f"{sum(every.values())} sentences in {len(entries)} studies"
+    numbers = "".join(f"<td>{count}</td>" for count in every.values())
+    yield f'<tr class="all"><td>{told}</td>{numbers}</tr></tbody></table>'
 
 
 def _summary(entries: Sequence[Shown]) -> Iterator[str]:
@@ -72,16 +86,18 @@ def _summary(entries: Sequence[Shown]) -> Iterator[str]:
             link = f'<a href="#{group}">{escape(title)}</a>'
             yield f'<tr class="group"><td colspan="4">{link}</td></tr>'
         for shown in members:
-            for finding in findings_of(shown.done):
-                yield _row(finding, _link(shown))
+            findings = findings_of(shown.done)
+            for place, finding in enumerate(findings):
+                link = f'<td rowspan="{len(findings)}">{_link(shown)}</td>'
+                yield _row(finding, link if place == 0 else "")
     yield "</tbody></table>"
 
 
-def _row(finding: Finding, link: str | None = None) -> str:
-    why = f'<br><span class="why">{escape(finding.why)}</span>' if finding.why else ""
-    last = "" if link is None else f"<td>{link}</td>"
+def _row(finding: Finding, last: str = "") -> str:
+    """A finding as a row, with its last cell."""
+    why = f'<br><span class="why">{escape(typeset(finding.why))}</span>' if finding.why else ""
     return (
-        f"<tr><td>{escape(finding.sentence)}</td><td>{_chip(finding.verdict)}</td>"
+        f"<tr><td>{escape(typeset(finding.sentence))}</td><td>{_chip(finding.verdict)}</td>"
         f"<td>{escape(told_number(finding))}{why}</td>{last}</tr>"
     )
 

@@ -13,6 +13,7 @@ from herringbone.thesis.report.words import (
     header,
     is_small,
     told_number,
+    typeset,
 )
 
 PICTURES = "pictures"
@@ -63,9 +64,9 @@ def _counted(found: dict[Verdict, int]) -> str:
 
 
 def _row(finding: Finding) -> str:
-    why = f"<br>*{_cell(finding.why)}*" if finding.why else ""
+    why = f"<br>*{_cell(typeset(finding.why))}*" if finding.why else ""
     told = _cell(told_number(finding)) + why
-    return f"| {_cell(finding.sentence)} | {finding.verdict.value} | {told} |"
+    return f"| {_cell(typeset(finding.sentence))} | {finding.verdict.value} | {told} |"
 
 
 def _cell(text: str) -> str:

@@ -1,5 +1,6 @@
 """Numbers, verdicts and small tables as people read them."""
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -10,6 +11,7 @@ from herringbone.thesis.working import Done
 
 _DIGITS = 4
 _PLAIN = 5
+_WITH_UNIT = r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=%|N m|N/m|N/mm|µm|mm|m/s|r/min|MPa|Hz|kHz|kg|ms|dB)"
 MOST_ROWS, MOST_COLUMNS = 30, 12
 """Size of a table that the report shows; larger ones are data beside it."""
 
@@ -26,13 +28,19 @@ def number(value: float) -> str:
     return f"{mantissa}·10{exponent}".replace("-", "\N{MINUS SIGN}")
 
 
+def typeset(text: str) -> str:
+    """A text with true minus signs, and numbers that stay with their units."""
+    text = re.sub(r"(?<![\w.\])])-(?=\d)", "\N{MINUS SIGN}", text)
+    return re.sub(_WITH_UNIT, "\N{NO-BREAK SPACE}", text)
+
+
 def told_number(finding: Finding) -> str:
     """Number, unit, and what it is."""
     if finding.number is None:
-        return finding.what
+        return typeset(finding.what)
     unit = f" {finding.unit}" if finding.unit else ""
     what = f" {finding.what}" if finding.what else ""
-    return f"{number(finding.number)}{unit}{what}"
+    return typeset(f"{number(finding.number)}{unit}{what}")
 
 
 def counts(findings: Sequence[Finding]) -> dict[Verdict, int]:

@@ -10,12 +10,14 @@ from herringbone.analysis.leaner.cuts import cuts_of, modes_of
 from herringbone.analysis.leaner.estimate import Estimates
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import Lean, held_states
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.measured import values_at
 from herringbone.core import StructureError
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 
 _SPEED = 1310.0 * math.pi / 30.0
@@ -23,8 +25,9 @@ _SPEED = 1310.0 * math.pi / 30.0
 
 @cache
 def _rig() -> tuple[SteadySolver, SteadyState, tuple[Question, ...]]:
-    solver, point, _ = prepared_solver(
-        "test_rig", speed=_SPEED, values={"gear_mesh.symmetry_deviation": 0.0}, tolerance=1e-5
+    point, still = Point(speed=_SPEED), {"gear_mesh.symmetry_deviation": 0.0}
+    solver, _ = prepared_solver(
+        "test_rig", point=point, wishes=Wishes(values=still), tolerance=1e-5
     )
     state = solver.solve(point)
     questions = tuple(

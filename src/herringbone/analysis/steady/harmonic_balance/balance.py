@@ -141,6 +141,8 @@ class Balance:
             change = self._change(last.z, now.z)
             if change <= close or merit <= _ROUNDING:
                 break
+        if last.response.orders.size != now.response.orders.size:
+            last, step = now, on(now.response.orders, step, stepped)  # it ended on new orders
         moved = np.zeros_like(now.channels)
         moved[:count] = step
         return Orbit(

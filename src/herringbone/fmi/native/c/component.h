@@ -56,6 +56,9 @@ typedef struct {
     uint32_t column_count;
     const char *header;
     uint32_t header_count;
+    const char *section; /* the part of the file behind the line "# section: ..."; NULL: all of it */
+    uint32_t file;       /* the text whose file it is: itself, or another one, of which alone FMI
+                            knows, as a String */
 } HbText;
 
 /* Why the load or verify kernel refuses: `text` is the resource file at fault (index in `texts`; -1:

@@ -68,6 +68,8 @@ static Status refuse_resources(Instance *instance, const FmuState *state) {
     Message files = {""};
     for (uint32_t k = 0; k < hb_component.texts_count; k++) {
         Message before = files;
+        if (hb_component.texts[k].file != k)
+            continue;
         message_write(&files, "%s%s%s = '%s'", before.text, k ? ", " : "",
                       hb_component.texts[k].name, state->texts->values[k]);
     }

@@ -34,8 +34,9 @@ Status instance_enter_initialisation(Instance *instance) {
     return STATUS_OK;
 }
 
-/* Path of a resource file; NULL if there is none. */
-static char *resource_path(Instance *instance, uint32_t k) {
+/* Path of a table's resource file; NULL if there is none. */
+static char *resource_path(Instance *instance, uint32_t table) {
+    uint32_t k = hb_component.texts[table].file;
     const char *text = instance->texts->values[k];
     char *path = platform_join(instance->resources, text);
     if (path && platform_is_file(path))
@@ -117,7 +118,8 @@ static Status read_files(Instance *instance, char *files[], int64_t *shape, Numb
         if (!flat_csv_read(files[k], &hb_component.texts[k], numbers, shape + 2 * k, &message))
             return instance_fail(instance, STATUS_ERROR, "%s: %s", instance->name, message.text);
         message_write(&message, "%s: read %s", instance->name, files[k]);
-        log_write(&instance->log, STATUS_OK, &message);
+        if (hb_component.texts[k].file == k)
+            log_write(&instance->log, STATUS_OK, &message);
     }
     return STATUS_OK;
 }

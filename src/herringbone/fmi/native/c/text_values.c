@@ -3,7 +3,8 @@
 #include "instance.h"
 
 static bool is_text(uint32_t reference) {
-    return reference - hb_component.size < hb_component.texts_count;
+    uint32_t k = reference - hb_component.size;
+    return k < hb_component.texts_count && hb_component.texts[k].file == k;
 }
 
 Status instance_get_texts(Instance *instance, const uint32_t references[], size_t count,

@@ -65,9 +65,9 @@ static size_t count_of(const char *text, const char *characters) {
 }
 
 static bool allocate(Table *table, Message *message) {
-    size_t lines = count_of(table->text, "\r\n") + 1;
+    size_t lines = count_of(table->start, "\r\n") + 1;
     table->rows = malloc(lines * sizeof *table->rows);
-    table->fields = malloc((lines + count_of(table->text, ",")) * sizeof *table->fields);
+    table->fields = malloc((lines + count_of(table->start, ",")) * sizeof *table->fields);
     if (table->rows && table->fields)
         return true;
     message_write(message, "cannot read %s: out of memory", table->file);
@@ -77,12 +77,12 @@ static bool allocate(Table *table, Message *message) {
 static bool cut_units(Table *table, Message *message) {
     static const char mark[] = "# units:";
     size_t length = strlen(mark);
-    if (strncmp(table->text, mark, length) != 0 || strcspn(table->text + length, "\r\n") == 0) {
+    if (strncmp(table->start, mark, length) != 0 || strcspn(table->start + length, "\r\n") == 0) {
         message_write(message, "%s: the first line must be '# units: <column> <unit>, ...'",
                       table->file);
         return false;
     }
-    table->units = table->text + length;
+    table->units = table->start + length;
     return true;
 }
 
@@ -99,8 +99,8 @@ static void keep_header(Table *table, char *line, size_t number, const char *hea
 static bool cut(Table *table, const char *header, Message *message) {
     if (!cut_units(table, message))
         return false;
-    char *next = end_line(table->text);
-    for (size_t number = 2; next; number++) {
+    char *next = end_line(table->start);
+    for (size_t number = table->first_line + 1; next; number++) {
         char *line = next;
         next = end_line(line);
         if (*line == '#')
@@ -111,9 +111,48 @@ static bool cut(Table *table, const char *header, Message *message) {
     return true;
 }
 
-bool csv_table_read(Table *table, const char *file, const char *header, Message *message) {
-    *table = (Table){.file = file, .text = platform_read_text(file, message)};
-    return table->text && allocate(table, message) && cut(table, header, message);
+static const char SECTION[] = "# section: ";
+
+/* Start of the line behind this one; at the end of the text, that end. */
+static char *line_behind(char *line) {
+    char *end = line + strcspn(line, "\r\n");
+    return end + (end[0] == '\r' && end[1] == '\n' ? 2 : *end != '\0');
+}
+
+static bool begins_section(const char *line, const char *section) {
+    size_t length = strlen(SECTION);
+    if (strncmp(line, SECTION, length) != 0)
+        return false;
+    size_t found = strcspn(line + length, "\r\n");
+    return !section || (found == strlen(section) && !strncmp(line + length, section, found));
+}
+
+/* Narrow the text down to a section. */
+static bool find_section(Table *table, const char *section, Message *message) {
+    char *line = table->text;
+    while (*line && !begins_section(line, section)) {
+        line = line_behind(line);
+        table->first_line++;
+    }
+    if (!*line) {
+        message_write(message, "%s: it has no line '%s%s'", table->file, SECTION, section);
+        return false;
+    }
+    table->start = line = line_behind(line);
+    table->first_line++;
+    while (*line && !begins_section(line, NULL))
+        line = line_behind(line);
+    *line = '\0';
+    return true;
+}
+
+bool csv_table_read(Table *table, const char *file, const char *section, const char *header,
+                    Message *message) {
+    *table = (Table){.file = file, .text = platform_read_text(file, message), .first_line = 1};
+    table->start = table->text;
+    if (!table->text || (section && !find_section(table, section, message)))
+        return false;
+    return allocate(table, message) && cut(table, header, message);
 }
 
 void csv_table_free(Table *table) {

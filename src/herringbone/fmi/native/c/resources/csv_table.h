@@ -14,6 +14,8 @@ typedef struct {
 typedef struct {
     const char *file;
     char *text;
+    char *start; /* of what is read, at this line of the file */
+    size_t first_line;
     char *units;  /* what follows "# units:" in the first line */
     char *header; /* what follows "# <header>:" in the last such line; NULL: there is none */
     size_t header_line;
@@ -22,9 +24,12 @@ typedef struct {
     size_t field_count, row_count;
 } Table;
 
-/* Read a file; `header` is the name of its header line, "": it has none. False, with a message, if there is none, its first line does not begin with
-   "# units:", or a quote is not closed. Free the table in any case. */
-bool csv_table_read(Table *table, const char *file, const char *header, Message *message);
+/* Read a file, or the section of it behind the line "# section: ...", up to the next such line; NULL:
+   all of it. `header` is the name of its header line, "": it has none. False, with a message, if
+   there is none, its first line does not begin with "# units:", or a quote is not closed. Free the
+   table in any case. */
+bool csv_table_read(Table *table, const char *file, const char *section, const char *header,
+                    Message *message);
 void csv_table_free(Table *table);
 
 /* Cut spaces off both ends, in place. */

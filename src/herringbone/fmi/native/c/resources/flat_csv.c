@@ -243,7 +243,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
 bool flat_csv_read(const char *file, const HbText *grammar, Numbers *numbers, int64_t shape[2],
                    Message *message) {
     Table table;
-    bool read = csv_table_read(&table, file, grammar->header, message) &&
+    bool read = csv_table_read(&table, file, grammar->section, grammar->header, message) &&
                 append(&table, grammar, numbers, shape, message);
     csv_table_free(&table);
     return read;

@@ -1,0 +1,1 @@
+"""Vibration that was measured: files of others, and prediction beside them."""

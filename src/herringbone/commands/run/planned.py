@@ -1,0 +1,88 @@
+"""`run --plan`: what a scene asks is planned, and the choice is run."""
+
+import argparse
+import json
+import math
+
+from herringbone.commands.options import files_of_parts, start_values
+from herringbone.commands.output import say, show
+from herringbone.core import OutcomeKind, ParameterError
+from herringbone.scenes.asking import Range
+from herringbone.studies.planning.plan import Plan, plan
+from herringbone.studies.planning.text import plan_text
+
+_R_MIN = 30.0 / math.pi
+_CHOSEN = ("algorithm", "step", "tolerance", "fuse", "record", "slow", "start", "t_end")
+
+
+def planned(options: argparse.Namespace) -> Plan:
+    """The plan, which is told.
+
+    Raises:
+        ParameterError: something is given that a plan chooses, or that it cannot take.
+        HerringboneError: see `studies.planning.plan`.
+    """
+    taken = [name for name in (*_CHOSEN, "replace") if getattr(options, name)]
+    if taken:
+        names = ", ".join(f"--{name.replace('_', '-')}" for name in taken)
+        raise ParameterError(f"--plan chooses the model and the solver; drop {names}")
+    files = files_of_parts(options)
+    found = plan(
+        options.system,
+        scene=options.scene,
+        values=start_values(options.set),
+        gear=files.gear,
+        housing=files.housing,
+    )
+    say("\n".join(plan_text(found)))
+    return found
+
+
+def as_chosen(options: argparse.Namespace, found: Plan) -> argparse.Namespace:
+    """Options of the fused run that a plan of a transient chose."""
+    columns = dict.fromkeys(c for question in found.questions for c in question.columns)
+    own = {"fuse": True, "step": found.choice.step, "record": list(columns), "plan": False}
+    return argparse.Namespace(**{**vars(options), **own})
+
+
+def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
+    """Solve for the steady state that a plan chose, show it, and write files if it is asked for.
+
+    Raises:
+        ParameterError: it is asked over a range.
+        HerringboneError: see `running.steady`.
+    """
+    from herringbone.analysis.steady.report import (  # noqa: PLC0415 (numba)
+        steady_summary,
+        steady_text,
+        write_steady,
+    )
+    from herringbone.running.steady import steady  # noqa: PLC0415
+
+    at = found.scene.operating
+    state = steady(
+        options.system,
+        scene=found.scene,
+        speed=_one(at.speed, "speed", _R_MIN, "r/min"),
+        torque=_one(at.torque, "torque", 1.0, "N m"),
+        tolerance=found.tolerance,
+    )
+    for note in state.notes:
+        say(note)
+    if options.output:
+        write_steady(state, options.output)
+    show(json.dumps(steady_summary(state)) if options.json else "\n".join(steady_text(state)))
+    return OutcomeKind.COMPLETED if state.converged else OutcomeKind.DIVERGED
+
+
+def _one(ends: Range | None, name: str, factor: float, unit: str) -> float | None:
+    if ends is None:
+        return None
+    low, high = ends
+    if low != high:
+        raise ParameterError(
+            f"--plan: {name} from {low * factor:.5g} to {high * factor:.5g} {unit}: a run is "
+            "at one operating point; use 'herringbone plan SYSTEM --scene S -o FOLDER', "
+            f"then 'herringbone sweep SYSTEM --scene FOLDER/scene.toml --{name} START:STOP:COUNT'"
+        )
+    return low

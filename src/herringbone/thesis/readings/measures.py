@@ -1,0 +1,87 @@
+"""Figures of a motion on which the thesis' sentences are judged."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from herringbone.thesis.names import BEARINGS, GEAR
+from herringbone.thesis.readings.motion import Motion
+
+WINDOW = 0.02
+"""Length of what the thesis evaluates [s]."""
+SETTLED, AS_PUBLISHED = "settled", "window of 20 ms"
+"""Evaluations: over whole periods, and over 20 ms, averaged over where they begin."""
+EVALUATIONS = SETTLED, AS_PUBLISHED
+LEVEL, SWING = "level", "swing"
+"""Root mean square of the alternating part, and half of what it goes up and down."""
+GEARS = "pinion", "wheel"
+_SIDES = "left", "right"
+
+
+def measures(motion: Motion) -> dict[tuple[str, str, str], float]:
+    """Figures by what, kind and evaluation, SI units.
+
+    What: `pinion.v_z` and its like of the gears (both halves, root mean square), `pinion.f_y` of
+    the bearings, `pinion.seat_radial` and `pinion.seat_axial` of the housing's velocity, sensors
+    `A`, `B`, `C`; and, with the kind "mean", secant stiffness `left.stiffness`, `right.stiffness`.
+    """
+    found: dict[tuple[str, str, str], float] = {}
+    for what, signals in _groups(motion).items():
+        for evaluation in EVALUATIONS:
+            pieces = _pieces(signals, motion, evaluation)
+            off = pieces - pieces.mean(axis=-1, keepdims=True)
+            squares = np.sum(np.mean(np.square(off), axis=(1, 2))) / _directions(what, len(signals))
+            found[what, LEVEL, evaluation] = float(np.sqrt(squares))
+            swing = 0.5 * np.ptp(off, axis=-1).mean(axis=-1)
+            found[what, SWING, evaluation] = float(np.sqrt(np.mean(swing**2)))
+    for side in _SIDES:
+        force, deflection = (
+            motion.signals[f"{GEAR}.mesh_{side}.{q}"] for q in ("force", "deflection")
+        )
+        touching = deflection.mean() > 0.0
+        stiffness = float(force.mean() / deflection.mean()) if touching else 0.0
+        found[f"{side}.stiffness", "mean", SETTLED] = stiffness
+        found[f"{side}.load", "mean", SETTLED] = float(force.mean())
+    return found
+
+
+def _groups(motion: Motion) -> dict[str, np.ndarray]:
+    """Signals (signals, n) by what they tell."""
+    s = motion.signals
+    found: dict[str, list[np.ndarray]] = {}
+    for gear in GEARS:
+        halves = [f"{gear}_{side}" for side in _SIDES]
+        for kind in ("s_y", "v_y", "s_z", "v_z"):
+            found[f"{gear}.{kind}"] = [s[f"{GEAR}.{h}.{kind}"] for h in halves]
+        for axis in "yz":
+            found[f"{gear}.f_{axis}"] = [s[f"{BEARINGS}.shaft.{h}.f_{axis}"] for h in halves]
+        found[f"{gear}.seat_radial"] = [s[h, axis] for h in halves for axis in "xy"]
+        found[f"{gear}.seat_axial"] = [s[h, "z"] for h in halves]
+    for sensor in ("A", "B", "C"):
+        found[sensor] = [s[sensor, "z"]]
+    return {what: np.array(rows) for what, rows in found.items()}
+
+
+def _directions(what: str, signals: int) -> int:
+    """By what squares are divided: both directions of a radial motion add up."""
+    return signals // 2 if what.endswith("seat_radial") else signals
+
+
+def _pieces(signals: np.ndarray, motion: Motion, evaluation: str) -> np.ndarray:
+    """Signals (signals, pieces, n) cut into what is evaluated at once."""
+    count = signals.shape[1]
+    length = round(WINDOW / motion.step)
+    if evaluation == SETTLED or motion.repeats or length >= count:
+        return signals[:, None, :]
+    pieces = math.ceil(count / length)
+    starts = np.arange(pieces) * count // pieces
+    places = (starts[:, None] + np.arange(length)) % count
+    return signals[:, places]
+
+
+def series(values: Sequence[float]) -> float:
+    """By how much the least step of a series grows, over what it grows from."""
+    steps = [b / a - 1.0 if a > 0.0 else math.inf for a, b in pairwise(values)]
+    return min(steps)

@@ -1,0 +1,121 @@
+"""Plans: what they choose holds where it was not tested, and what they write can be run."""
+
+import json
+import math
+import re
+from functools import cache
+
+import pytest
+
+import herringbone as hb
+from herringbone.analysis.leaner.form import Form
+from herringbone.analysis.leaner.question import apart, lines_of
+from herringbone.core import ParameterError
+from herringbone.running.lean import lean_of
+from herringbone.running.prepared import Wishes
+from herringbone.running.steady import prepared_solver
+from herringbone.scenes import Ask, Motion, Operating, Scene, read_scene
+from herringbone.studies.planning.plan import Plan, plan
+from herringbone.studies.planning.points import points_to_probe, points_to_test
+from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
+from herringbone.studies.planning.text import plan_summary, plan_text, write_plan
+
+_R_MIN = math.pi / 30.0
+_STILL = {"gear_mesh.symmetry_deviation": 0.0}
+_RANGE = (1200.0 * _R_MIN, 1400.0 * _R_MIN)
+
+
+def _scene(ask: Ask, **more) -> Scene:
+    return Scene("asking", values=_STILL, asks=(ask,), **more)
+
+
+@cache
+def _levels() -> Plan:
+    ask = Ask(("bearing force",), Form.LEVEL, 0.05)
+    return plan("test_rig", scene=_scene(ask, operating=Operating(speed=_RANGE)))
+
+
+def test_the_choice_meets_its_tolerance_where_nothing_was_tested():
+    found = _levels()
+    assert found.choice.measured is not None
+    assert found.choice.measured.ratio <= SHARE
+    whole, _ = prepared_solver("test_rig", wishes=Wishes(values=_STILL), tolerance=1e-4)
+    lean = whole.leaner(lean_of(found.scene))
+    (question,) = found.questions
+    for speed in (1217.0, 1283.0, 1391.0):
+        point = hb.Point(speed=speed * _R_MIN)
+        ours, theirs = (lines_of(solver.solve(point), question) for solver in (lean, whole))
+        assert apart(question, ours, theirs).error <= question.tolerance
+
+
+def test_the_whole_ladder_is_there_and_says_why():
+    found = _levels()
+    names = {rung.name: rung for rung in found.rungs}
+    assert len(found.rungs) <= 200
+    for name in ("housing driven one way", "housing rigid", "torsion only"):
+        assert names[name].estimate.error > 0.3
+        assert "estimate" in names[name].why
+    measured = [rung for rung in found.rungs if rung.estimate and rung.measured]
+    assert measured
+    assert sum(not rung.why for rung in found.rungs) == 1
+    run = next(rung for rung in found.rungs if rung.solver == FUSED)
+    assert run.cost > 5.0 * found.choice.cost  # 0.2 s to settle, against some milliseconds
+    text = "\n".join(plan_text(found))
+    assert "<- choice" in text
+    assert "Planning took" in text
+    assert json.loads(json.dumps(plan_summary(found)))["choice"] == found.choice.name
+
+
+def test_what_is_written_runs_and_states_its_error(tmp_path):
+    found = _levels()
+    file = write_plan(found, tmp_path)[0]
+    scene = read_scene(file)
+    assert scene.model.hold == found.choice.lean.held
+    error = f"{100.0 * found.choice.measured.error:.2g} %"
+    within = hb.steady("test_rig", scene=file, speed=1300.0 * _R_MIN)
+    assert any("leaner model" in n and error in n and "not known" not in n for n in within.notes)
+    beyond = hb.steady("test_rig", scene=file, speed=2000.0 * _R_MIN)
+    assert any("not known at this operating point" in note for note in beyond.notes)
+    with pytest.raises(ParameterError, match="with fuse"):
+        hb.run("test_rig", scene=file, t_end=1e-3)
+
+
+def test_tests_are_not_probes():
+    operating = Operating(speed=(100.0, 300.0), torque=(50.0, 200.0))
+    assert not set(map(str, points_to_probe(operating))) & set(map(str, points_to_test(operating)))
+    one = Operating(speed=(100.0, 100.0))
+    assert points_to_test(one) == points_to_probe(one)
+
+
+def test_of_a_hundredth_of_a_percent_nothing_beyond_half_of_it_is_left_out():
+    found = plan("test_rig", scene=_scene(Ask(("seat velocity",), tolerance=1e-4)))
+    for rung in found.rungs:
+        if rung.measured is not None and not rung.why:
+            assert rung.measured.error <= 0.5e-4
+    assert found.choice.solver == STEADY
+
+
+def test_a_transient_is_answered_by_steps_that_half_of_them_confirm():
+    ask = Ask(("torque",), Form.SIGNAL, 1e-3)
+    scene = _scene(ask, t_end=0.02, operating=Operating(Motion.TRANSIENT))
+    found = plan("test_rig", scene=scene)
+    assert found.choice.solver == FUSED
+    assert 0.0 < found.choice.measured.error <= 1e-3
+    assert found.choice.whole
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        (Scene("quiet"), "scene quiet: it asks nothing; add [[ask]]"),
+        (_scene(Ask(("smell",))), "ask: test_rig has no output 'smell'; ask for groups"),
+        (
+            _scene(Ask(("torque",)), operating=Operating(Motion.TRANSIENT)),
+            "ask: spectrum of torque: a transient has no period",
+        ),
+    ],
+)
+def test_refused_in_one_line(scene, message):
+    with pytest.raises(ParameterError, match=re.escape(message)) as error:
+        plan("test_rig", scene=scene)
+    assert "\n" not in str(error.value)
