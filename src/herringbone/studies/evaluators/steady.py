@@ -129,7 +129,7 @@ def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figur
     for name, own in {**state.channels, **{name: [name] for name in chosen}}.items():
         unit = state.unit(own[0])
         amplitudes = state.amplitudes(name)
-        figures |= prefixed(name, _moments(amplitudes), unit)
+        figures |= prefixed(name, _moments(amplitudes, state.numbers), unit)
         size = np.sqrt(np.mean(np.square(np.abs(amplitudes[:, 1:])), axis=0))
         orders = state.mesh_orders[1:]
         kept = slice(None) if known else slice(0)
@@ -147,16 +147,26 @@ def _renewable(prepared: Point, values: Point) -> bool:
     return not any(isinstance(v, str) and prepared[n] != v for n, v in values.items())
 
 
-def _moments(amplitudes: np.ndarray) -> dict[str, float]:
-    """rms, mean and peak of columns from their harmonics (columns, harmonics), see `levels`."""
+def _moments(amplitudes: np.ndarray, numbers: np.ndarray) -> dict[str, float]:
+    """rms, mean and peak of columns, see `levels`.
+
+    Args:
+        amplitudes: (columns, harmonics), complex; the first is the mean.
+        numbers: (harmonics,) periods of each in the period, ascending from 0; where run-outs make
+            the period long, most numbers are not among them.
+    """
     means = amplitudes[:, 0].real
     squares = 0.5 * np.sum(np.square(np.abs(amplitudes[:, 1:])), axis=1)
-    places = 4 * amplitudes.shape[1]
-    off = amplitudes.copy()
-    off[:, 0] = 0.0
-    signals = np.fft.irfft(0.5 * places * off, places, axis=1)
+    at = numbers[1:].astype(int)
+    count = int(numbers[-1]) + 1
+    places = 4 * count
+    peak = 0.0
+    for own in amplitudes:  # one by one: a period may have thousands of meshes
+        off = np.zeros(count, complex)
+        off[at] = 0.5 * places * own[1:]
+        peak = max(peak, float(np.abs(np.fft.irfft(off, places)).max()))
     return {
         "rms": float(np.sqrt(np.mean(squares))),
         "mean": float(means[0]) if means.size == 1 else float(np.sqrt(np.mean(np.square(means)))),
-        "peak": float(np.abs(signals).max()),
+        "peak": peak,
     }
