@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from herringbone.running.modes import modes
     from herringbone.running.own_master import connections, start_values
     from herringbone.running.steady import steady
-    from herringbone.scenes import Scene
+    from herringbone.scenes import Ask, Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LI",
+    "Ask",
     "FixedPoint",
     "GaussSeidel",
     "HerringboneError",
@@ -92,6 +93,7 @@ _WHERE = {
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result.result",
     "Role": "herringbone.core.declaring.roles",
+    "Ask": "herringbone.scenes",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "modes": "herringbone.running.modes",
