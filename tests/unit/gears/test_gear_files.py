@@ -54,6 +54,30 @@ def message(tmp_path):
     return read
 
 
+def test_one_relief_is_that_of_both_gears(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(GOOD.replace('["5 um", 0.0]', '"12 um"'), encoding="utf-8")
+    assert read_gear_file(file).modification.tip_relief == (12e-6, 12e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("face_width = 0.0473", "face_width = 47.3", r"433 times .*write '47.3 mm'"),
+        ('["95 mm", 0.310]', "[95, 310]", "groove diameter 95000 mm must lie between"),
+        ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
+        ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
+        ("[table]", "[mesh]\nbacklash = [0, 0]\n[table]", "must be one value"),
+        ("[table]", "[table]\nloads = 5.0", "must be a list"),
+    ],
+)
+def test_lengths_without_their_unit_and_lists_out_of_place(message, old, new, said):
+    """47.3 m over the pinion's 27 * 3.5 mm / cos 30 deg; 5 m over the module."""
+    found = message(old, new)
+    assert re.search(said, found), found
+    assert "bad.toml: " in found
+
+
 def test_units_become_si(tmp_path):
     file = tmp_path / "pair.toml"
     file.write_text(GOOD, encoding="utf-8")
