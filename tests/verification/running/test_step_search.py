@@ -67,4 +67,5 @@ def test_what_is_noise_ends_the_search(kinds, tmp_path):
     assert result.outcome.completed
     (note,) = (note for note in result.info.notes if note.startswith("tolerance = 1e-06"))
     assert "not met: " in note
+    assert result.outcome.message.startswith("tolerance = 1e-06 is not met: error ")
     assert result.verification.error > 1e-6

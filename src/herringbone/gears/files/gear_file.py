@@ -5,6 +5,7 @@ number_of_teeth = [27, 81]
 normal_module = "3.5 mm"         # text with a unit, or a number in SI
 helix_angle = "30 deg"
 face_width = "47.3 mm"           # of one half
+profile_shift_coefficient = [0.0, "auto"]  # "auto", None in Python: follows from the other values
 
 [modification]                   # optional; see `Modification`
 tip_relief = ["5 um", "5 um"]    # or one value for both
@@ -39,6 +40,7 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.mesh_assumptions import MeshAssumptions
+from herringbone.gears.stiffness.methods import AUTO
 
 _LENGTHS = {
     "normal_module", "face_width", "center_distance", "tip_radius", "tooth_thickness_allowance",
@@ -64,6 +66,11 @@ _LISTS = {
     "stub_length", "tip_relief", "grade", "loads",
 }  # fmt: skip
 """Keys of several values."""
+_COMPLETED = {
+    "center_distance", "profile_shift_coefficient", "root_fillet_radius_coefficient", "tip_radius",
+    "groove_diameter", "torque", "loads", "backlash",
+}  # fmt: skip
+"""Keys that follow from the others where it says "auto", None in Python."""
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
 
@@ -132,7 +139,7 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
     for name, value in section.items():
         if isinstance(value, list) and name not in _LISTS:
             raise ResourceError(f"{where} {name} = {value} must be one value")
-        if name == "loads" and not isinstance(value, list):
+        if name == "loads" and not isinstance(value, list) and value != AUTO:
             raise ResourceError(f"{where} {name} = {value!r} must be a list, from zero on")
     return {
         name: [_value(name, item, f"{where} {name}") for item in value]
@@ -143,6 +150,8 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def _value(name: str, value: object, where: str) -> Any:  # noqa: ANN401 (by the name)
+    if name in _COMPLETED and value == AUTO:
+        return None
     if name in _TEXTS:
         if not isinstance(value, str):
             raise ResourceError(f"{where} = {value!r} must be a text")
