@@ -69,6 +69,7 @@ def test_what_is_noise_ends_the_search(kinds, tmp_path, capsys):
     assert result.outcome.completed
     (note,) = (note for note in result.info.notes if note.startswith("tolerance = 1e-06"))
     assert "not met: " in note
+    assert result.outcome.message.startswith("tolerance = 1e-06 is not met: error ")
     assert result.verification.error > 1e-6
     assert result.verification.missed
     given = ["--tolerance", "1e-6", "--t-end", "0.02", "--start", "rest"]

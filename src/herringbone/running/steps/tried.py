@@ -175,6 +175,9 @@ class Search:
         note = f"tolerance = {self._tolerance:g}: steps of {last.step:g} s, {size}runs: {runs}"
         notes = (*result.info.notes, note + self._limit())
         result = replace(result, info=replace(result.info, notes=notes))
+        if found and last.error > self._tolerance and result.outcome.completed:
+            said = f"tolerance = {self._tolerance:g} is not met: error {last.error:.2g}; {self.why}"
+            result = replace(result, outcome=replace(result.outcome, message=said))
         if found:
             verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
             if self._wished:
