@@ -18,6 +18,7 @@ from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
+from herringbone.running.commanded import operated
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.fused.fused import (
     FusedAsked,
@@ -48,6 +49,8 @@ def run(
     system: str | Path | System,
     *,
     scene: str | Path | Scene | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
     algorithm: str | Algorithm | None = None,
     step: float | None = None,
     tolerance: float | None = None,
@@ -76,6 +79,9 @@ def run(
     Args:
         system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene; the system's "loaded" if not given.
+        speed: of the pinion [rad/s], where the system declares a set point of it, or nothing is
+            joined to its gear pair; the scene's if not given, as in `herringbone.sweep`.
+        torque: at the pinion [N m], likewise.
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
             default, takes li if all parts can repeat a step, and jacobi otherwise.
         step: communication step size [s]; the algorithm's default if not given, or, if all parts
@@ -141,12 +147,12 @@ def run(
         structure, chosen, notes = prepared(
             system,
             scene,
-            wishes,
+            operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
-            said = (*notes, *lean_notes(chosen.model, values or {}))
+            said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
             wanted = FusedAsked(step, tolerance, tuple(record), notes=said)
             return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
         refuse_lean(chosen)

@@ -67,6 +67,7 @@ def _missed(found: "Verification | None") -> int:
 
 def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":
     """The result of a run, with its files."""
+    from herringbone.analysis.steady.report import per_second  # noqa: PLC0415
     from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
 
@@ -90,6 +91,8 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         result = api.run(
             options.system,
             **optional,
+            speed=None if options.speed is None else per_second(options.speed),
+            torque=options.torque,
             fmu=options.fmu,
             replace_parts=replacements(options),
             values=start_values(options.set),

@@ -15,9 +15,8 @@ from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError
-from herringbone.running.commanded import commanded
+from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.settled import with_known_values
 from herringbone.running.steady import prepared_solver
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
