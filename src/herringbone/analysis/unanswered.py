@@ -45,9 +45,10 @@ def unanswered(result: Result) -> dict[str, list[str]]:
 
 
 def _missing(result: Result) -> Iterator[tuple[str, str]]:
-    told = mean_powers(result)
+    machines = result.parts_with(Role.DRIVE) or result.parts_with(Role.LOAD)
+    told = not machines and mean_powers(result) is not None  # by flanges, in place of supplies
     for what, role, quantity, place in _QUESTIONS:
-        if what != _POWER or told is None:
+        if what != _POWER or not told:
             yield from ((what, why) for why in _unoffered(result, role, quantity, place))
     if result.parts_with(Role.GEAR_PAIR):
         yield from (("number of teeth, mesh orders", why) for why in _untoothed(result))
