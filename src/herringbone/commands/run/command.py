@@ -148,7 +148,10 @@ class _Report:
         self._bar.close()
         shown = self._output.shown
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
-            say(f"{_ended(result.outcome)}, and are being written to {shown}")
+            say(
+                f"{_ended(result.outcome)}, and are being written to {shown}; Ctrl-C again ends at "
+                f"once, and 'herringbone run --resume {shown}' goes on from there"
+            )
         self._output.write(result)
         if result.outcome.unstable:
             self._bar.tell(f"results are in {shown}; looking for what grows, and remedies")
