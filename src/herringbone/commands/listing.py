@@ -1,11 +1,20 @@
 """What `herringbone list` shows."""
 
+from pathlib import Path
+
+from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import COMPONENTS, component
+from herringbone.core import HerringboneError, StructureError
 from herringbone.core.declaring.variable import Causality, Variable
+from herringbone.core.names import meant, shown
+from herringbone.core.places.files import is_folder
 from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.algorithms import ALGORITHMS
+from herringbone.cosim.ssp.format import is_ssp
+from herringbone.cosim.structure.system import System
 from herringbone.cosim.structure.system_file import FILE_NAME
+from herringbone.running.loading import load_system
 from herringbone.scenes import read_scene
 
 STUDIES = "studies"
@@ -44,12 +53,59 @@ def _start(variable: Variable) -> str:
 
 
 def described(name: str) -> str:
-    """A component, or the studies.
+    """A component, a system, or the studies.
 
     Raises:
-        StructureError: there is no such component.
+        StructureError: there is neither.
     """
-    return studies() if name == STUDIES else describe_component(name)
+    if name == STUDIES:
+        return studies()
+    if name in COMPONENTS:
+        return describe_component(name)
+    shipped = [file.parent.name for file in sorted(systems_folder().glob(f"*/{FILE_NAME}"))]
+    if name in shipped or is_folder(Path(name)) or is_ssp(Path(name)):
+        return describe_system(name)
+    hint = meant(name, [*COMPONENTS, *shipped, STUDIES])
+    raise StructureError(
+        f"there is no component {shown(name)}; {hint}there are: {', '.join(COMPONENTS)}; nor is it "
+        f"a system: {', '.join(shipped)}, a folder or an .ssp file; nor '{STUDIES}'"
+    )
+
+
+def describe_system(name: str) -> str:
+    """Parts, ports, set points and scenes of a system.
+
+    Raises:
+        HerringboneError: it cannot be read.
+    """
+    system, folder = load_system(name)
+    about = "" if is_ssp(folder) else read_toml(folder / FILE_NAME).get("description", "")
+    lines = [f"{system.name}: {about}" if about else system.name, "", "parts:"]
+    lines += _table([(str(part.name), part.component or "foreign FMU") for part in system.parts])
+    ports: list[tuple[str, ...]] = [
+        (f"{part.name}.{port.name}", str(port.kind))
+        for part in system.parts
+        if part.component
+        for port in component(part.component).declaration.ports
+    ]
+    if ports:
+        lines += ["", "ports:", *_table(ports)]
+    if system.sensors:
+        lines += ["", "sensors:"]
+        lines += _table([(n, f"of {spec.part}") for n, spec in system.sensors.items()])
+    lines += ["", "set points:"]
+    lines += _table([(f"--{n}", _set_point(system, n)) for n in (SPEED, TORQUE)])
+    if scenes := sorted(Path(folder).glob("scenes/*.toml")):
+        lines += ["", "scenes:"]
+        lines += _table([(file.stem, read_scene(file).description) for file in scenes])
+    return "\n".join([*lines, "", "'herringbone list COMPONENT' shows the variables of a part"])
+
+
+def _set_point(system: System, name: str) -> str:
+    try:
+        return addressed(system, name)
+    except HerringboneError as error:
+        return f"none: {error}"
 
 
 def studies() -> str:

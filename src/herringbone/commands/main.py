@@ -1,13 +1,11 @@
 """Command line: what `herringbone --help` shows."""
 
 import argparse
-import re
 import traceback
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, NoReturn
 
 import herringbone
 from herringbone.commands import bench as bench_command
@@ -32,6 +30,7 @@ from herringbone.commands.options import (
     start_values,
 )
 from herringbone.commands.output import as_command, check_writable, say, show
+from herringbone.commands.parser import BAD_INPUT, Parser
 from herringbone.commands.run import command as run_command
 from herringbone.commands.run import options as run_options
 from herringbone.commands.studies import modes as modes_command
@@ -43,11 +42,8 @@ from herringbone.core import (
     EXIT_CODES,
     HerringboneError,
     OutcomeKind,
-    one_line,
 )
 from herringbone.cosim.cell.policy import Policy, housing_of_strangers
-
-BAD_INPUT = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,27 +73,17 @@ def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
     )
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line, and to which -1e-5 is a number and no option."""
-
-    def __init__(self, *args: Any, **options: Any) -> None:  # noqa: ANN401 (argparse's own)
-        super().__init__(*args, **options)
-        self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong, and end with the exit code of bad input."""
-        self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)}; see '{self.prog} --help'\n")
-
-
 @cache
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
+    parser = Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
     parser.add_argument("--version", action="version", version=herringbone.__version__)
     parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add = partial(add_command, commands)
-    sub = add("list", _list, "list components, systems, scenes, algorithms; or one component")
-    sub.add_argument("name", nargs="?", help="component whose variables are shown; or studies")
+    sub = add("list", _list, "list components, systems, scenes, algorithms; or one of them")
+    sub.add_argument(
+        "name", nargs="?", help="component, whose variables are shown; system; or studies"
+    )
     build_command.add_options(add("build", _build, "build the Python or the native FMUs"))
     sub = add("check", check_command.run, "check an FMU: is it sound, and what is it")
     check_command.add_options(sub)
@@ -161,7 +147,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    return EXIT_CODES[run_command.run(options)]
+    return run_command.run(options)
 
 
 def _list(options: argparse.Namespace) -> int:

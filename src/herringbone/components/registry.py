@@ -8,6 +8,7 @@ from importlib import import_module
 
 from herringbone.core import Component, StructureError
 from herringbone.core.declaring.roles import Role
+from herringbone.core.names import meant
 
 _MODULES = (
     "gear_mesh",
@@ -46,7 +47,8 @@ def component(name: str) -> Component:
         return COMPONENTS[name]
     except KeyError:
         known = ", ".join(COMPONENTS)
-        raise StructureError(f"there is no component '{name}'; there are: {known}") from None
+        hint = meant(name, COMPONENTS)
+        raise StructureError(f"there is no component '{name}'; {hint}there are: {known}") from None
 
 
 def components_for(role: Role) -> tuple[Component, ...]:

@@ -9,6 +9,7 @@ from herringbone.core.declaring.component import Component
 from herringbone.core.declaring.units import quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variable
 from herringbone.core.errors import ParameterError, ResourceError
+from herringbone.core.names import meant
 from herringbone.core.places.files import is_file
 
 
@@ -42,6 +43,7 @@ class Instance:
         except KeyError:
             raise ParameterError(
                 f"{self.name}: there is no variable '{name}'; "
+                f"{meant(name, (v.name for v in self.component.declaration.variables))}"
                 f"'herringbone list {self.component.name}' shows them"
             ) from None
 

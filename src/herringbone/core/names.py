@@ -5,6 +5,7 @@ Names of an FMU's variables are not among them: they are data of any form that F
 
 import re
 from collections.abc import Container, Iterable
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from herringbone.core.errors import StructureError
@@ -13,6 +14,8 @@ LONGEST = 64
 _IDENTIFIER = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,{LONGEST - 1}}}", re.ASCII)
 _FOREIGN = re.compile(r"[^A-Za-z0-9_]", re.ASCII)
 _SHOWN = 40
+_NEAR = 3
+"""Names that a wrong one may mean, at most."""
 
 
 def is_identifier(text: str) -> bool:
@@ -48,6 +51,17 @@ def check_path(text: str, what: str) -> str:
 def shown(text: str, most: int = _SHOWN) -> str:
     """A text in quotes as messages show it: on one line, and cut if it is longer than `most`."""
     return repr(text if len(text) <= most else text[: most - 3] + "...")
+
+
+def meant(text: str, known: Iterable[str]) -> str:
+    """What a wrong name may mean, for the end of a message: "did you mean ...? "; else "".
+
+    Args:
+        text: as given.
+        known: names that there are.
+    """
+    near = get_close_matches(text, list(dict.fromkeys(known)), _NEAR)
+    return f"did you mean {' or '.join(near)}? " if near else ""
 
 
 def identifier_for(text: str, taken: Container[str] = ()) -> str:

@@ -27,7 +27,8 @@ from herringbone.running.fused.fused import (
     fused,
     verified_by_half,
 )
-from herringbone.running.lean import lean_notes, refuse_lean
+from herringbone.running.operating.commanded import operated
+from herringbone.running.operating.lean import lean_notes, refuse_lean
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
@@ -48,6 +49,8 @@ def run(
     system: str | Path | System,
     *,
     scene: str | Path | Scene | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
     algorithm: str | Algorithm | None = None,
     step: float | None = None,
     tolerance: float | None = None,
@@ -76,6 +79,9 @@ def run(
     Args:
         system: name of a shipped system, folder with system.toml, .ssp file, or a System.
         scene: name or file of a scene; the system's "loaded" if not given.
+        speed: of the pinion [rad/s], where the system declares a set point of it, or nothing is
+            joined to its gear pair; the scene's if not given, as in `herringbone.sweep`.
+        torque: at the pinion [N m], likewise.
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
             default, takes li if all parts can repeat a step, and jacobi otherwise.
         step: communication step size [s]; the algorithm's default if not given, or, if all parts
@@ -141,12 +147,12 @@ def run(
         structure, chosen, notes = prepared(
             system,
             scene,
-            wishes,
+            operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
-            said = (*notes, *lean_notes(chosen.model, values or {}))
+            said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
             wanted = FusedAsked(step, tolerance, tuple(record), notes=said)
             return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
         refuse_lean(chosen)

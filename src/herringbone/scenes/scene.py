@@ -9,7 +9,7 @@ from typing import Any
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.facts import Facts
-from herringbone.core.names import shown
+from herringbone.core.names import meant, shown
 from herringbone.core.places.files import beside, is_file
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.structure.system_file import VALUE_HINT, is_value, part_files
@@ -91,9 +91,10 @@ def find_scene(system_folder: str | Path, name: str | Path) -> Path:
     for file in (folder / f"{name}.toml", Path(name)):
         if is_file(file):
             return file
-    known = ", ".join(sorted(f.stem for f in folder.glob("*.toml"))) or "none"
-    asked = shown(str(name), 300)
-    raise ParameterError(f"there is no scene {asked}; {folder.parent.name} has: {known}")
+    known = sorted(f.stem for f in folder.glob("*.toml"))
+    there = ", ".join(known) or "none"
+    asked, hint = shown(str(name), 300), meant(str(name), known)
+    raise ParameterError(f"there is no scene {asked}; {hint}{folder.parent.name} has: {there}")
 
 
 def read_scene(file: str | Path) -> Scene:

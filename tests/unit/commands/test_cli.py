@@ -34,6 +34,38 @@ def refused(capsys, *arguments):
     return err
 
 
+def test_a_wrong_option_is_told_by_its_command(capsys):
+    code, _, err = ended(capsys, "run", "test_rig", "--algoritm", "li")
+    assert code == BAD_INPUT
+    assert "did you mean --algorithm?" in err
+    assert err.endswith("see 'herringbone run --help'\n")
+    assert len(err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "meant"),
+    [
+        (("list", "gear_mseh"), "gear_mesh"),
+        (("list", "test_rgi"), "test_rig"),
+        (("run", "test_rgi"), "test_rig"),
+        (("run", "test_rig", "--scene=runp"), "runup"),
+    ],
+)
+def test_a_wrong_name_is_answered_by_what_it_may_mean(capsys, arguments, meant):
+    assert f"did you mean {meant}?" in refused(capsys, *arguments)
+
+
+def test_list_shows_a_system(capsys):
+    text = shown(capsys, "list", "test_rig")
+    for told in (
+        "gearbox.gear_mesh",
+        "drive_motor.flange",
+        "bench_controller.speed_setpoint",
+        "runup",
+    ):
+        assert told in text
+
+
 @pytest.mark.parametrize("command", ["list", "build", "check", "run", "export"])
 def test_help(capsys, command):
     code, out, _ = ended(capsys, "--help")

@@ -18,6 +18,8 @@ SLOW = "INSTANCE=N,..."
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_scene(sub, optional=True)
+    sub.add_argument("--speed", type=float, help="of the pinion in r/min; the scene's if not given")
+    sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )

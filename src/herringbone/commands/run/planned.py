@@ -23,6 +23,11 @@ def planned(options: argparse.Namespace) -> Plan:
         HerringboneError: see `studies.planning.plan`.
     """
     taken = [name for name in (*_CHOSEN, "replace") if getattr(options, name)]
+    if options.speed is not None or options.torque is not None:
+        raise ParameterError(
+            "--plan is for the operating point of the scene: give speed and torque in its table "
+            "[operating], and drop --speed and --torque"
+        )
     if taken:
         names = ", ".join(f"--{name.replace('_', '-')}" for name in taken)
         raise ParameterError(f"--plan chooses the model and the solver; drop {names}")
@@ -57,7 +62,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
         steady_text,
         write_steady,
     )
-    from herringbone.running.steady import steady  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415
 
     at = found.scene.operating
     state = steady(

@@ -19,7 +19,7 @@ from herringbone.core.declaring.variable import (
     parameter,
 )
 from herringbone.core.errors import ParameterError, StructureError
-from herringbone.core.names import check_name
+from herringbone.core.names import check_name, meant
 
 INTERFACE_DEGREE = "interface_degree"
 _NODE = re.compile(r"\.node\d+$")
@@ -231,4 +231,7 @@ class Declaration:
         for v in self.variables:
             if v.name == name:
                 return v
-        raise ParameterError(f"{self.name} has no variable '{name}'")
+        hint = meant(name, (v.name for v in self.variables))
+        raise ParameterError(
+            f"{self.name} has no variable '{name}'; {hint}'herringbone list {self.name}' shows them"
+        )

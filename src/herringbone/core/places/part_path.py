@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Self
 
 from herringbone.core.errors import ParameterError, StructureError
-from herringbone.core.names import check_path, shown
+from herringbone.core.names import check_path, meant, shown
 
 
 class PartPath(str):
@@ -66,7 +66,9 @@ def find_part(parts: Iterable[PartPath], text: str, where: str) -> PartPath:
             f"{where}: {shown(text)} may mean {' or '.join(found)}; write more of the path"
         )
     if not found:
-        raise StructureError(f"{where} has no part {shown(text)}; it has: {', '.join(known)}")
+        near = meant(text, [*known, *(part.split(".")[-1] for part in known)])
+        hint = f"; {near.rstrip()}" if near else ""
+        raise StructureError(f"{where} has no part {shown(text)}; it has: {', '.join(known)}{hint}")
     return found[0]
 
 

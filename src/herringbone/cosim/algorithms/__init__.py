@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 from typing import Any
 
 from herringbone.core import ParameterError
+from herringbone.core.names import meant
 from herringbone.cosim.algorithms.base import Algorithm
 from herringbone.cosim.algorithms.choice import AUTO, choose_algorithm, start_step
 from herringbone.cosim.algorithms.fixed_point import FixedPoint
@@ -46,7 +47,8 @@ def parse_algorithm(text: str) -> Algorithm:
     name, _, options = text.partition(":")
     if name not in ALGORITHMS:
         known = ", ".join([AUTO, *ALGORITHMS])
-        raise ParameterError(f"there is no algorithm '{name}'; there are: {known}")
+        hint = meant(name, [AUTO, *ALGORITHMS])
+        raise ParameterError(f"there is no algorithm '{name}'; {hint}there are: {known}")
     kind = ALGORITHMS[name]
     types: dict[str, Any] = {f.name: type(f.default) for f in fields(kind)}
     values: dict[str, float | str] = {}

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import StructureError
-from herringbone.core.names import check_name, identifier_for, shown
+from herringbone.core.names import check_name, identifier_for, meant, shown
 from herringbone.core.places.files import beside, is_file
 from herringbone.core.places.part_path import PartPath
 from herringbone.core.places.paths import systems_folder
@@ -69,9 +69,10 @@ def find_system(reference: str | Path) -> Path:
     for folder in (systems_folder() / reference, Path(reference)):
         if is_file(folder / FILE_NAME):
             return folder
-    shipped = ", ".join(sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}")))
+    shipped = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))
     raise StructureError(
-        f"there is no system {shown(str(reference), _LONGEST_PATH)}: give one of {shipped}, "
+        f"there is no system {shown(str(reference), _LONGEST_PATH)}: "
+        f"{meant(str(reference), shipped)}give one of {', '.join(shipped)}, "
         f"a folder with {FILE_NAME}, or an .ssp file"
     )
 

@@ -73,6 +73,7 @@ class Search:
 
     Args:
         tolerance: relative error.
+        wished: it is the user's own.
 
     Attributes:
         tried: runs that ended well.
@@ -80,8 +81,8 @@ class Search:
         why: the search is over; "" while it is not.
     """
 
-    def __init__(self, tolerance: float) -> None:
-        self._tolerance = tolerance
+    def __init__(self, tolerance: float, *, wished: bool) -> None:
+        self._tolerance, self._wished = tolerance, wished
         self.tried: list[_Tried] = []
         self.failed: list[float] = []
         self.why = ""
@@ -179,6 +180,8 @@ class Search:
             result = replace(result, outcome=replace(result.outcome, message=said))
         if found:
             verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
+            if self._wished:
+                verification = verification._replace(asked=self._tolerance)
             result = replace(result, verification=verification)
         return last.found._replace(result=result)
 

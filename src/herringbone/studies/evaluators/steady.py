@@ -6,15 +6,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
+from herringbone.analysis.steady.assumed import Changes, assumed
 from herringbone.analysis.steady.periodic import PeriodicMotion
+from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.running.commanded import commanded
+from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.settled import with_known_values
-from herringbone.running.steady import prepared_solver
+from herringbone.running.operating.commanded import commanded, with_known_values
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
     order_figures,
@@ -33,10 +36,13 @@ class Steady:
     Attributes:
         tolerance: error of the alternating part of each group of channels.
         columns: further columns or patterns with figures of their own.
+        sensitivities: of the levels of all groups, to parameters that match these patterns; to all
+            dampings if there is none. None: they are not asked for.
     """
 
     tolerance: float = TOLERANCE
     columns: tuple[str, ...] = ()
+    sensitivities: tuple[str, ...] | None = None
     longest: int | None = None
     modules: tuple[str, ...] = ("herringbone.studies.evaluators.steady",)
     has_series: bool = False
@@ -62,6 +68,7 @@ class _States:
         self._system, folder = load_system(base.system)
         self._scene = load_scene(folder, base.scene)
         self._known = with_known_values(self._system, self._scene, base.wishes)
+        self._changes = Changes()
 
     def __call__(self, point: Point, near: _Near | None, *, series: bool) -> Evaluated:
         """See `Evaluation`."""
@@ -78,9 +85,23 @@ class _States:
             message = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
         bends = found.bends
-        message = f"laws bend within the period: {', '.join(bends)}" if bends else ""
+        told = [f"laws bend within the period: {', '.join(bends)}"] if bends else []
         figures = figures_of(found, self._asked.columns)
-        return Evaluated(STEADY, message, figures, _Near(found, solver, prepared))
+        if self._asked.sensitivities is not None:
+            try:
+                figures |= self._sensitivities(found, self._asked.sensitivities)
+            except ParameterError as error:
+                told.append(str(error))
+        return Evaluated(STEADY, "; ".join(told), figures, _Near(found, solver, prepared))
+
+    def _sensitivities(self, state: SteadyState, patterns: tuple[str, ...]) -> dict[str, Figure]:
+        """By group and parameter; raises ParameterError if there are none."""
+        names = assumed(state.structure.system, patterns)
+        return {
+            f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
+            for group in state.channels
+            for name, found in sensitivities(state, group, names, self._changes).items()
+        }
 
     def _split(self, point: Point) -> tuple[dict[str, float], Point]:
         """Speed and torque that the solver takes itself, and values of variables."""
@@ -107,7 +128,7 @@ def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figur
     for name, own in {**state.channels, **{name: [name] for name in chosen}}.items():
         unit = state.unit(own[0])
         amplitudes = state.amplitudes(name)
-        figures |= prefixed(name, _moments(amplitudes), unit)
+        figures |= prefixed(name, _moments(amplitudes, state.numbers), unit)
         size = np.sqrt(np.mean(np.square(np.abs(amplitudes[:, 1:])), axis=0))
         orders = state.mesh_orders[1:]
         kept = slice(None) if known else slice(0)
@@ -125,16 +146,26 @@ def _renewable(prepared: Point, values: Point) -> bool:
     return not any(isinstance(v, str) and prepared[n] != v for n, v in values.items())
 
 
-def _moments(amplitudes: np.ndarray) -> dict[str, float]:
-    """rms, mean and peak of columns from their harmonics (columns, harmonics), see `levels`."""
+def _moments(amplitudes: np.ndarray, numbers: np.ndarray) -> dict[str, float]:
+    """rms, mean and peak of columns, see `levels`.
+
+    Args:
+        amplitudes: (columns, harmonics), complex; the first is the mean.
+        numbers: (harmonics,) periods of each in the period, ascending from 0; where run-outs make
+            the period long, most numbers are not among them.
+    """
     means = amplitudes[:, 0].real
     squares = 0.5 * np.sum(np.square(np.abs(amplitudes[:, 1:])), axis=1)
-    places = 4 * amplitudes.shape[1]
-    off = amplitudes.copy()
-    off[:, 0] = 0.0
-    signals = np.fft.irfft(0.5 * places * off, places, axis=1)
+    at = numbers[1:].astype(int)
+    count = int(numbers[-1]) + 1
+    places = 4 * count
+    peak = 0.0
+    for own in amplitudes:  # one by one: a period may have thousands of meshes
+        off = np.zeros(count, complex)
+        off[at] = 0.5 * places * own[1:]
+        peak = max(peak, float(np.abs(np.fft.irfft(off, places)).max()))
     return {
         "rms": float(np.sqrt(np.mean(squares))),
         "mean": float(means[0]) if means.size == 1 else float(np.sqrt(np.mean(np.square(means)))),
-        "peak": float(np.abs(signals).max()),
+        "peak": peak,
     }

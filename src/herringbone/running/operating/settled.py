@@ -6,27 +6,18 @@ from pathlib import Path
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.settled import SettledState
-from herringbone.core.places.files import as_texts
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.api import run
-from herringbone.running.commanded import commanded
-from herringbone.running.housings import split_housings
-from herringbone.running.loading import load_scene, load_system, with_replacements
-from herringbone.running.prepared import Wishes, housings_of
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, with_known_values
+from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
 
 LONGEST = 10.0
 """Run that is tried at most, if not asked for otherwise [s]."""
 _FIRST, _LONGER = 0.2, 2.0
 """The first run [s], and how many times longer each next one is."""
-
-
-def with_known_values(system: System, scene: Scene, wishes: Wishes) -> System:
-    """A system with what decides on its set points: values and replaced parts."""
-    fmus = split_housings(housings_of(system, scene, wishes))[1]
-    system, _ = with_replacements(system, {**wishes.replace_parts, **fmus})
-    return system.with_values({**scene.values, **as_texts(wishes.values)})
 
 
 def settled(

@@ -1,0 +1,53 @@
+"""Speed and torque of a run: the set points that sweeps and steady states take."""
+
+import math
+
+import pytest
+
+from herringbone.commands.main import main
+from herringbone.core import ParameterError
+from herringbone.running import api
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, operated, with_known_values
+from herringbone.running.prepared import Wishes
+
+POINT = {"speed": 157.0, "torque": 350.0}
+
+
+@pytest.mark.parametrize("name", ["test_rig", "gearbox"])
+def test_a_run_takes_the_values_that_a_sweep_takes(name):
+    system, folder = load_system(name)
+    scene = load_scene(folder, None)
+    wishes = Wishes(values={"gear_mesh.symmetry_deviation": 1e-6})
+    known = with_known_values(system, scene, wishes)
+    found = operated(name, None, wishes, **POINT).values
+    assert found == {**wishes.values, **commanded(known, POINT)}
+    assert len(found) == 3
+    assert operated(name, None, wishes, None, None) is wishes
+
+
+def test_what_an_operating_point_decides_on_is_not_given_besides():
+    """By any ending of its name."""
+    wishes = Wishes(values={"bench_controller.speed_factor": 1.45})
+    with pytest.raises(ParameterError, match=r"speed decides on bench_controller\.speed_factor"):
+        operated("test_rig", None, wishes, 157.0, None)
+    assert len(operated("test_rig", None, wishes, None, 350.0).values) == 2
+    with pytest.raises(ParameterError, match=r"torque = nan: it must be finite"):
+        operated("gearbox", None, Wishes(), None, math.nan)
+    with pytest.raises(ParameterError, match="constant"):
+        operated("test_rig", "runup", Wishes(), 157.0, None)
+
+
+def test_the_command_gives_them_in_its_own_units(monkeypatch, tmp_path, capsys):
+    taken = {}
+
+    def run(system, **asked):
+        taken.update(asked)
+        raise ParameterError(system)
+
+    monkeypatch.setattr(api, "run", run)
+    assert main(["run", "gearbox", "--speed=300", "--torque", "150", "-o", str(tmp_path)]) == 2
+    assert taken["speed"] == pytest.approx(10.0 * math.pi, rel=1e-15)
+    assert taken["torque"] == 150.0
+    assert main(["run", "gearbox", "--plan", "--speed", "300"]) == 2
+    assert "[operating]" in capsys.readouterr().err
