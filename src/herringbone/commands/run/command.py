@@ -51,7 +51,8 @@ def run(options: argparse.Namespace) -> int:
         options = as_chosen(options, found)
     result = _ran(options) if options.resume is None else _resumed(options)
     show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+    told = {OutcomeKind.INTERRUPTED, OutcomeKind.COMPLETED}
+    if result.outcome.message and result.outcome.kind not in told:
         say(_ended(result.outcome))
     return EXIT_CODES[result.outcome.kind] or _missed(result.verification)
 
