@@ -8,6 +8,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterator
+from errno import ENOENT
 from pathlib import Path
 
 from herringbone.core import HerringboneError
@@ -113,8 +114,9 @@ def check_writable(folder: Path, file: Path | None = None) -> None:
         with tempfile.TemporaryDirectory(dir=there):
             pass
     except OSError as error:
+        why = f"nothing can be made in {there}" if error.errno == ENOENT else reason(error)
         raise HerringboneError(
-            f"cannot write {file}: {error.strerror}; choose another file with -o"
+            f"cannot write {file}: {why}; choose another file with -o"
             if file
-            else f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+            else f"cannot write to {folder}: {why}; choose another folder with -o"
         ) from error

@@ -92,6 +92,7 @@ BAD = [
     ),
     ("torque N.m", "torque kN.m", "column 'torque' has unit 'kN.m'"),
     ("time,speed,torque", "time,speed,load", "column torque is missing"),
+    (", torque N.m\ntime,speed,torque", "\ntime,speed,load", "column torque is missing"),
     ("# units", "units", "the first line must be '# units:"),
 ]
 

@@ -51,7 +51,8 @@ def run(options: argparse.Namespace) -> int:
         options = as_chosen(options, found)
     result = _ran(options) if options.resume is None else _resumed(options)
     show(result.to_json() if options.json else summary_text(result))
-    if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
+    told = {OutcomeKind.INTERRUPTED, OutcomeKind.COMPLETED}
+    if result.outcome.message and result.outcome.kind not in told:
         say(_ended(result.outcome))
     return EXIT_CODES[result.outcome.kind] or _missed(result.verification)
 
@@ -161,7 +162,10 @@ class _Report:
         self._bar.close()
         shown = self._output.shown
         if result.outcome.kind is OutcomeKind.INTERRUPTED:
-            say(f"{_ended(result.outcome)}, and are being written to {shown}")
+            say(
+                f"{_ended(result.outcome)}, and are being written to {shown}; Ctrl-C again ends at "
+                f"once, and 'herringbone run --resume {shown}' goes on from there"
+            )
         self._output.write(result)
         if result.outcome.unstable:
             self._bar.tell(f"results are in {shown}; looking for what grows, and remedies")

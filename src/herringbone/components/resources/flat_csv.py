@@ -109,7 +109,6 @@ def _read(
     """See `read_flat_csv`."""
     first, lines = _section(file, section)
     units = _units(lines[0] if lines else "", file)
-    check_units(units, numbers, file)
     rows = [
         (n, _fields(line, file, n))
         for n, line in enumerate(lines, first)
@@ -129,6 +128,7 @@ def _read(
     extra = [name for name in header if name not in texts and name not in numbers]
     if extra and not more:
         raise ResourceError(f"{file}: column {', '.join(filter(None, extra))} is unknown")
+    check_units(units, numbers, file)
     columns: dict[str, list] = {name: [] for name in header}
     for line, row in rows[1:]:
         if len(row) != len(header):

@@ -218,7 +218,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
                    Message *message) {
     size_t declared = grammar->column_count;
     double *values = grow(numbers, declared, table->file, message);
-    if (!values || !read_units(table, grammar, values, message))
+    if (!values)
         return false;
     if (table->row_count < 2) {
         message_write(message, "%s: it has no rows", table->file);
@@ -226,7 +226,7 @@ static bool append(const Table *table, const HbText *grammar, Numbers *numbers, 
     }
     for (size_t i = 0; i < table->rows->count; i++)
         table->fields[i] = csv_trim(table->fields[i]);
-    if (!check_header(table, grammar, message))
+    if (!check_header(table, grammar, message) || !read_units(table, grammar, values, message))
         return false;
     size_t rows = table->row_count - 1, first = declared + grammar->header_count;
     size_t count = first + rows * table->rows->count;
