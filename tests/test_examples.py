@@ -76,10 +76,11 @@ def test_loop_benchmark(tmp_path, monkeypatch):
 
 
 def test_swap_the_housing(tmp_path, monkeypatch):
-    """Statics and modes to 1500 Hz stay, which hold nearly all of the motion; bound 5 %."""
+    """Levels nearly stay, but beyond 1500 Hz are lines that the seats move with: the error over
+    time is many times the certified 5 %, which end at 1500 Hz.
+    """
     found = run(tmp_path, monkeypatch, "08_swap_the_housing")
-    assert found["reduced_to_1500_Hz"] == pytest.approx(found["default"], rel=0.1)
-    assert found["reduced_to_1500_Hz"] != found["default"]
+    assert 0.1 < found["reduced_to_1500_Hz"] < 1.0
 
 
 def test_aliasing(tmp_path, monkeypatch):

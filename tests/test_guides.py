@@ -17,6 +17,7 @@ from herringbone.components import registry
 from herringbone.core import Instance
 from herringbone.cosim.algorithms import ALGORITHMS
 from herringbone.housing import importers
+from herringbone.scenes import read_scene
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -186,6 +187,19 @@ def test_foreign_fmus(tmp_path, monkeypatch, capsys):
     )
     assert run.outcome.completed
     assert max(run.verification.groups.values()) < 1e-3
+
+
+def test_plans(tmp_path):
+    """The scene of a plan is read; its Python example is a plan that keeps its tolerance."""
+    file = tmp_path / "quiet.toml"
+    file.write_text(blocks("plans", "toml")[0], encoding="utf-8")
+    (ask,) = read_scene(file).asks
+    assert (ask.what, ask.tolerance, ask.band) == (("seat velocity",), 0.01, 2000.0)
+    names: dict = {}
+    exec(compile(blocks("plans", "python")[0], "plans.md", "exec"), names)
+    measured = names["found"].choice.measured
+    assert measured is None or measured.error <= 0.005
+    assert names["state"].converged
 
 
 def test_sweeps():

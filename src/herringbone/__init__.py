@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from herringbone.analysis.accuracy.comparison import compare
+    from herringbone.analysis.figures.plateaus import plateau_statistics
     from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.analysis.measured.of_run import compare_record
     from herringbone.analysis.steady.set_points import Point
     from herringbone.analysis.steady.solver import SteadySolver
     from herringbone.analysis.steady.state import SteadyState
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from herringbone.running.modes import modes
     from herringbone.running.own_master import connections, start_values
     from herringbone.running.steady import steady
-    from herringbone.scenes import Scene
+    from herringbone.scenes import Ask, Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.planning.plan import Plan, plan
     from herringbone.studies.sweep import Sweep
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LI",
+    "Ask",
     "FixedPoint",
     "GaussSeidel",
     "HerringboneError",
@@ -56,10 +59,12 @@ __all__ = [
     "System",
     "build_fmus",
     "compare",
+    "compare_record",
     "connections",
     "load",
     "modes",
     "plan",
+    "plateau_statistics",
     "radiated_power",
     "run",
     "start_values",
@@ -88,10 +93,13 @@ _WHERE = {
     "OutcomeKind": "herringbone.core",
     "Result": "herringbone.result.result",
     "Role": "herringbone.core.declaring.roles",
+    "Ask": "herringbone.scenes",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
     "modes": "herringbone.running.modes",
     "compare": "herringbone.analysis.accuracy.comparison",
+    "compare_record": "herringbone.analysis.measured.of_run",
+    "plateau_statistics": "herringbone.analysis.figures.plateaus",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",
     "SteadyState": "herringbone.analysis.steady.state",

@@ -1,6 +1,8 @@
 """Plans of systems that they were not made with: estimates against the truth, rung by rung.
 
-    python -m campaigns.plans [COUNT] [SEED]      (in tests/; the seed is the last commit's)
+    python -m campaigns.plans [COUNT [SEED [SECONDS]]]
+
+in tests/; the seed is the last commit's.
 
 Pairs, housings, operating points and questions are drawn. Each rung of a plan's ladder is solved,
 whatever its estimate is, at the points where it was estimated; what the plan chose is held against
@@ -10,6 +12,7 @@ meets the tolerance there. One line per system, and what all of them say.
 
 import math
 import random
+import signal
 import sys
 import tempfile
 import time
@@ -27,12 +30,13 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import HerringboneError
 from herringbone.housing import default_housing, write_housing
+from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Operating, Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder
 from herringbone.studies.planning.plan import plan
-from herringbone.studies.planning.points import points_to_probe
+from herringbone.studies.planning.points import first_point, points_to_probe
 from herringbone.studies.planning.rung import SHARE, STEADY
 from herringbone.studies.planning.steady_plan import questions_of
 
@@ -127,11 +131,8 @@ def every_rung(given: Drawn) -> Iterator[Pair]:
 
 
 def _solver(given: Drawn) -> SteadySolver:
-    low = given.scene.operating.speed[0]
-    return prepared_solver(
-        given.system, scene=given.scene, gear=given.gear, housing=given.housing,
-        speed=low, torque=given.scene.operating.torque[0],
-    )[0]  # fmt: skip
+    wishes = Wishes(gear=given.gear, housing=given.housing)
+    return prepared_solver(given.system, given.scene, first_point(given.scene.operating), wishes)[0]
 
 
 def chosen(given: Drawn, chance: random.Random) -> str:
@@ -164,8 +165,14 @@ def chosen(given: Drawn, chance: random.Random) -> str:
     )
 
 
-def main(count: int = 20, seed: str | None = None) -> None:
-    """Draw, and print."""
+def _late(number: int, frame: object) -> None:
+    del number, frame
+    raise TimeoutError("not within the time that a system has here")
+
+
+def main(count: int = 20, seed: str | None = None, limit: int = 600) -> None:
+    """Draw, and print; a system has some seconds [s]."""
+    signal.signal(signal.SIGALRM, _late)
     seed = last_commit() if seed is None else seed
     tell(f"seed {seed}")
     every: list[Pair] = []
@@ -181,6 +188,7 @@ def main(count: int = 20, seed: str | None = None) -> None:
                 f"{low:.4g} to {high:.4g} r/min, {given.scene.operating.torque[0]:.4g} N m"
             )
             try:
+                signal.alarm(limit)
                 pairs = list(every_rung(given))
                 counted = [p for p in pairs if _LEAST <= p.truth <= _LARGE]
                 ratios = [p.estimate / p.truth for p in counted]
@@ -194,8 +202,10 @@ def main(count: int = 20, seed: str | None = None) -> None:
                         tell(f"   {p.name}: estimate {p.estimate:.3g}, truth {p.truth:.3g}")
                 every += counted
                 tell(f"   {chosen(given, chance)}")
-            except HerringboneError as error:
+            except (HerringboneError, TimeoutError) as error:
                 tell(f"   {error}")
+            finally:
+                signal.alarm(0)
             tell(f"   {time.perf_counter() - begin:.1f} s")
     ratios = np.array([p.estimate / p.truth for p in every])
     within = np.mean((ratios >= 0.5) & (ratios <= 2.0)) if ratios.size else math.nan
@@ -203,4 +213,4 @@ def main(count: int = 20, seed: str | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20, *sys.argv[2:3])
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20, *sys.argv[2:3], *map(int, sys.argv[3:4]))

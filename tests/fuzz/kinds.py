@@ -24,6 +24,8 @@ from support.fe_files import (
 )
 from support.housing import small_housing
 
+from fuzz.records import csv_record, read_wav, universal_record, wav_record
+from herringbone.analysis.measured.record import read_measured
 from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.flat_csv import read_flat_csv
 from herringbone.components.resources.stiffness_table import read_stiffness_table
@@ -326,9 +328,18 @@ def _resources() -> list[Kind]:
     return [small, *kinds]
 
 
+def _records() -> list[Kind]:
+    """Measured velocities."""
+    return [
+        Kind("record_csv", csv_record(), _file("x.csv", read_measured), 1),
+        Kind("record_wav", wav_record(), _file("x.wav", read_wav), 1),
+        Kind("record_universal", universal_record(), _file("x.uff", read_measured), 1),
+    ]
+
+
 def all_kinds() -> list[Kind]:
     """All of them; each good file is read without a complaint."""
-    return [*_fmus(), *_gears(), *_housings(), *_models(), *_resources()]
+    return [*_fmus(), *_gears(), *_housings(), *_models(), *_resources(), *_records()]
 
 
 def refused(kind: Kind, content: bytes, folder: Path) -> bool:

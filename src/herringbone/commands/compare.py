@@ -1,4 +1,4 @@
-"""The command `compare`: two results folders side by side."""
+"""The command `compare`: two results folders side by side, or a run and a measured record."""
 
 import argparse
 import json
@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from herringbone.commands import record
 from herringbone.commands.output import check_writable, show
 from herringbone.core.places.files import write_whole
 
@@ -20,7 +21,12 @@ _MOST_PARAMETERS = 12
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     sub.add_argument("first", type=Path, metavar="A", help="results folder of a run")
-    sub.add_argument("second", type=Path, metavar="B", help="the one to which A is compared")
+    sub.add_argument(
+        "second",
+        type=Path,
+        metavar="B",
+        help="the one to which A is compared, or a measured record",
+    )
     sub.add_argument(
         "--columns", nargs="+", default=[], metavar="PATTERN",
         help="columns (*, ?) to compare; the channel groups of B if not given",
@@ -28,10 +34,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--highest", type=float, help="end of the spectra in the picture in Hz")
     sub.add_argument("-o", "--output", type=Path, help=f"folder for {', '.join(FILES)}")
     sub.add_argument("--json", action="store_true", help="print one JSON object")
+    record.add_options(sub)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compare, write files if a folder is given, and show the tables.
+    """Compare, write files if a folder is given, and show the tables; see `record` for files.
 
     Raises:
         HerringboneError: a folder holds no results, nothing is common, or files cannot be written.
@@ -41,6 +48,8 @@ def run(options: argparse.Namespace) -> int:
 
     if options.output:
         check_writable(options.output)
+    if options.second.is_file():
+        return record.run(options)
     found = compare(options.first, options.second, *options.columns)
     text = json.dumps(as_json(found.summary()), indent=None if options.json else 1)
     if options.output:

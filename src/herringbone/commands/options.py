@@ -98,6 +98,27 @@ def add_replacements(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_sensitivities(sub: argparse.ArgumentParser) -> None:
+    """Declare what levels are to be differentiated over."""
+    sub.add_argument(
+        "--sensitivities", nargs="*", metavar="PARAMETER",
+        help="of the levels of all groups to these parameters or patterns; to all dampings if none "
+        "is named",
+    )  # fmt: skip
+    sub.add_argument(
+        "--known-within", type=float, default=2.0, metavar="FACTOR",
+        help="factor within which such parameters are known, for bands and tornado plots; 2",
+    )  # fmt: skip
+
+
+def spread_of(options: argparse.Namespace) -> float:
+    """By what share parameters may err; raises ParameterError."""
+    factor = options.known_within
+    if not 1.0 <= factor < math.inf:
+        raise ParameterError(f"--known-within {factor:g}: it is a factor, at least 1")
+    return factor - 1.0
+
+
 def replacements(options: argparse.Namespace) -> dict[str, str]:
     """FMU files by instance.
 

@@ -4,7 +4,7 @@ import argparse
 import csv
 from pathlib import Path
 
-from herringbone.commands.output import check_writable, show
+from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, ParameterError, ResourceError
 from herringbone.core.errors import reason
 from herringbone.core.places.files import is_file
@@ -79,4 +79,7 @@ def _study(folder: Path, output: Path) -> list[Path]:
             units = {row[0]: row[1] for row in csv.reader(stream) if len(row) == 2}
     except (OSError, ValueError) as error:
         raise ResourceError(f"{folder}: its table is damaged: {error}") from error
-    return write_study_pictures(table, units, output, folder.name)
+    drawn = write_study_pictures(table, units, output, folder.name)
+    for line in drawn.missing:
+        say(line)
+    return drawn.files

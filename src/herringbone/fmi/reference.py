@@ -77,7 +77,7 @@ def _golden(name: str) -> tuple[bytes, bytes]:
 
 
 def _recorded(fmu: Path) -> tuple[bytes, bytes]:
-    """The first steps of the default experiment, inputs as they start."""
+    """The first steps of the default experiment, inputs as they start; shafts turn."""
     with open_host(fmu.stem, fmu) as host:
         inputs = [
             v.name
@@ -87,13 +87,27 @@ def _recorded(fmu: Path) -> tuple[bytes, bytes]:
         names = _outputs(host.model)
         host.initialise()
         step = float(host.model.defaultExperiment.stepSize)
-        held = host.values(*inputs) if inputs else []
-        rows = [[0.0, *host.values(*names)]]
-        for n in range(_STEPS):
-            host.step(n * step, step)
-            rows.append([(n + 1) * step, *host.values(*names)])
-    times = [row[0] for row in rows]
-    return _csv(["time", *inputs], [[t, *held] for t in times]), _csv(["time", *names], rows)
+        start = dict(zip(inputs, host.values(*inputs), strict=True)) if inputs else {}
+        times = [n * step for n in range(_STEPS + 1)]
+        given = [_turned(start, time) for time in times]
+        rows = [host.values(*names)]
+        for n, time in enumerate(times[:-1]):
+            host.set_values(given[n])
+            host.step(time, step)
+            rows.append(host.values(*names))
+    return (
+        _csv(["time", *inputs], [[t, *row.values()] for t, row in zip(times, given, strict=True)]),
+        _csv(["time", *names], [[t, *row] for t, row in zip(times, rows, strict=True)]),
+    )
+
+
+def _turned(start: Mapping[str, float], time: float) -> dict[str, float]:
+    """Inputs at a time [s]: as at the start, but an angle `x.phi` goes on with its speed `x.w`."""
+    rates = {name: start.get(f"{name.removesuffix('.phi')}.w", 0.0) for name in start}
+    return {
+        name: value + rates[name] * time if name.endswith(".phi") else value
+        for name, value in start.items()
+    }
 
 
 def _csv(head: Sequence[str], rows: Iterable[Sequence[float]]) -> bytes:

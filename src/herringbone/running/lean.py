@@ -2,13 +2,18 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from herringbone.analysis.accuracy.error_budget import by_size
 from herringbone.core import ParameterError
+from herringbone.result.budget import BudgetRow, Known
+from herringbone.result.result import Result
 from herringbone.scenes import Model, Scene
 from herringbone.scenes.asking import Range
 
 if TYPE_CHECKING:
+    from herringbone.analysis.steady.state import SteadyState
     from herringbone.analysis.twin.condensed.lean import Lean
 
 _R_MIN = 30.0 / math.pi
@@ -49,14 +54,52 @@ def lean_notes(
     parts += [f"{', '.join(model.one_way)} driven one way"] if model.one_way else []
     said = f"leaner model: {', '.join(parts)}; its error "
     if model.error is None:
-        return (f"{said}is not known: no plan certified it",)
+        return (f"{said}is not certified: 'herringbone plan' does that",)
     where = f"{100.0 * model.error:.2g} % of what the scene asks{_where(model)}"
     if changed:
         names = ", ".join(sorted(changed))
         return (f"{said}was {where}, but is not known with other values of {names}",)
-    if not (_within(speed, model.speed) and _within(torque, model.torque)):
+    if not certified(model, changed, speed, torque):
         return (f"{said}is {where}, but not known at this operating point",)
     return (f"{said}is {where}",)
+
+
+def certified(
+    model: Model,
+    changed: Mapping[str, object],
+    speed: float | None = None,
+    torque: float | None = None,
+) -> bool:
+    """True if the error of a leaner model is known; see `lean_notes`."""
+    known = model.error is not None and not changed
+    return known and _within(speed, model.speed) and _within(torque, model.torque)
+
+
+def with_model_row(result: Result, model: Model) -> Result:
+    """The result of a run, with what its model leaves out in the error budget."""
+    if not model:
+        return result
+    known = Known.UNKNOWN if model.error is None else Known.MEASURED
+    how = "no plan certified it" if model.error is None else f"steady states{_where(model)}"
+    row = BudgetRow("model left out", "what the scene asks", model.error, known, how)
+    return replace(result, budget=by_size([*result.budget, row]))
+
+
+def lean_error(state: "SteadyState", whole: "SteadyState") -> str:
+    """A line that says how far a leaner model is from the whole one, by group of channels."""
+    from herringbone.analysis.leaner.form import Form  # noqa: PLC0415 (numba)
+    from herringbone.analysis.leaner.question import (  # noqa: PLC0415
+        Question,
+        apart,
+        lines_of,
+    )
+
+    found = []
+    for group, columns in whole.channels.items():
+        question = Question(group, tuple(columns), Form.SPECTRUM, 1.0)
+        own = apart(question, lines_of(state, question), lines_of(whole, question))
+        found.append(f"{group} {100.0 * own.error:.3g} %")
+    return f"warning: against the whole model, solved as well, it is off by: {', '.join(found)}"
 
 
 def _within(value: float | None, ends: Range | None) -> bool:

@@ -11,7 +11,7 @@ from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.commanded import with_known_values
-from herringbone.running.lean import lean_notes, lean_of
+from herringbone.running.lean import certified, lean_error, lean_notes, lean_of
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes, prepared
@@ -69,8 +69,16 @@ def steady(
         point.check()
         check_tolerance(tolerance)
         return settled(system, scene, point, wishes, tolerance, longest)
-    solver, notes = prepared_solver(system, scene, point, wishes, tolerance)
-    return solver.solve(point, near).noted(notes)
+    found = prepared_at(point, system, scene, wishes)
+    model = found.scene.model
+    solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
+    state = solver.solve(point, near)
+    notes = (*found.notes, *lean_notes(model, wishes.values, speed, torque))
+    if model and state.converged and not certified(model, wishes.values, speed, torque):
+        whole = SteadySolver(found.system, tolerance).solve(point, near)
+        if whole.converged:
+            notes = (*notes, lean_error(state, whole))
+    return state.noted(notes)
 
 
 def is_foreign(

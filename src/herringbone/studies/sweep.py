@@ -139,7 +139,7 @@ def computed(
         _compute(missing, job, store, where, progress)
         table = study_table(study, chains, store, asked.given)
         files = table.write(place, parquet=asked.parquet) if asked.output else []
-        return Sweep(table.whole(), table.units, ahead, tuple(files))
+        return Sweep(table.data, table.units, ahead, tuple(files))
 
 
 def _measured(

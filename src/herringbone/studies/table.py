@@ -1,4 +1,4 @@
-"""The tidy table of a study: a row per point, in pieces that memory holds whatever there is."""
+"""The tidy table of a study: a row per point."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,13 @@ import pandas as pd
 
 from herringbone.result.folder.names import UNITS
 from herringbone.result.folder.writing import replacing
-from herringbone.result.tables import parquet_library, write_csv, write_parquet, write_units
+from herringbone.result.tables import (
+    parquet_library,
+    pieces_of,
+    write_csv,
+    write_parquet,
+    write_units,
+)
 from herringbone.studies.keys import Chain
 from herringbone.studies.store import StudyFolder
 from herringbone.studies.study import Study
@@ -24,52 +30,12 @@ class StudyTable:
     """The table of chains that are all there.
 
     Attributes:
-        study, chains, store: of the study.
-        given: units of the parameters.
-        figures: units of the columns that follow parameters and outcome.
+        data: a row per point.
+        units: by column; of texts and pure numbers "".
     """
 
-    study: Study
-    chains: Sequence[Chain]
-    store: StudyFolder
-    given: Mapping[str, str]
-    figures: Mapping[str, str]
-
-    @property
-    def columns(self) -> list[str]:
-        """All columns, in order."""
-        return [_POINT, *self.study.names, _OUTCOME, _MESSAGE, *self.figures]
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Unit by column; of texts and pure numbers ""."""
-        return {_POINT: "", **self.given, _OUTCOME: "", _MESSAGE: "", **self.figures}
-
-    def pieces(self) -> Iterator[pd.DataFrame]:
-        """The rows, in pieces."""
-        names = self.study.names
-        texts = {
-            name
-            for k, name in enumerate(names)
-            if any(isinstance(point[k], str) for point in self.study.points)
-        }
-        rows: list[list] = []
-        for chain, done in self.store.all(list(self.chains)):
-            for number, row in zip(chain.numbers, done.rows, strict=True):
-                figures = [row.figures.get(name, np.nan) for name in self.figures]
-                values = self.study.points[number]
-                rows.append([number, *values, row.outcome, row.message, *figures])
-            if len(rows) >= _ROWS_IN_PIECE:
-                yield self._frame(rows, texts)
-                rows = []
-        if rows:
-            yield self._frame(rows, texts)
-
-    def _frame(self, rows: list[list], texts: set[str]) -> pd.DataFrame:
-        frame = pd.DataFrame(rows, columns=self.columns)
-        as_text = {name: str for name in texts}
-        as_number = {name: float for name in self.figures}
-        return frame.astype({**as_text, **as_number})
+    data: pd.DataFrame
+    units: Mapping[str, str]
 
     def write(self, folder: Path, *, parquet: bool) -> list[Path]:
         """Write the table and its units; returns the files.
@@ -83,24 +49,59 @@ class StudyTable:
         with replacing(files[0]) as stream:
             write_units(stream, self.units)
         with replacing(files[1]) as stream:
-            write_csv(stream, self.columns, self.pieces())
+            write_csv(stream, list(self.data.columns), pieces_of(self.data))
         if parquet:
             files.append(folder / PARQUET)
             with replacing(files[2], text=False) as stream:
-                write_parquet(stream, self.pieces())
+                write_parquet(stream, pieces_of(self.data))
         return files
-
-    def whole(self) -> pd.DataFrame:
-        """All rows in memory."""
-        return pd.concat(list(self.pieces()), ignore_index=True)
 
 
 def study_table(
     study: Study, chains: Sequence[Chain], store: StudyFolder, given: Mapping[str, str]
 ) -> StudyTable:
-    """The table; its columns are all figures that a point has, in the order in which they come."""
+    """The table; its columns are all figures that a point has, in the order in which they come.
+
+    Each chain is read once.
+
+    Args:
+        study, chains, store: of the study.
+        given: units of the parameters.
+    """
     figures: dict[str, str] = {}
-    for _, done in store.all(list(chains)):
+    pieces = list(_pieces(study, chains, store, figures))
+    own = [_POINT, *study.names, _OUTCOME, _MESSAGE]
+    units = {_POINT: "", **given, _OUTCOME: "", _MESSAGE: "", **figures}
+    data = pd.concat([piece.reindex(columns=[*own, *figures]) for piece in pieces])
+    texts = {name: str for k, name in enumerate(study.names) if _has_text(study, k)}
+    data = data.astype({**texts, **dict.fromkeys(figures, float)})
+    return StudyTable(data.reset_index(drop=True), units)
+
+
+def _has_text(study: Study, parameter: int) -> bool:
+    return any(isinstance(point[parameter], str) for point in study.points)
+
+
+def _pieces(
+    study: Study, chains: Sequence[Chain], store: StudyFolder, figures: dict[str, str]
+) -> Iterator[pd.DataFrame]:
+    """Rows with the figures that are known so far, to which those of each chain are added."""
+    rows: list[list] = []
+    for chain, done in store.all(list(chains)):
         for name, unit in done.units.items():
             figures.setdefault(name, unit)
-    return StudyTable(study, chains, store, given, figures)
+        for number, row in zip(chain.numbers, done.rows, strict=True):
+            found = [row.figures.get(name, np.nan) for name in figures]
+            rows.append([number, *study.points[number], row.outcome, row.message, *found])
+        if len(rows) >= _ROWS_IN_PIECE:
+            yield _frame(study, rows, figures)
+            rows = []
+    if rows:
+        yield _frame(study, rows, figures)
+
+
+def _frame(study: Study, rows: list[list], figures: Mapping[str, str]) -> pd.DataFrame:
+    """A piece; the first rows may lack figures that came later."""
+    columns = [_POINT, *study.names, _OUTCOME, _MESSAGE, *figures]
+    whole = [row + [np.nan] * (len(columns) - len(row)) for row in rows]
+    return pd.DataFrame(whole, columns=columns)

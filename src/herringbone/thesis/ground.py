@@ -6,10 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 import pandas as pd
 
+from herringbone.analysis.modes.natural_modes import NaturalModes
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
 from herringbone.running.api import run
+from herringbone.running.modes import modes
 from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Start
@@ -85,6 +87,20 @@ def settled(
         if not near.converged:
             raise HerringboneError(f"no steady state at {speed:g} r/min, {torque:g} N m")
         yield near
+
+
+def natural(system: str = names.ON_GROUND, *, seats_move: bool = True) -> NaturalModes:
+    """Natural modes at the operating point, both halves loaded alike: f_A is 0.
+
+    A mesh's mean stiffness is taken at the depth of the start; with f_A it is that of a pinion that
+    does not follow the run-out.
+
+    Args:
+        system: shipped system.
+        seats_move: two-way housing.
+    """
+    values = {names.SYMMETRY_DEVIATION: 0.0, names.SEAT_MOTION: float(seats_move)}
+    return modes(system, values=values)
 
 
 def window(

@@ -3,13 +3,16 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from support.gear_mesh import write_table
 from support.result import make_result
 
 import herringbone as hb
+from herringbone.analysis.accuracy import beyond
 from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, error_budget
 from herringbone.analysis.stability.recommendation import contact_floor, separation_floor
 from herringbone.cosim.algorithms import parse_algorithm
@@ -211,3 +214,14 @@ def test_json_and_summary_of_a_measured_run():
     values = [r["value"] for r in found if r["value"] is not None]
     assert values == sorted(values, reverse=True)
     assert np.all(np.array(values) > 0.0)
+
+
+@pytest.mark.parametrize(("band", "share"), [(400.0, 1.0), (600.0, 0.6), (1400.0, 0.0)])
+def test_share_beyond_a_band_is_that_of_its_lines(monkeypatch, band, share):
+    """Lines of 0.8 and 0.6 at 500 and 1000 Hz, of which the window spreads 30 Hz."""
+    time = np.arange(2000) * 1e-4
+    force = 0.8 * np.sin(2 * np.pi * 500 * time) + 0.6 * np.sin(2 * np.pi * 1000 * time)
+    monkeypatch.setattr(beyond, "group", lambda result, channel: ["f"])
+    monkeypatch.setattr(beyond, "steady_part", lambda result: SimpleNamespace(rows=slice(None)))
+    result = SimpleNamespace(data=pd.DataFrame({"time": time, "f": 5.0 + force}))
+    assert beyond.share_beyond(result, "bearing_force", band) == pytest.approx(share, abs=1e-3)

@@ -10,7 +10,7 @@ from herringbone.analysis.figures.sensitivity import sensitivities
 from herringbone.core import ParameterError
 from herringbone.plotting.studies.levels import levels, peaks, waterfall
 from herringbone.plotting.studies.maps import level_map
-from herringbone.plotting.studies.pictures import write_study_pictures
+from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
 from herringbone.plotting.studies.table import Points
 
@@ -142,10 +142,14 @@ def test_map_says_that_it_shows_the_largest_of_several(table):
 
 
 def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):
-    names = {file.name for file in write_study_pictures(table, UNITS, tmp_path)}
+    names = {file.name for file in write_study_pictures(table, UNITS, tmp_path).files}
     assert names == {"levels.png", "map.png", "waterfall.force.png", "tornado.force.png"}
     single = shipped(table, zeta=0.02, backlash=1e-4).iloc[:1]
-    assert write_study_pictures(single, UNITS, tmp_path) == []
+    files, missing = write_study_pictures(single, UNITS, tmp_path)
+    assert files == []
+    assert missing == [
+        "no levels.png: parameter of the abscissa: the points have several numbers of: none"
+    ]
     with pytest.raises(ParameterError, match="several numbers of: speed"):
         one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
         levels(Points(one, UNITS), across="torque")
@@ -166,3 +170,34 @@ def test_resonances_are_triangles_in_the_colour_of_their_order(table):
     second = next(line for line in right.lines if line.get_label() == "$2 f_m$")
     assert len(marks) == 1
     assert marks[0].get_color() == second.get_color()
+
+
+def test_curves_that_coincide_are_told(table):
+    """All but the last of them are hidden; a curve 2 % off is not."""
+    thrice = pd.concat([
+        shipped(table, torque=200.0, zeta=0.02, backlash=1e-4).assign(
+            **{"mesh.f_a": f, "force.rms": lambda rows, by=by: by * rows["force.rms"]}
+        )
+        for f, by in ((0.0, 1.0), (1e-5, 1.005), (2e-5, 1.02))
+    ])  # fmt: skip
+    ordered = thrice[["mesh.f_a", *(c for c in thrice if c != "mesh.f_a")]]
+    panel = levels(Points(ordered, {**UNITS, "mesh.f_a": "m"})).axes[0]
+    assert panel.get_title(loc="left") == "f_a 0 m, 1e-05 m coincide within 1 %"
+
+
+def test_sensitivities_of_a_table_make_a_band_and_a_tornado_plot(table, tmp_path):
+    """Level ~ zeta^-1, known within a factor of 3: the band lies at thrice and a third of it."""
+    one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
+    given = one.assign(**{f"force.sensitivity.{ZETA}": -1.0})
+    bands, tornados, missing = _uncertain(Points(given, UNITS), 2.0)
+    assert not missing
+    assert bands["force"].high == pytest.approx(3.0 * bands["force"].low * 3.0)
+    found, title = tornados["force"]
+    assert title == "force.rms at 1100 r/min"
+    assert changes(found)["high"].item() == pytest.approx(2.0)
+    names = {file.name for file in write_study_pictures(given, UNITS, tmp_path).files}
+    assert "tornado.force.png" in names
+    none = given.assign(**{f"force.sensitivity.{ZETA}": np.nan})
+    assert write_study_pictures(none, UNITS, tmp_path).missing == [
+        "no tornado.force.png: no point has a level and sensitivities of it"
+    ]

@@ -11,10 +11,11 @@ import herringbone as hb
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import apart, lines_of
 from herringbone.core import ParameterError
+from herringbone.plotting.studies.plan_chart import plan_chart
 from herringbone.running.lean import lean_of
 from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
-from herringbone.scenes import Ask, Motion, Operating, Scene, read_scene
+from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
@@ -76,8 +77,29 @@ def test_what_is_written_runs_and_states_its_error(tmp_path):
     assert any("leaner model" in n and error in n and "not known" not in n for n in within.notes)
     beyond = hb.steady("test_rig", scene=file, speed=2000.0 * _R_MIN)
     assert any("not known at this operating point" in note for note in beyond.notes)
+    assert any("solved as well" in note and "bearing_force" in note for note in beyond.notes)
     with pytest.raises(ParameterError, match="with fuse"):
         hb.run("test_rig", scene=file, t_end=1e-3)
+
+
+def test_a_housing_driven_one_way_by_hand_is_warned_of_with_its_error():
+    scene = Scene("by hand", values=_STILL, model=Model(one_way=("gearbox.modal_housing",)))
+    (warning,) = [n for n in hb.steady("test_rig", scene=scene).notes if "warning" in n]
+    found = re.search(r"seat_velocity ([0-9.]+) %", warning)
+    assert found
+    assert float(found[1]) > 50.0
+
+
+def test_joint_choices_err_what_the_model_leaves_out_and_what_the_solver_does():
+    ask = Ask(("bearing force",), Form.LEVEL, 0.05)
+    at = Operating(speed=(1300.0 * _R_MIN,) * 2)
+    found = plan("test_rig", scene=_scene(ask, operating=at), chart=True)
+    finest = [joint for joint in found.joint if joint.tolerance == 1e-4]
+    assert len(finest) > 5
+    for joint in finest:
+        assert joint.error == pytest.approx(joint.floor, rel=0.05, abs=1e-3)
+    (axes,) = plan_chart(found).axes
+    assert {"choice", "Pareto front", "tolerance"} <= {line.get_label() for line in axes.lines}
 
 
 def test_tests_are_not_probes():

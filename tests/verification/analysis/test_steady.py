@@ -7,10 +7,12 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb
+from herringbone.analysis.steady.assumed import assumed
 from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.fused.core import Steps
+from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
 from herringbone.running.prepared import Wishes
 from herringbone.running.steady import prepared_solver
@@ -18,6 +20,7 @@ from herringbone.running.steady import prepared_solver
 GROUPS = ("bearing_force", "seat_velocity")
 PERIODS, PER_PERIOD, STEP = 40, 64, 5e-6
 STILL = {"gear_mesh.symmetry_deviation": 0.0}
+HOUSING = COMPONENTS["modal_housing"].resources / "modes.csv"
 
 
 def marched(
@@ -134,3 +137,34 @@ def test_sensitivities_are_differences():
     levels = [side.level("bearing_force") for side in sides]
     expected = (levels[0] - levels[1]) / (2e-3 * found.value)
     assert found.derivative == pytest.approx(expected, rel=1e-3)
+
+
+def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
+    """All ratios of its modes together; against states with files of 1 % more and less."""
+    state = hb.steady("test_rig", values=STILL, tolerance=1e-6)
+    (name,) = (n for n in assumed(state.structure.system) if n.endswith("housing.damping_ratio"))
+    lines = HOUSING.read_text(encoding="utf-8").splitlines()
+    first = next(k for k, line in enumerate(lines) if line[0].isdigit())
+    levels = []
+    for factor in (1.01, 0.99):
+        rows = [line.rpartition(",") for line in lines[first:]]
+        scaled = [f"{head},{factor * float(ratio)!r}" for head, _, ratio in rows]
+        file = tmp_path / f"modes_{factor}.csv"
+        file.write_text("\n".join([*lines[:first], *scaled, ""]), encoding="utf-8")
+        values = {**STILL, "modal_housing.modes": str(file)}
+        levels.append(hb.steady("test_rig", values=values, tolerance=1e-6).level("seat_velocity"))
+    found = sensitivities(state, "seat_velocity", [name])[name].relative
+    assert found == pytest.approx(np.log(levels[0] / levels[1]) / np.log(1.01 / 0.99), rel=1e-3)
+
+
+def test_a_state_is_drawn():
+    state = hb.steady("gearbox", values=STILL, speed=100.0)
+    figure = state.plot()
+    rows = len(state.channels)
+    assert len(figure.axes) == 2 * (rows + 1)
+    signal, orders = figure.axes[0].lines[0], figure.axes[1].lines[0]
+    assert signal.get_xdata()[-1] == state.meshes == 1
+    drawn = np.asarray(orders.get_ydata())
+    pooled = np.sqrt(np.mean(np.abs(state.amplitudes("bearing_force")[:, 1:]) ** 2, axis=0))
+    assert drawn.max() == pytest.approx(pooled.max())
+    assert "stable" in figure.axes[2 * rows].get_title(loc="left")

@@ -95,3 +95,23 @@ def test_lowest_modes(one_way):
     coupled = told(f"coupled, they lie at {number} and {number} Hz")
     np.testing.assert_allclose(frequencies(one_way), alone, rtol=0.01)
     np.testing.assert_allclose(frequencies({}), coupled, rtol=0.01)
+
+
+def test_stated_choice_is_that_of_a_rigid_housing(one_way):
+    """`seat_motion` 0 takes the seats' motion out of the bearings, whatever the housing does."""
+    chosen = vibration({"bearing_supports.seat_motion": 0.0})
+    without = vibration(one_way)
+    assert chosen == pytest.approx(without, rel=1e-4)
+
+
+def test_stated_choice_is_told():
+    """By runs and steady states, with the part that is driven one way."""
+    values = {"bearing_supports.seat_motion": 0.0}
+    for found in (
+        hb.steady("gearbox", values=values).notes,
+        hb.run("test_rig", t_end=1e-3, fmu="in-process", values=values).info.notes,
+    ):
+        (line,) = [note for note in found if note.startswith("one way: ")]
+        assert "bearing_supports stands on rigid ground" in line
+        assert "modal_housing, whose motion does not act back" in line
+    assert not any(note.startswith("one way") for note in hb.steady("gearbox").notes)

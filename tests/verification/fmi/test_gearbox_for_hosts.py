@@ -19,6 +19,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.fmi.check import check_fmu
 from herringbone.fmi.native import find_compiler, own_platform
+from herringbone.fmi.reference import replay
 from herringbone.running.exporting.system_fmu import export_fmu
 
 RATIO, SPEED = 3.0, 1000.0 * math.pi / 30.0
@@ -327,3 +328,8 @@ def test_documented_step_limit(order, inertia, beyond, exported, tmp_path):
     if again:
         assert swing(sum(again) / 2.0) < 3.0 * calm + 0.5
     assert bool(again) is (inertia == 1.0)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_reference_results_are_those_of_turning_shafts(exported, number):
+    assert replay(exported(number)) == []

@@ -23,7 +23,9 @@ SCENES = (
     ("e_axle", "coast"),
     ("ship", "loaded"),
     ("turbine", "loaded"),
+    ("boosted_axle", "loaded"),
 )
+ENGAGING = ("boosted_axle", "engaging")
 PROMISE = 1e-3
 BASE_RADIUS, RATIO, BETA = (0.05029802, 0.1508941), 3.0, 0.4891168
 BACKLASH, BEARING = 180e-6, 6.34e8
@@ -49,7 +51,7 @@ def at_start(system, *columns):
     return twin.observe(np.zeros(1), twin.state[:, None], list(columns))[0]
 
 
-@pytest.mark.parametrize(("name", "scene"), SCENES)
+@pytest.mark.parametrize(("name", "scene"), (*SCENES, ENGAGING))
 def test_it_runs_as_it_is_and_agrees_with_its_twin(name, scene):
     result = ran(name, scene)
     assert result.outcome.completed
@@ -221,3 +223,33 @@ def test_powers_are_what_is_stored_and_lost(name, scene):
     assert gears
     for gear in gears:  # 1 % of the power, at the most, is stored or lost in steady rotation
         assert abs(taken[gear]) < 0.01 * passing
+
+
+def test_teeth_change_flanks():
+    """Tip-out: from drive through the backlash to coast, as the twin does it."""
+    result = hb.run("e_axle", scene="tip_out", fmu="in-process", reference=True)
+    force = result.data["gearbox.gear_mesh.mesh_left.force"].to_numpy()
+    time = result.data["time"].to_numpy()
+    assert force[(time > 0.04) & (time < 0.05)].mean() > 100.0  # N
+    assert force[time > 0.09].max() < -300.0
+    assert force[time < 0.01].min() < -3000.0  # eight times the load that follows: a hit
+    assert np.count_nonzero(force == 0.0) > 0  # teeth apart
+    assert any("coast flank is loaded" in note for note in result.info.notes)
+    assert max(result.error.values()) <= PROMISE
+
+
+def test_the_freewheel_engages():
+    """Free: the booster gains its torque over its inertia. Engaged: it hands its torque over."""
+    result = ran(*ENGAGING, 0.1)
+    time, torque, slip, speed = (
+        result.data[c].to_numpy()
+        for c in ("time", "freewheel.torque", "freewheel.w_rel", "booster.flange_a.w")
+    )
+    booster, machine = (given("boosted_axle", p) for p in ("booster", "booster_machine"))
+    before = time < 0.009
+    assert slip[0] == pytest.approx(-20.0, abs=1e-3)
+    assert np.abs(torque[before]).max() < 1e-3 * machine["nominal_torque"]  # the twist dies out
+    gained = machine["nominal_torque"] / booster["inertia"] * time[before]
+    assert speed[before] - speed[0] == pytest.approx(gained, rel=1e-3, abs=1e-3)
+    assert np.abs(slip[time > 0.02]).max() < 1.0
+    assert torque[time > 0.05].mean() == pytest.approx(machine["nominal_torque"], rel=0.01)

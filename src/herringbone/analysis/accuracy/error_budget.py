@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.accuracy.beyond import share_beyond
 from herringbone.analysis.asked import group, resource_file, signal
 from herringbone.analysis.figures.modal_response import housing_of
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
@@ -166,7 +167,10 @@ def _housings(result: Result) -> Iterator[BudgetRow]:
             how = "its data carry no certificate"
             yield BudgetRow(source, quantity, None, Known.UNKNOWN, how)
             continue
-        how = f"certified bound up to {housing.certificate.get('band_hz', 0.0):g} Hz"
+        band = float(housing.certificate.get("band_hz", 0.0))
+        how = f"certified bound up to {band:g} Hz"
+        if (share := share_beyond(result, _CHANNEL, band)) > float(bound):
+            how += f"; {100 * share:.2g} % of the bearing forces lie beyond, where nothing is known"
         yield BudgetRow(source, quantity, float(bound), Known.ESTIMATED, how)
 
 

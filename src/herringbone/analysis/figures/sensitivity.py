@@ -16,6 +16,8 @@ import pandas as pd
 
 from herringbone.core import ParameterError
 
+SENSITIVITY = ".sensitivity."
+"""Between group and parameter, in the name of a column of a study that was asked for them."""
 _FEWEST = 2
 
 
@@ -59,6 +61,32 @@ def sensitivities(
             found = _slope(alone[name].to_numpy(float), alone[figure].to_numpy(float))
             if found is not None:
                 rows.append((name, *found, *([place] if along else ())))
+    return pd.DataFrame(rows, columns=columns)
+
+
+def given_sensitivities(
+    table: pd.DataFrame, group: str, spread: float, along: str | None = None
+) -> pd.DataFrame:
+    """Sensitivities of the level of a group that stand in the table of a study themselves.
+
+    Args:
+        table: a row per point, with columns `GROUP.sensitivity.PARAMETER`.
+        group: of channels.
+        spread: by which each of the parameters may err [1].
+        along: see `sensitivities`.
+
+    Returns:
+        As `sensitivities`, without "points"; of points that have none there is no row.
+    """
+    start = f"{group}{SENSITIVITY}"
+    rows = [
+        (column.removeprefix(start), value, spread, *([place] if along else ()))
+        for column in table.columns
+        if column.startswith(start)
+        for place, value in zip(table[along] if along else table.index, table[column], strict=True)
+        if math.isfinite(value)
+    ]
+    columns = ["parameter", "sensitivity", "spread", *([along] if along else ())]
     return pd.DataFrame(rows, columns=columns)
 
 

@@ -9,7 +9,7 @@ left out:
 All of the linear part, reactions included, is exact; the laws are followed along their slopes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -81,20 +81,30 @@ class Estimates:
             changed = self._changed(own, push, channels)
             return self._apart(self._whole + changed)
 
-    def alone(self, names: Sequence[str]) -> dict[str, Mapping[str, Apart]]:
-        """Errors by state and question if each of these is held alone, with what goes with it."""
+    def influences(self, names: Sequence[str]) -> dict[str, float]:
+        """What each state changes if it is held alone, for a ranking; those that can move.
+
+        It is the worst error over its tolerance. Of periods of many meshes, whose laws take long,
+        it is the relative change of what the outputs are made of, without the laws' answer.
+        """
+        places = self._reactions.places
+        own = [name for name in names if name in places]
         with one_blas_thread(), np.errstate(all="ignore"):
             every = self._reactions.alone(self._moving)
-            found: dict[str, Mapping[str, Apart]] = {}
-            for name in names:
-                if (place := self._reactions.places.get(name)) is None:
-                    continue
-                push = every[[place]]
-                channels = self._still.copy()
-                channels[self._found.unknown] = self._answered([place], push)
-                changed = self._changed([place], push, channels)
-                found[name] = self._apart(self._whole + changed)
-        return found
+            if self._state.meshes > 1:
+                return {name: self._row_change(places[name], every) for name in own}
+            return {name: self._alone(places[name], every[[places[name]]]) for name in own}
+
+    def _alone(self, place: int, push: np.ndarray) -> float:
+        channels = self._still.copy()
+        channels[self._found.unknown] = self._answered([place], push)
+        found = self._apart(self._whole + self._changed([place], push, channels))
+        return max(found[q.name].error / q.tolerance for q in self._questions)
+
+    def _row_change(self, place: int, every: np.ndarray) -> float:
+        changed = np.linalg.norm(self._reactions.outputs[:, place, 1:] * every[place, 1:], axis=1)
+        sizes = np.linalg.norm(self._whole[:, 1:], axis=1)
+        return float(np.linalg.norm(changed[sizes > 0.0] / sizes[sizes > 0.0]))
 
     def of(self, structure: Structure) -> dict[str, Apart]:
         """Errors by question of a leaner model of the same states and tangents."""

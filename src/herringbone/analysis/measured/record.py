@@ -101,7 +101,10 @@ def _chosen(path: Path, channels: Mapping[str, np.ndarray], wanted: str) -> str:
 def _of_csv(path: Path) -> _Channels:
     text = read_text(path)
     header = next((line for line in text.split("\n") if line and not line.startswith("#")), "")
-    names = [name.strip() for name in header.split(",") if name.strip() != _TIME]
+    found = [name.strip() for name in header.split(",")]
+    if header and _TIME not in found:
+        raise ResourceError(f"{path}: column {_TIME} is missing; it has {', '.join(found)}")
+    names = [name for name in found if name != _TIME]
     wanted = {_TIME: ("s",), **{name: tuple(_UNITS) for name in names}}
     columns, units = read_flat_csv(path, (), wanted)
     steps = np.diff(columns[_TIME])
@@ -116,8 +119,8 @@ def _of_wav(path: Path, full_scale: float | None) -> _Channels:
 
     if full_scale is None:
         raise ParameterError(
-            f"{path}: WAV has no unit; give the velocity of its largest number, such as "
-            "--full-scale 50mm/s"
+            f"{path}: WAV has no unit; give the velocity of its largest number in m/s, such as "
+            "--full-scale 0.05"
         )
     if not 0.0 < full_scale < np.inf:
         raise ParameterError(f"full scale = {full_scale:g} m/s must be positive")

@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -11,6 +12,9 @@ from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.names import matches_any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 R_MIN = 30.0 / np.pi
 """r/min of 1 rad/s."""
@@ -37,6 +41,11 @@ class PeriodicMotion(Facts):
     @abstractmethod
     def error(self) -> float:
         """Of the worst group of channels, over its alternating part."""
+
+    @property
+    @abstractmethod
+    def speed(self) -> float:
+        """Mean speed of the first pinion [rad/s]; NaN: not known."""
 
     @property
     @abstractmethod
@@ -157,6 +166,14 @@ class PeriodicMotion(Facts):
             "amplitude": np.abs(found).ravel(),
             "phase": np.angle(found).ravel(),
         })  # fmt: skip
+
+    def plot(self) -> "Figure":
+        """Signals over one period, orders, and multipliers where they are known."""
+        from herringbone.plotting.studies.steady_state import (  # noqa: PLC0415 (matplotlib: lazy)
+            steady_picture,
+        )
+
+        return steady_picture(self)
 
     def levels(self) -> dict[str, str]:
         """Levels of all groups, as short texts."""

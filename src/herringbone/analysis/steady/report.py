@@ -2,11 +2,13 @@
 
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.sensitivity import Sensitivity
 from herringbone.analysis.steady.settled import SettledState
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.files import replacing
@@ -16,6 +18,8 @@ _FEW = 10
 """Meshes of a period whose multipliers take no second."""
 _LINES = 5
 """Largest lines of a group that are told."""
+_LARGEST = 8
+"""Parameters that are told."""
 ORDERS, SUMMARY = "orders.csv", "steady.json"
 
 
@@ -127,6 +131,16 @@ def _group(state: PeriodicMotion, group: str) -> list[str]:
             for k in sorted(largest)
         ),
     ]
+
+
+def sensitivity_text(found: Mapping[str, Mapping[str, Sensitivity]]) -> list[str]:
+    """Lines on what the levels of groups depend on most."""
+    lines: list[str] = []
+    for group, own in found.items():
+        lines += ["", f"{group.replace('_', ' ')}: level goes with parameter to the power of"]
+        largest = sorted(own, key=lambda name: -abs(own[name].relative))[:_LARGEST]
+        lines += [f"  {own[name].relative:9.3f}  {name}" for name in largest]
+    return lines
 
 
 def write_steady(state: SteadyState | SettledState, folder: Path) -> list[Path]:

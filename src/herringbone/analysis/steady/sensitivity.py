@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.steady.assumed import STEP, Changes, Moved
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.correction import Bent, jacobian, packed, sloped
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
@@ -24,15 +24,12 @@ from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
 
-_STEP = 1e-3
-"""Of a parameter, over its value."""
-
 
 class Sensitivity(NamedTuple):
     """How a level depends on a parameter.
 
     Attributes:
-        value: of the parameter.
+        value: of the parameter; of the dampings of a housing, which are many, 1.
         derivative: of the level over it.
         relative: change of the level over that of the parameter, both over their sizes: -1 where
             the level goes with its inverse.
@@ -44,14 +41,15 @@ class Sensitivity(NamedTuple):
 
 
 def sensitivities(
-    state: SteadyState, level: str, parameters: Sequence[str]
+    state: SteadyState, level: str, parameters: Sequence[str], changes: Changes | None = None
 ) -> dict[str, Sensitivity]:
     """Derivatives of a level over parameters that are not zero.
 
     Args:
         state: a periodic motion of one mesh.
         level: column or group of channels, of outputs that are affine, see `SteadyState.level`.
-        parameters: `instance.variable`.
+        parameters: `instance.variable`, or dampings of a housing, see `assumed`.
+        changes: of one caller, who asks for several levels or operating points.
 
     Raises:
         ParameterError: the period has several meshes; a parameter is zero.
@@ -61,10 +59,13 @@ def sensitivities(
             f"sensitivities are of a period of one mesh, this one has {state.meshes}; switch "
             "run-outs and deviations of teeth off"
         )
-    columns = state.chosen(level)
+    columns, moved = state.chosen(level), changes or Changes()
     with one_blas_thread():
         size, found, adjoint = _adjoint(state, columns)
-        return {name: _of(state, columns, size, found, adjoint, name) for name in parameters}
+        return {
+            name: _of(state, columns, size, found, adjoint, moved(state.structure, name))
+            for name in parameters
+        }
 
 
 def _of(
@@ -73,20 +74,15 @@ def _of(
     size: float,
     found: Bent,
     adjoint: np.ndarray,
-    name: str,
+    moved: Moved,
 ) -> Sensitivity:
     """Of one parameter."""
-    system = state.structure.system
-    value = value_at(system, name)
-    if value == 0.0:
-        raise ParameterError(f"{name} = 0: a sensitivity is of a parameter that is not zero")
-    sides = []
-    for sign in (1.0, -1.0):
-        moved = system.with_values({name: value * (1.0 + sign * _STEP)})
-        structure = Structure(moved, state.structure, same_tangents=True)
-        sides.append(_fixed(state, structure, columns, found, adjoint))
-    derivative = (sides[0] - sides[1]) / (2.0 * _STEP * value)
-    return Sensitivity(value, derivative, derivative * value / size)
+    larger, smaller = (
+        _fixed(state, structure, columns, found, adjoint)
+        for structure in (moved.larger, moved.smaller)
+    )
+    derivative = (larger - smaller) / (2.0 * STEP * moved.value)
+    return Sensitivity(moved.value, derivative, derivative * moved.value / size)
 
 
 def _fixed(

@@ -37,6 +37,12 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
     sub = add("reduce", _reduce, "keep the modes that a band needs, with a certified error")
     sub.add_argument("data", type=Path, help="folder or .zip file of the format modal-housing")
     _band_options(sub)
+    sub.set_defaults(band=None)
+    sub.add_argument("--for", dest="system", help="system whose scene decides on the band")
+    sub.add_argument(
+        "--scene",
+        help="with --for: as far as what it asks has lines; a smaller --band is warned of",
+    )
     sub = add("import", _import, "make modal data of another program's matrices or modes")
     sub.add_argument(
         "file", nargs="+", type=Path,
@@ -51,7 +57,9 @@ def register(commands: Any) -> None:  # noqa: ANN401 (argparse's type is private
 
 
 def _band_options(sub: argparse.ArgumentParser) -> None:
-    sub.add_argument("--band", type=float, default=2000.0, help="highest frequency of use in Hz")
+    sub.add_argument(
+        "--band", type=float, default=2000.0, help="highest frequency of use in Hz; 2000"
+    )
     sub.add_argument(
         "--tolerance", type=float, default=0.05,
         help="error of the receptance at the seats, relative to the static compliance",

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from herringbone.commands.housing.asked import asked_by, band_for, changes
 from herringbone.commands.output import check_writable, say, show
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
@@ -23,13 +24,15 @@ _MOST_MODES = component_for(Role.HOUSING).declaration.vectors[0].capacity
 def reduce_command(options: argparse.Namespace) -> int:
     """Reduce modal data, write them with their certificate and a picture beside the full data."""
     full = read_housing(options.data)
+    asked = asked_by(options)
+    band = band_for(options, asked, full.valid_to_hz)
     stem = options.data.name.removesuffix(".zip")
-    output = options.output or Path("results") / f"{stem}-{options.band:g}Hz"
+    output = options.output or Path("results") / f"{stem}-{band:g}Hz"
     if output.resolve() == options.data.resolve():
         raise HerringboneError(f"-o {output} would overwrite the full data; choose another place")
     check_writable(_folder(output))
-    reduced = reduce_housing(full, band_hz=options.band, tolerance=options.tolerance)
-    frequency_hz = options.band * np.logspace(-_DECADES, 0.0, _POINTS)
+    reduced = reduce_housing(full, band_hz=band, tolerance=options.tolerance)
+    frequency_hz = band * np.logspace(-_DECADES, 0.0, _POINTS)
     errors = drive_point_errors(full, reduced, frequency_hz)
     static = np.diag(full.static_compliance())
     difference = float(np.abs(np.diag(reduced.static_compliance()) / static - 1.0).max())
@@ -41,13 +44,15 @@ def reduce_command(options: argparse.Namespace) -> int:
         "normal_modes": reduced.kind.count("normal"),
         "residual_modes": reduced.kind.count("residual"),
         "full_oscillators": full.frequency_hz.size,
-        "band_hz": options.band,
+        "band_hz": band,
         "tolerance": options.tolerance,
-        "error_bound": certified_bound(reduced, options.band),
+        "error_bound": certified_bound(reduced, band),
         "error_against_data": float(errors.max()),
         "static_difference": difference,
         "files": [str(output), str(picture)],
     }
+    if asked is not None:
+        figures["changes"] = changes(asked, output)
     show(json.dumps(figures) if options.json else _text(figures))
     return 0
 
@@ -68,6 +73,11 @@ def _text(figures: dict) -> str:
             "against the data",
             f"Static compliance at the seats differs by {figures['static_difference']:.1e}",
         ]
+    lines += [
+        f"{name}: changed by {100 * found['error']:.2g} %, worst output {found['worst']}: "
+        f"{100 * found['worst_error']:.2g} %"
+        for name, found in figures.get("changes", {}).items()
+    ]
     return "\n".join([*lines, "Files: " + ", ".join(figures["files"])])
 
 

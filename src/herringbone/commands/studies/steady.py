@@ -3,17 +3,26 @@
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
     add_cells,
     add_replacements,
     add_scene,
+    add_sensitivities,
     add_start_values,
     files_of_parts,
     replacements,
+    spread_of,
     start_values,
 )
 from herringbone.commands.output import check_writable, say, show
+from herringbone.core import ParameterError
+
+if TYPE_CHECKING:
+    from herringbone.analysis.steady.sensitivity import Sensitivity
+    from herringbone.analysis.steady.settled import SettledState
+    from herringbone.analysis.steady.state import SteadyState
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -29,7 +38,11 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--longest", type=float, default=10.0, metavar="SECONDS",
         help="with foreign parts, which are run until they settle: duration at most, 10 s",
     )  # fmt: skip
-    sub.add_argument("-o", "--output", type=Path, help="folder for orders.csv and steady.json")
+    add_sensitivities(sub)
+    sub.add_argument(
+        "-o", "--output", type=Path,
+        help="folder for orders.csv, steady.json, steady.png, and tornado.GROUP.png",
+    )  # fmt: skip
     sub.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -41,12 +54,14 @@ def run(options: argparse.Namespace) -> int:
     """
     from herringbone.analysis.steady.report import (  # noqa: PLC0415 (numba)
         per_second,
+        sensitivity_text,
         steady_summary,
         steady_text,
         write_steady,
     )
     from herringbone.running.steady import steady  # noqa: PLC0415
 
+    spread = spread_of(options)
     if options.output:
         check_writable(options.output)
     files = files_of_parts(options)
@@ -64,9 +79,41 @@ def run(options: argparse.Namespace) -> int:
     )
     for note in state.notes:
         say(note)
+    found = _sensitivities(state, options)
     written = write_steady(state, options.output) if options.output else []
+    if options.output:
+        from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
+            write_steady_pictures,
+        )
+
+        written += write_steady_pictures(state, found, options.output, spread)
     if options.json:
-        show(json.dumps({**steady_summary(state), "results": [str(f) for f in written]}))
+        told = {g: {n: x.relative for n, x in own.items()} for g, own in found.items()}
+        more = {"sensitivities": told} if told else {}
+        show(json.dumps({**steady_summary(state), **more, "results": [str(f) for f in written]}))
     else:
-        show("\n".join([*steady_text(state), *(f"Files: {f}" for f in written)]))
+        lines = [*steady_text(state), *sensitivity_text(found)]
+        show("\n".join([*lines, *(f"Files: {f}" for f in written)]))
     return 0 if state.converged else 1
+
+
+def _sensitivities(
+    state: "SteadyState | SettledState", options: argparse.Namespace
+) -> dict[str, dict[str, "Sensitivity"]]:
+    """By group and parameter; none, with a line, where there are none."""
+    from herringbone.analysis.steady.assumed import Changes, assumed  # noqa: PLC0415 (numba)
+    from herringbone.analysis.steady.sensitivity import sensitivities  # noqa: PLC0415
+    from herringbone.analysis.steady.settled import UNTOLD, SettledState  # noqa: PLC0415
+
+    if options.sensitivities is None:
+        return {}
+    if isinstance(state, SettledState):
+        say(UNTOLD)
+        return {}
+    names = assumed(state.structure.system, options.sensitivities)
+    changes = Changes()
+    try:
+        return {group: sensitivities(state, group, names, changes) for group in state.channels}
+    except ParameterError as error:
+        say(str(error))
+        return {}

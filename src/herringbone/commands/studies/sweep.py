@@ -13,13 +13,15 @@ from herringbone.commands.options import (
     add_cells,
     add_replacements,
     add_scene,
+    add_sensitivities,
     add_start_values,
     assignments,
     files_of_parts,
     replacements,
+    spread_of,
     start_values,
 )
-from herringbone.commands.output import check_writable, show
+from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
@@ -61,6 +63,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         "--column", action="append", default=[], metavar="OUTPUTS",
         help="output or pattern with levels of its own, besides the groups; may be repeated",
     )  # fmt: skip
+    add_sensitivities(sub)
     sub.add_argument("--workers", type=int, help="processes; as many as are worth it if not given")
     sub.add_argument("--series", action="store_true", help="keep rows over time of each point")
     sub.add_argument("--parquet", action="store_true", help="also write table.parquet")
@@ -87,6 +90,7 @@ def run(options: argparse.Namespace) -> int:
 
     folder = options.output or Path("results") / f"sweep-{Path(options.system).stem}"
     check_writable(folder)
+    spread = spread_of(options)
     fixed, points = _points(options)
     if options.study is None:
         study = replace(grid(points), speed_unit=PER_MINUTE)
@@ -122,8 +126,10 @@ def run(options: argparse.Namespace) -> int:
     from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
 
     title = Path(options.system).stem
-    drawn = write_study_pictures(found.table, found.units, folder, title)
-    files_told = [str(folder / file.name) for file in (*found.files, *drawn)]
+    drawn = write_study_pictures(found.table, found.units, folder, title, spread)
+    for line in drawn.missing:
+        say(line)
+    files_told = [str(folder / file.name) for file in (*found.files, *drawn.files)]
     show(_summary(found, files_told, as_json=options.json))
     return 0
 
@@ -162,17 +168,26 @@ def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | No
     columns = tuple(options.column)
     of_runs = {n: v for n in ("step", "algorithm") if (v := getattr(options, n)) is not None}
     tolerance = {} if options.tolerance is None else {"tolerance": options.tolerance}
+    asked = options.sensitivities
     if options.transient:
+        _refuse_sensitivities(asked)
         return Transient(columns=columns, **of_runs, **tolerance)
-    if not (of_runs or columns or tolerance):
+    if not (of_runs or columns or tolerance or asked is not None):
         return None
     if is_foreign(options.system, options.scene, wishes):
+        _refuse_sensitivities(asked)
         if options.t_end is not None:
             return Transient(columns=columns, **of_runs, **tolerance)
         return Settled(columns=columns, **of_runs, **tolerance)
     if of_runs:
         raise ParameterError(f"--{next(iter(of_runs))}: of runs; add --transient")
-    return Steady(columns=columns, **tolerance)
+    sensitivities = None if asked is None else tuple(asked)
+    return Steady(columns=columns, sensitivities=sensitivities, **tolerance)
+
+
+def _refuse_sensitivities(asked: list[str] | None) -> None:
+    if asked is not None:
+        raise ParameterError("--sensitivities: of steady states whose equations are all known")
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:

@@ -10,6 +10,7 @@ from scipy.signal import find_peaks
 
 from herringbone.analysis.set_points import SPEED
 from herringbone.core import ParameterError
+from herringbone.plotting.studies.coinciding import coinciding
 from herringbone.plotting.studies.table import MESH, Points, thinned
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, new_figure, styled
 
@@ -116,10 +117,14 @@ def _rms(
 ) -> None:
     column = f"{group}.rms"
     factor, unit = points.scale(column)
+    drawn = []
     for i, (label, rows) in enumerate(curves):
         x, y = rows[across].to_numpy(float), factor * rows[column].to_numpy(float)
+        drawn.append((x, y))
         line = "-" if i < len(COLOURS) else "--"
         axes.plot(x, y, marker="o", markersize=2.2, linestyle=line, label=label or None)
+    told = coinciding([label for label, _ in curves], drawn)
+    axes.set_title("\n".join(told), fontsize=7.5)
     _, rows = curves[-1]
     mark_peaks(axes, rows[across].to_numpy(float), factor * rows[column].to_numpy(float))
     axes.set_ylabel(f"{group.replace('_', ' ')}, rms [{unit}]")

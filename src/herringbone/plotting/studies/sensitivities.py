@@ -10,6 +10,8 @@ from herringbone.plotting.style import COLOURS, new_figure, styled
 
 PARAMETER, SENSITIVITY, SPREAD = "parameter", "sensitivity", "spread"
 _MOST_BARS = 20
+_WIDTH, _CHARACTER = 9.5, 0.075
+"""Of the picture, and of a character of a name [inch]."""
 _BAR = 0.28
 """Height of a bar [inch]."""
 
@@ -59,9 +61,14 @@ def tornado(sensitivities: pd.DataFrame, title: str = "") -> Figure:
     hidden = len(found) - min(len(found), _MOST_BARS)
     more = f" ({hidden} smaller ones not shown)" if hidden else ""
     rows = found.head(_MOST_BARS).iloc[::-1]
-    figure = new_figure(f"What parameters make of {title or 'the level'}{more}", 1, width=9.5)
+    figure = new_figure(f"What parameters make of {title or 'the level'}{more}", 1, width=_WIDTH)
     figure.set_figheight(1.6 + _BAR * len(rows))
-    figure.subplots_adjust(left=0.42, bottom=0.55 / (1.6 + _BAR * len(rows)))
+    told = [
+        f"{name} (factor {1.0 + spread:.3g}, p^{s:.2f})"
+        for name, spread, s in zip(rows[PARAMETER], rows[SPREAD], rows[SENSITIVITY], strict=True)
+    ]
+    margin = min(0.6, max(0.42, 0.02 + _CHARACTER * max(map(len, told)) / _WIDTH))
+    figure.subplots_adjust(left=margin, bottom=0.55 / (1.6 + _BAR * len(rows)))
     axes = figure.subplots()
     places = np.arange(len(rows))
     left = 100.0 * rows["low"].to_numpy()
@@ -71,10 +78,6 @@ def tornado(sensitivities: pd.DataFrame, title: str = "") -> Figure:
     axes.axvline(0.0, color="black", linewidth=0.8)
     axes.margins(x=0.08)
     axes.use_sticky_edges = False
-    told = [
-        f"{name} (factor {1.0 + spread:.3g}, p^{s:.2f})"
-        for name, spread, s in zip(rows[PARAMETER], rows[SPREAD], rows[SENSITIVITY], strict=True)
-    ]
     axes.set_yticks(places, told)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("change of the level [%]")

@@ -19,7 +19,7 @@ from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
-from herringbone.running.lean import lean_of
+from herringbone.running.lean import lean_of, with_model_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -100,7 +100,7 @@ def fused(
         recording = _marched(core, trial.steps, columns, system, scene, progress, streaming)
     every = make_result(system, scene, KIND, KIND, recording, lines)
     every = replace(every, verification=_verification(trial))
-    every = judged(every, None)
+    every = with_model_row(judged(every, None), scene.model)
     result = every if output is None else output.seen(every)
     if recorded:
         recorded(result)

@@ -6,11 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
+from herringbone.analysis.steady.assumed import Changes, assumed
 from herringbone.analysis.steady.periodic import PeriodicMotion
+from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.core import ParameterError
 from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.steady import prepared_solver
@@ -32,10 +36,13 @@ class Steady:
     Attributes:
         tolerance: error of the alternating part of each group of channels.
         columns: further columns or patterns with figures of their own.
+        sensitivities: of the levels of all groups, to parameters that match these patterns; to all
+            dampings if there is none. None: they are not asked for.
     """
 
     tolerance: float = TOLERANCE
     columns: tuple[str, ...] = ()
+    sensitivities: tuple[str, ...] | None = None
     longest: int | None = None
     modules: tuple[str, ...] = ("herringbone.studies.evaluators.steady",)
     has_series: bool = False
@@ -61,6 +68,7 @@ class _States:
         self._system, folder = load_system(base.system)
         self._scene = load_scene(folder, base.scene)
         self._known = with_known_values(self._system, self._scene, base.wishes)
+        self._changes = Changes()
 
     def __call__(self, point: Point, near: _Near | None, *, series: bool) -> Evaluated:
         """See `Evaluation`."""
@@ -77,9 +85,23 @@ class _States:
             message = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
         bends = found.bends
-        message = f"laws bend within the period: {', '.join(bends)}" if bends else ""
+        told = [f"laws bend within the period: {', '.join(bends)}"] if bends else []
         figures = figures_of(found, self._asked.columns)
-        return Evaluated(STEADY, message, figures, _Near(found, solver, prepared))
+        if self._asked.sensitivities is not None:
+            try:
+                figures |= self._sensitivities(found, self._asked.sensitivities)
+            except ParameterError as error:
+                told.append(str(error))
+        return Evaluated(STEADY, "; ".join(told), figures, _Near(found, solver, prepared))
+
+    def _sensitivities(self, state: SteadyState, patterns: tuple[str, ...]) -> dict[str, Figure]:
+        """By group and parameter; raises ParameterError if there are none."""
+        names = assumed(state.structure.system, patterns)
+        return {
+            f"{group}{SENSITIVITY}{name}": Figure(found.relative, "1")
+            for group in state.channels
+            for name, found in sensitivities(state, group, names, self._changes).items()
+        }
 
     def _split(self, point: Point) -> tuple[dict[str, float], Point]:
         """Speed and torque that the solver takes itself, and values of variables."""

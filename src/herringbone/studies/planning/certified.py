@@ -36,6 +36,10 @@ class Certifier:
         points: where it is tested.
         share: of the tolerance, for the solver.
 
+    Attributes:
+        lines: of the whole model, by point and question.
+        fine, tolerance: with which models are compared, and with which questions are answered.
+
     Raises:
         ParameterError: the whole model has no steady state at a point.
     """
@@ -47,7 +51,7 @@ class Certifier:
         points: Sequence[Point],
         share: float,
     ) -> None:
-        self._questions, self.points = questions, points
+        self.questions, self.points = questions, points
         self.fine = tolerance_for(questions, 1.0 / FINER)
         self.tolerance = tolerance_for(questions, share)
         self._solver = solver.leaner(WHOLE, self.fine)
@@ -57,7 +61,7 @@ class Certifier:
                 "plan: the system has no steady state that was found at all of the operating "
                 "points; narrow the range, or ask for a transient"
             )
-        self._lines = [
+        self.lines = [
             {question.name: lines_of(state, question) for question in questions}
             for state in self._whole
         ]
@@ -73,16 +77,20 @@ class Certifier:
             found.append(last)
         return found
 
+    def solver(self, lean: Lean, tolerance: float) -> SteadySolver:
+        """What solves for a leaner model."""
+        return self._solver.leaner(lean, tolerance)
+
     def error(self, lean: Lean) -> Worst | None:
         """The worst error of a leaner model; None if it has no steady state at a point."""
         leaner = self._solved(self._solver.leaner(lean), self._whole)
         found: list[tuple[Point, dict[str, Apart]]] = []
-        for ours, theirs in zip(leaner, self._lines, strict=True):
+        for ours, theirs in zip(leaner, self.lines, strict=True):
             if ours is None:
                 return None
-            by_name = {q.name: apart(q, lines_of(ours, q), theirs[q.name]) for q in self._questions}
+            by_name = {q.name: apart(q, lines_of(ours, q), theirs[q.name]) for q in self.questions}
             found.append((ours.point, by_name))
-        return worst(self._questions, found)
+        return worst(self.questions, found)
 
     def costs(self, models: Sequence[Lean]) -> list[float]:
         """CPU time of an answer by each model [s]: medians over the points, by turns.

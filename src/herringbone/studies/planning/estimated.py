@@ -42,9 +42,8 @@ class Ladder:
         """Modes that move, by what they do to what is asked, least first."""
         rates = [pair[1] for pair in self._pairs]
         sizes: dict[str, float] = {}
-        for state, estimates in zip(self._states, self._estimates, strict=True):
-            for rate, found in estimates.alone(rates).items():
-                size = worst(self._questions, [(state.point, found)]).ratio
+        for estimates in self._estimates:
+            for rate, size in estimates.influences(rates).items():
                 sizes[rate] = max(size, sizes.get(rate, 0.0))
         own = [pair for pair in self._pairs if pair[1] in sizes]
         return sorted(own, key=lambda pair: sizes[pair[1]])

@@ -21,6 +21,7 @@ from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.running.steady import prepared_at
 from herringbone.scenes import Model, Motion, Scene
 from herringbone.studies.planning.certified import FINER, tolerance_for
+from herringbone.studies.planning.joint import Joint, joint_choices
 from herringbone.studies.planning.points import first_point
 from herringbone.studies.planning.rung import Rung
 from herringbone.studies.planning.steady_plan import questions_of, steady_rungs
@@ -39,6 +40,7 @@ class Plan(Facts):
         tolerance: for the solver of the choice.
         seconds: CPU time that planning took [s].
         notes: lines that the user should read.
+        joint: joint choices of model and solver, if they were asked for.
     """
 
     system: str
@@ -48,6 +50,7 @@ class Plan(Facts):
     tolerance: float
     seconds: float
     notes: tuple[str, ...] = ()
+    joint: tuple[Joint, ...] = ()
 
     @property
     def choice(self) -> Rung:
@@ -77,6 +80,7 @@ def plan(
     values: Mapping[str, float | str | Path] | None = None,
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
+    chart: bool = False,
 ) -> Plan:
     """The least model and the solver that answer what a scene asks.
 
@@ -85,12 +89,13 @@ def plan(
 
     Args:
         system, scene, values, gear, housing: see `herringbone.run`; the scene asks.
+        chart: also solve joint choices of model and tolerance, for a picture; of steady states.
 
     Raises:
         ParameterError: the scene asks nothing, or what it asks is not there.
         HerringboneError: something about the input is wrong, or a part is a foreign FMU.
     """
-    begin = time.process_time()
+    begin, charted = time.process_time(), None
     own = Wishes(values=values or {}, gear=gear, housing=housing, lean=True)
     asking = _with_files(_scene(system, scene), gear, housing)
     if not asking.asks:
@@ -112,9 +117,13 @@ def plan(
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
         rungs, certifier, said = steady_rungs(fine, questions, asking, lean_of(asking))
-        tolerance = certifier.tolerance
+        tolerance, charted = certifier.tolerance, certifier
     asking = replace(asking, values={**asking.values, **as_texts(values)})
-    return _made(found.system, asking, questions, rungs, tolerance, begin, (*found.notes, *said))
+    notes = (*found.notes, *said)
+    made = _made(found.system, asking, questions, rungs, tolerance, begin, notes)
+    if chart and charted is not None:
+        return replace(made, joint=tuple(joint_choices(charted, rungs)))
+    return made
 
 
 def _scene(system: str | Path | System, scene: str | Path | Scene | None) -> Scene:

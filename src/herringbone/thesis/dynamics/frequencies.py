@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from herringbone.running.modes import modes
-from herringbone.thesis import names
 from herringbone.thesis.dynamics.equations import (
     COORDINATES,
     PUBLISHED_STIFFNESS,
@@ -17,6 +15,7 @@ from herringbone.thesis.dynamics.equations import (
     printed,
 )
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
+from herringbone.thesis.ground import natural
 from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ def compute() -> Outcome:
     mass = mass_matrix(bodies)
     right, shares = frequencies(corrected(bodies, PUBLISHED_STIFFNESS), mass)
     as_printed, _ = frequencies(printed(bodies, PUBLISHED_STIFFNESS), mass)
-    loaded = modes(names.ON_GROUND)
+    loaded = natural()
     rigid = right.size - loaded.frequency_hz.size
     at_point = np.concatenate([np.zeros(rigid), loaded.frequency_hz])
     damping = np.concatenate([np.full(rigid, np.nan), loaded.damping_ratio])
@@ -84,7 +83,8 @@ def _findings(listed: pd.DataFrame) -> tuple[Finding, ...]:
             loaded,
             "Hz",
             f"is the pinion's axial mode at 200 N m; {axial:.0f} Hz at the published stiffness",
-            "Contact softens at low load; the thesis states no torque with its stiffness.",
+            "Contact softens at low load; the thesis states no torque with its stiffness (see the "
+            "entries on stiffness).",
         ),
     )
 

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from herringbone.running.modes import modes
-from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
-from herringbone.thesis.ground import SPEEDS, levels, settled, unit, window, window_levels
+from herringbone.thesis.ground import SPEEDS, levels, natural, settled, unit, window, window_levels
 from herringbone.thesis.pair.given import JOB
 from herringbone.thesis.trends import growth, rises, verdict
 
@@ -58,7 +56,7 @@ def _crossings() -> list[dict[str, float]]:
     teeth = JOB.pair.number_of_teeth[0]
     found = [
         {"speed": 60.0 * frequency / (order * teeth), "order": order, "frequency": frequency}
-        for frequency in modes(names.ON_GROUND).frequency_hz
+        for frequency in natural().frequency_hz
         for order in range(1, _HIGHEST + 1)
     ]
     return [row for row in found if CURVE[0] <= row["speed"] <= CURVE[-1]]

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
-from herringbone.thesis.ground import SIGNALS, SPEED, WINDOW, levels, settled, unit, window
+from herringbone.thesis.ground import SIGNALS, SPEED, WINDOW, levels, natural, settled, unit, window
 from herringbone.thesis.pair.given import JOB
 from herringbone.thesis.trends import verdict
 
@@ -49,7 +49,7 @@ def compute() -> Outcome:
 
 
 def _findings(over: pd.DataFrame) -> tuple[Finding, ...]:
-    first = over.iloc[0]
+    first, slow = over.iloc[0], natural()
     axial = "pinion axial velocity"
     radial = [name for name in _SHOWN if "radial" in name]
     alike = over[np.abs(over[radial] - 1.0).max(axis=1) < _ALIKE]
@@ -62,8 +62,9 @@ def _findings(over: pd.DataFrame) -> tuple[Finding, ...]:
             float(first[axial]),
             "",
             f"times its settled level has the {axial} in the window 0.02 to 0.04 s (rms)",
-            "The wheel on its axial bearing, at 303 Hz with a damping ratio of 0.018, dies out "
-            "slowly. Damping of shafts and bearings is an assumption: the thesis gives none.",
+            f"The wheel on its axial bearing, at {slow.frequency_hz[0]:.0f} Hz with a damping "
+            f"ratio of {slow.damping_ratio[0]:.3f}, dies out slowly. Damping of shafts and "
+            "bearings is an assumption: the thesis gives none.",
             margin=0.1,
         ),
         Finding(

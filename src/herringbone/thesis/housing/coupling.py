@@ -6,10 +6,9 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.running.modes import modes
 from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
-from herringbone.thesis.ground import SPEED, settled
+from herringbone.thesis.ground import SPEED, natural, settled
 from herringbone.thesis.housing.response import FORCES
 from herringbone.thesis.trends import verdict
 
@@ -38,7 +37,7 @@ def compute() -> Outcome:
     factors = table(pd.DataFrame([
         {"system": system, **_factors(system)} for system in _SYSTEMS
     ]))  # fmt: skip
-    found = {way: modes(names.GEARBOX, values={names.SEAT_MOTION: float(m)}) for way, m in _WAYS}
+    found = {way: natural(names.GEARBOX, seats_move=m) for way, m in _WAYS}
     listed = [
         {"coupling": way, "frequency": f, "damping ratio": z}
         for way, own in found.items()

@@ -1,6 +1,6 @@
 """The entries of this room, in the order of the thesis."""
 
 from herringbone.thesis.entry import Entry
-from herringbone.thesis.readings import which
+from herringbone.thesis.readings import curves, which
 
-ENTRIES: tuple[Entry, ...] = (which.ENTRY,)
+ENTRIES: tuple[Entry, ...] = (which.ENTRY, curves.ENTRY)

@@ -45,6 +45,9 @@ _MESH_AXIAL, _HELIX, _BASE_RADIUS = 4.4e8, 0.489, 0.0503
 """For the estimate alone: axial stiffness of the meshes [N/m], base helix angle, pinion [m]."""
 
 
+Key = str | tuple[str, str]
+
+
 class Motion(NamedTuple):
     """Signals over whole periods.
 
@@ -56,7 +59,7 @@ class Motion(NamedTuple):
     """
 
     step: float
-    signals: Mapping[object, np.ndarray]
+    signals: Mapping[Key, np.ndarray]
     repeats: bool
     how: str
 
@@ -130,7 +133,8 @@ def _of_state(state: SteadyState) -> Motion:
     spread[:, orders] = 0.5 * count * rows
     spread[:, 0] *= 2.0
     signals = np.fft.irfft(spread, count, axis=1)
-    named: dict[object, np.ndarray] = dict(zip((*COLUMNS, *PLACES), signals, strict=True))
+    keys: tuple[Key, ...] = (*COLUMNS, *PLACES)
+    named = dict(zip(keys, signals, strict=True))
     return Motion(state.period / count, named, state.meshes == 1, STEADY)
 
 
@@ -142,14 +146,14 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
     result = _run(reading, own, _SETTLING + turn)
     data, known = result.data, result.data.columns
     count = round(turn / _STEP)
-    named: dict[object, np.ndarray] = {
+    signals: dict[Key, np.ndarray] = {
         name: data[_full(known, name)].to_numpy()[-count:] for name in COLUMNS
     }
     forces = data[[_full(known, name) for name in SEATS]].to_numpy()
     step = float(data[TIME].iloc[1] - data[TIME].iloc[0])
     velocity = modal_velocity(_housing(), forces, step)[-count:] @ _shapes().T
-    named |= zip(PLACES, velocity.T, strict=True)
-    return Motion(step, named, repeats=False, how=RUN)
+    signals |= zip(PLACES, velocity.T, strict=True)
+    return Motion(step, signals, repeats=False, how=RUN)
 
 
 def _run(reading: Reading, values: Mapping[str, float | str], t_end: float) -> Result:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _R_MIN, _MM = 30.0 / np.pi, 1e3
 _UNITS = {"speed": "r/min", "frequency": "Hz", "shows_at": "Hz", "amplitude": "mm/s"}
 _FILTERS = {"no filter": False, "anti-alias filter": True}
+_LIFT = 0.045
+"""Of every second mark: neighbours do not cover each other."""
 _SETTLING = 0.3
 """Share of a plateau."""
 
@@ -43,7 +45,7 @@ def compute() -> Outcome:
             speed = round(_R_MIN * plateau.speed)
             parts += [(speed, words, f, _MM * a)
                       for f, a in zip(found.frequency, found.amplitude, strict=True)]  # fmt: skip
-            for order in range(1, 5):
+            for order in range(1, 7):
                 shows = sensor.alias_hz(order * mesh)
                 near = np.abs(found.frequency - shows) < 2.0 * found.resolution
                 height = _MM * float(found.amplitude[near].max())
@@ -86,24 +88,29 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
 
     spectra, orders = tables["spectra"], tables["orders"]
     speeds = sorted(spectra["speed"].unique())
-    figure = new_figure("Sensor A, sampled at 2000 Hz, perfect teeth; ( ): folded", 1, len(speeds))
+    figure = new_figure(
+        "Sensor A, sampled at 2000 Hz, perfect teeth; mesh orders, (folded)",
+        1,
+        len(speeds),
+    )
     top = spectra["amplitude"].max()
     for axes, speed in zip(figure.subplots(1, len(speeds)), speeds, strict=True):
         for words, part in spectra[spectra["speed"] == speed].groupby("filter", sort=False):
             axes.plot(part["frequency"], part["amplitude"], label=words)
         own = orders[(orders["speed"] == speed) & (orders["filter"] == next(iter(_FILTERS)))]
-        for row in own.itertuples():
+        for k, row in enumerate(own.sort_values("shows_at").itertuples()):
             axes.axvline(
                 row.shows_at, color=MARKER_COLOUR, linewidth=0.8, linestyle=":", zorder=0.5
             )
-            text = "$f_m$" if row.mesh_order == 1 else f"${row.mesh_order} f_m$"
+            text = str(row.mesh_order)
             text = text if row.shows_at == row.frequency else f"({text})"
-            axes.text(row.shows_at, 1.01, text, ha="center", va="bottom", fontsize=8,
+            lift = 1.01 + _LIFT * (k % 2)
+            axes.text(row.shows_at, lift, text, ha="center", va="bottom", fontsize=8,
                       transform=axes.get_xaxis_transform(), color=MARKER_COLOUR)  # fmt: skip
         axes.set_yscale("log")
         axes.set_ylim(1e-5 * top, 2.0 * top)
         axes.set_xlim(0.0, 1000.0)
-        axes.set_title(f"{speed:.0f} r/min", pad=16.0)
+        axes.set_title(f"{speed:.0f} r/min", pad=24.0)
         axes.set_xlabel("frequency as sampled [Hz]")
     figure.axes[0].set_ylabel("amplitude [mm/s]")
     figure.axes[0].legend(loc="lower left")

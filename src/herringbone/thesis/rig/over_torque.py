@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PERFECT = "perfect"
+_SHOWN = 100.0, 200.0, 400.0
+"""Torques of which samples are drawn [N m]."""
 _CLASSES = _PERFECT, "class 5", REAL
 """Teeth of class 7 separate at 100 N m in a way that a fused run does not get over."""
 
@@ -58,7 +60,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
                         1, 2)  # fmt: skip
     for axes, words in zip(traces.subplots(1, 2), (_PERFECT, REAL), strict=True):
         own = found[found["teeth"] == words]
-        for torque, part in own.groupby("torque"):
+        for torque, part in own[own["torque"].isin(_SHOWN)].groupby("torque"):
             axes.plot(part["time"], part["velocity"], marker=".", markersize=3,
                       label=f"{torque:.0f} N m")  # fmt: skip
         axes.set_title("perfect teeth" if words == _PERFECT else f"teeth of {words}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -99,7 +99,7 @@ def draw_levels(axes: "Axes", stats: pd.DataFrame, along: str, unit: str) -> Non
     for colour, words in zip(COLOURS, stats["teeth"].unique(), strict=False):
         for name in SENSORS:
             own = stats[(stats["teeth"] == words) & (stats["sensor"] == name)]
-            how = {"color": colour, "linestyle": styles[name]}
+            how: dict[str, Any] = {"color": colour, "linestyle": styles[name]}
             axes.plot(own[along], own["rms_settled"], marker=".", label=f"{words}, {name}", **how)
             if name == SENSORS[0]:
                 low, high = own["lowest"], own["highest"]

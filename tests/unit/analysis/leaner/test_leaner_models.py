@@ -64,11 +64,8 @@ def test_an_estimate_is_what_the_leaner_model_then_differs_by() -> None:
     axial = next(cut.lean for cut in cuts if cut.name == "axial motion locked")
     held = [name for pair in modes for name in pair]
     estimates = Estimates(state, questions, [*held, *axial.held])
-    alone = estimates.alone([pair[1] for pair in modes])
-    ranked = sorted(
-        (pair for pair in modes if pair[1] in alone),
-        key=lambda pair: max(found.error for found in alone[pair[1]].values()),
-    )
+    alone = estimates.influences([pair[1] for pair in modes])
+    ranked = sorted((pair for pair in modes if pair[1] in alone), key=lambda pair: alone[pair[1]])
     for names in (axial.held, *([n for p in ranked[:k] for n in p] for k in (20, 30, 40))):
         expected, measured = estimates.held(names), _measured(Lean(tuple(names)))
         for name, error in measured.items():
@@ -79,8 +76,8 @@ def test_modes_are_ranked_by_what_they_do_and_not_by_their_frequency() -> None:
     solver, state, questions = _rig()
     modes = modes_of(solver.structure)
     estimates = Estimates(state, questions, [name for pair in modes for name in pair])
-    alone = estimates.alone([pair[1] for pair in modes])
-    sizes = np.array([max(a.error for a in found.values()) for found in alone.values()])
+    alone = estimates.influences([pair[1] for pair in modes])
+    sizes = np.array(list(alone.values()))
     highest = [n for pair in modes[40:] for n in pair]
     chosen = np.argsort(sizes)[: len([pair for pair in modes[40:] if pair[1] in alone])]
     names = list(alone)

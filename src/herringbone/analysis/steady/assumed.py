@@ -1,0 +1,146 @@
+"""What nobody has measured: dampings; and systems in which one parameter is a little different.
+
+The damping ratios of a housing's modes stand in a file and have no variable of their own; together
+they are called `HOUSING.damping_ratio` here.
+"""
+
+import csv
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.steady.structure import Structure
+from herringbone.components.registry import component
+from herringbone.core import ParameterError
+from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.variable import Causality
+from herringbone.core.names import matches_any
+from herringbone.core.places.files import is_file
+from herringbone.core.places.temporary import temporary_folder
+from herringbone.cosim.structure.system import System
+
+STEP = 1e-3
+"""Change of a parameter, over its value."""
+_DAMPERS = "damping", "drag"
+"""One of these is in the name of a parameter that is a damping."""
+_UNITS = {"N.s/m", "N.m.s/rad"}
+"""Of such a parameter; a gain of a controller may have the same."""
+_RATIO = "damping_ratio"
+
+
+class Moved(NamedTuple):
+    """A parameter's value, and the system with it larger and smaller by a share of `STEP`."""
+
+    value: float
+    larger: Structure
+    smaller: Structure
+
+
+class Changes:
+    """Systems with one parameter changed; of one structure they are prepared once."""
+
+    def __init__(self) -> None:
+        self._of: Structure | None = None
+        self._known: dict[str, Moved] = {}
+
+    def __call__(self, structure: Structure, name: str) -> Moved:
+        """Of a parameter `instance.variable`; raises ParameterError if it is zero."""
+        if structure is not self._of:
+            self._of, self._known = structure, {}
+        if name not in self._known:
+            self._known[name] = _moved(structure, name)
+        return self._known[name]
+
+
+def assumed(system: System, patterns: Sequence[str] = ()) -> list[str]:
+    """Parameters that are not zero: all dampings, or those that match a pattern.
+
+    Raises:
+        ParameterError: a pattern matches none that is not zero.
+    """
+    housings = [f"{part}.{_RATIO}" for part in _housings(system)]
+    if not patterns:
+        return [*(n for n, unit in _parameters(system) if _is_damping(n, unit)), *housings]
+    every = [*(n for n, _ in _parameters(system)), *housings]
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        own = [n for n in every if matches_any((n, *_endings(n)), [pattern])]
+        if not own:
+            raise ParameterError(f"sensitivities: '{pattern}' is no parameter that is not zero")
+        found.update(dict.fromkeys(own))
+    return list(found)
+
+
+def _endings(name: str) -> Iterator[str]:
+    words = name.split(".")
+    return (".".join(words[k:]) for k in range(1, len(words) - 1))
+
+
+def _is_damping(name: str, unit: str) -> bool:
+    last = name.rpartition(".")[2]
+    damps = unit in _UNITS and any(word in last for word in _DAMPERS)
+    return damps or last.endswith(_RATIO)
+
+
+def _parameters(system: System) -> Iterator[tuple[str, str]]:
+    """Names and units of real parameters that are not zero."""
+    for part in system.parts:
+        for variable in component(str(part.component)).declaration.variables:
+            name = f"{part.name}.{variable.name}"
+            if variable.causality is Causality.PARAMETER and value_at(system, name) != 0.0:
+                yield name, variable.unit
+
+
+def _housings(system: System) -> dict[str, Path]:
+    """Files of modes by housing."""
+    known, found = anatomy(system), {}
+    for name in known.with_role(Role.HOUSING):
+        column, folder = known.column(name, Quantity.MODES), known.parts[name].resources
+        if column is None or folder is None:
+            continue
+        part, variable = system.part(name), column.removeprefix(f"{name}.")
+        texts = component(str(part.component)).declaration.texts
+        start = next(text.start for text in texts if text.name == variable)
+        file = folder / str(part.values.get(variable, start))
+        if is_file(file):
+            found[name] = file
+    return found
+
+
+def _moved(structure: Structure, name: str) -> Moved:
+    system = structure.system
+    part, _, variable = name.rpartition(".")
+    file = _housings(system).get(part) if variable == _RATIO else None
+    if file is None:
+        value = value_at(system, name)
+        if value == 0.0:
+            raise ParameterError(f"{name} = 0: a sensitivity is of a parameter that is not zero")
+        sides = [_like(structure, system.with_values({name: value * f})) for f in _FACTORS]
+        return Moved(value, *sides)
+    column = str(anatomy(system).column(part, Quantity.MODES))
+    sides = []
+    for factor in _FACTORS:
+        with temporary_folder() as folder:
+            scaled = folder / file.name
+            scaled.write_text(_scaled(file, factor), encoding="utf-8")
+            sides.append(_like(structure, system.with_values({column: str(scaled)})))
+    return Moved(1.0, *sides)
+
+
+_FACTORS = (1.0 + STEP, 1.0 - STEP)
+
+
+def _like(structure: Structure, system: System) -> Structure:
+    return Structure(system, structure, same_tangents=True)
+
+
+def _scaled(file: Path, factor: float) -> str:
+    """A file of modes with all damping ratios multiplied."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    head = next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    names, *rows = csv.reader(lines[head:])
+    place = names.index(_RATIO)
+    for row in rows:
+        row[place] = repr(factor * float(row[place]))
+    return "\n".join([*lines[: head + 1], *map(",".join, rows)]) + "\n"

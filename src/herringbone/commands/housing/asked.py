@@ -1,0 +1,68 @@
+"""What a scene asks of a housing that is reduced: its band, and what the reduction changes."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from herringbone.commands.output import say
+from herringbone.core import ParameterError
+
+if TYPE_CHECKING:
+    from herringbone.studies.planning.housing_band import Asked
+
+_USUAL = 2000.0
+"""Band if nothing tells one [Hz]."""
+
+
+def asked_by(options: argparse.Namespace) -> "Asked | None":
+    """Lines of what the scene asks of the system with the full data; None without a scene.
+
+    Raises:
+        ParameterError: a scene without its system.
+        HerringboneError: it has no steady state.
+    """
+    if options.system is None:
+        if options.scene is not None:
+            raise ParameterError("--scene: of which system? add --for SYSTEM")
+        return None
+    from herringbone.studies.planning.housing_band import asked_of  # noqa: PLC0415 (numba)
+
+    full = options.data if options.data.is_dir() else None
+    return asked_of(options.system, options.scene, full)
+
+
+def band_for(options: argparse.Namespace, asked: "Asked | None", good_to: float) -> float:
+    """The band [Hz]: as given, else as far as the scene has lines; a warning if that is farther.
+
+    Args:
+        options: of the command.
+        asked: by the scene.
+        good_to: end of the band for which the data are good [Hz].
+    """
+    if asked is None:
+        return options.band or _USUAL
+    needed = asked.band(options.tolerance)
+    band = float(options.band or min(needed, good_to))
+    share, question = asked.beyond(band)
+    if share > options.tolerance:
+        better = f"take --band {needed:g}"
+        if needed > good_to:
+            better = f"the data are good to {good_to:g} Hz, --band {needed:g} would be needed"
+        say(
+            f"herringbone: warning: lines beyond {band:g} Hz have {100.0 * share:.2g} % of the "
+            f"{question.name}, the largest line of the scene is at {asked.largest:.5g} Hz: a bound "
+            f"to {band:g} Hz says nothing of these; {better}"
+        )
+    return band
+
+
+def changes(asked: "Asked", reduced: Path) -> dict[str, dict]:
+    """What the reduced data change of what is asked; a zip file is not solved with."""
+    if not reduced.is_dir():
+        return {}
+    return {
+        question.name: {
+            "error": found.error, "worst": found.worst, "worst_error": found.worst_error
+        }
+        for question, found in asked.changed_by(reduced)
+    }  # fmt: skip

@@ -1,0 +1,69 @@
+"""A measured record beside a run: the second form of the command `compare`."""
+
+import argparse
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from math import isnan
+from typing import TYPE_CHECKING
+
+from herringbone.commands.output import show
+from herringbone.core.places.files import write_whole
+
+if TYPE_CHECKING:
+    from herringbone.analysis.measured.beside import Beside
+
+_SHOWN = 12
+_LINES = "lines.csv"
+
+
+def add_options(sub: argparse.ArgumentParser) -> None:
+    """Declare the options that a record takes."""
+    sub.add_argument("--sensor", default="A", help="with a record as B: of the system; A")
+    sub.add_argument("--channel", default="", help="of the record; may be left out if it has one")
+    sub.add_argument(
+        "--full-scale", type=float, help="of a WAV record: velocity of its largest number in m/s"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare, write the lines if a folder is given, and show; exit code 1 if a fault is named.
+
+    Raises:
+        HerringboneError: the folder holds no results, or the record cannot be read or compared.
+    """
+    from herringbone.analysis.measured.of_run import compare_record  # noqa: PLC0415 (numpy: lazy)
+    from herringbone.result.folder.load import load  # noqa: PLC0415
+
+    found = compare_record(
+        load(options.first),
+        options.second,
+        options.sensor,
+        channel=options.channel,
+        full_scale=options.full_scale,
+    )
+    if options.output:
+        options.output.mkdir(parents=True, exist_ok=True)
+        write_whole(options.output / _LINES, found.lines.to_csv(index=False))
+    show(_json(found) if options.json else "\n".join(_told(found)))
+    return 1 if found.faults else 0
+
+
+def _json(found: "Beside") -> str:
+    told = {k: v for k, v in asdict(found).items() if k not in {"record", "lines"}}
+    return json.dumps({**told, "lines": json.loads(found.lines.to_json(orient="records"))})
+
+
+def _told(found: "Beside") -> Iterator[str]:
+    record = found.record
+    yield f"{record.file}, {record.channel}: speed {100.0 * found.speed:.2f} % of the stated one"
+    for fault in found.faults:
+        yield f"fault: {fault}"
+    if not isnan(found.likeness):
+        yield f"gain {found.gain:.4g}, likeness of lines {found.likeness:.3f} (1: the same)"
+    yield "mesh order  frequency [Hz]  shows at [Hz]  predicted [m/s]  measured [m/s]  coherence"
+    for row in found.lines.head(_SHOWN).itertuples():
+        yield (
+            f"{row.mesh_order:>10.3f}{row.frequency:>16.2f}{row.shows_at:>15.2f}"
+            f"{row.predicted:>17.3e}{row.measured:>16.3e}{row.coherence:>11.3f}"
+        )

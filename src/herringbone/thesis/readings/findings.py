@@ -1,0 +1,112 @@
+"""Findings about single sentences, and about all of them together."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from herringbone.thesis.entry import Finding, Verdict
+from herringbone.thesis.readings.grid import Case
+from herringbone.thesis.readings.judging import excluding, whole_words
+from herringbone.thesis.readings.measures import AS_PUBLISHED
+from herringbone.thesis.readings.sentence import COMPUTED, MEASURED
+from herringbone.thesis.readings.sentences import SENTENCES
+
+ALL = "all"
+ABOUT = (ALL, COMPUTED, MEASURED)
+_WORDS = {ALL: "all sentences", COMPUTED: "chapters 2 to 4", MEASURED: "chapters 5 and 6"}
+_DIGITS = 3
+_RATIO_MARGIN = 0.01
+"""Of numbers between machines: the solver's tolerance, over a growth."""
+
+
+def simplest(found: Sequence[Case], holds: np.ndarray, margins: np.ndarray) -> int | None:
+    """Number of the case with fewest changes in which a sentence holds; of these the clearest."""
+    inside = np.flatnonzero(holds).tolist()
+    if not inside:
+        return None
+    return int(min(inside, key=lambda k: (len(found[int(k)].changes), -margins[k])))
+
+
+def of_sentences(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray) -> list[Finding]:
+    """One per sentence: as shipped, and with what it holds."""
+    findings = []
+    for k, sentence in enumerate(SENTENCES):
+        number, unit, what = sentence.told(margins[0, k])
+        best = simplest(found, holds[:, k], margins[:, k])
+        count = f"{int(holds[:, k].sum())} of {len(found)} cases"
+        if holds[0, k]:
+            verdict, why = Verdict.AGREES, f"It holds in {count}."
+        elif best is None:
+            verdict, why = Verdict.CONTRADICTS, f"It holds in none of {len(found)} cases."
+        else:
+            verdict = Verdict.NEEDS_AN_ASSUMPTION
+            there = "{:.3g} {}".format(*sentence.told(margins[best, k])[:2]).strip()
+            words = whole_words(found[best])
+            why = f"It holds in {count}; with fewest changes: {words} ({there})."
+        text = sentence.text[0].upper() + sentence.text[1:]
+        findings.append(
+            Finding(
+                f"{text} ({sentence.source}).",
+                verdict,
+                round(number, _DIGITS),
+                unit,
+                what,
+                why,
+                max(1.0, _RATIO_MARGIN * abs(number)),
+            )
+        )
+    return findings
+
+
+def _as_shipped(found: Sequence[Case]) -> tuple[Case, Case]:
+    """What is shipped, evaluated over whole periods and over 20 ms."""
+    first = found[0]
+    return first, first._replace(evaluation=AS_PUBLISHED)
+
+
+def together(
+    found_cases: Sequence[Case], holds: np.ndarray, smallest: pd.DataFrame
+) -> list[Finding]:
+    """What sentences say together."""
+    pairs = excluding(holds)
+    found = []
+    for about in ABOUT:
+        best = smallest[smallest["about"] == about].iloc[-1]
+        found.append(
+            Finding(
+                f"One reading explains {_WORDS[about]}.",
+                Verdict.CONTRADICTS if best["sentences"] < best["of"] else Verdict.AGREES,
+                best["sentences"],
+                "",
+                f"of {best['of']} sentences hold at most together; as shipped "
+                f"{smallest[smallest['about'] == about].iloc[0]['sentences']}",
+                f"The fewest changes with which so many hold: {best['assumptions']}.",
+                1.0,
+            )
+        )
+    whole, window = (holds[found_cases.index(c)] for c in _as_shipped(found_cases))
+    changed = [SENTENCES[k].text for k in np.flatnonzero(whole != window)]
+    found.append(
+        Finding(
+            "The thesis evaluates 20 ms, from 0.02 to 0.04 s (3.4).",
+            Verdict.NEEDS_AN_ASSUMPTION,
+            len(changed),
+            "",
+            "sentences change as shipped when 20 ms are evaluated in place of whole periods",
+            f"{'; '.join(changed)}." if changed else "",
+        )
+    )
+    found.append(
+        Finding(
+            "The sentences can be true together.",
+            Verdict.CONTRADICTS if len(pairs) else Verdict.AGREES,
+            len(pairs),
+            "",
+            f"pairs of {len(SENTENCES)} sentences never hold in one case, though each of them does "
+            "in some",
+            "",
+            3.0,
+        )
+    )
+    return found

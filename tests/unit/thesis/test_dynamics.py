@@ -1,0 +1,170 @@
+"""Numbers of the entries on dynamics, against closed forms and independent solutions."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from support.thesis import finding, outcome
+
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.running.prepared import Wishes, prepared
+from herringbone.thesis import names
+from herringbone.thesis.dynamics import backlash, impact
+from herringbone.thesis.dynamics.equations import (
+    PUBLISHED_STIFFNESS,
+    Bodies,
+    corrected,
+    frequencies,
+    mass_matrix,
+    printed,
+)
+from herringbone.thesis.entry import Verdict
+from herringbone.thesis.ground import SIGNALS, levels, natural, settled, window, window_levels
+from herringbone.thesis.pair.given import JOB
+
+INDEPENDENT = (305.1, 563.1, 899.0, 1293.8, 3432.1, 6102.0, 7669.5, 7932.8, 8548.6, 11454.0,
+               13565.0)  # fmt: skip
+"""Frequencies at the published stiffness, by a program that shares no line with this one [Hz]."""
+AXIAL, RADIAL = "pinion axial velocity", "pinion radial velocity"
+OMEGA = 1000.0 * math.pi / 30.0
+
+
+def one(**given):
+    """Levels of one settled state."""
+    speed = given.pop("speed", 1000.0)
+    (state,) = settled((speed,), **given)
+    return levels(state)
+
+
+def test_natural_frequencies():
+    found = outcome("natural_frequencies").tables["frequencies"]
+    np.testing.assert_allclose(found["corrected"][1:], INDEPENDENT, rtol=2e-4)
+    assert (found["printed"] == 0.0).sum() == 2
+    np.testing.assert_allclose(found["printed"][2::2], found["printed"][3::2], rtol=1e-6)
+    assert finding("natural_frequencies", "twelve degrees").verdict is Verdict.CONTRADICTS
+
+
+def test_matrices_are_those_of_the_system():
+    """With the mesh stiffness of its operating point the system has the matrices' frequencies.
+
+    Damping ratios of up to 0.1 move frequencies by their squares.
+    """
+    bodies, own = Bodies(), natural().frequency_hz
+    mass = mass_matrix(bodies)
+
+    def worst(stiffness: float) -> float:
+        found = frequencies(corrected(bodies, stiffness), mass)[0][1:]
+        return float(np.abs(found / own - 1.0).max())
+
+    assert min(worst(k) for k in np.linspace(1.8e9, 2.0e9, 41)) < 1e-2
+    assert worst(0.8 * PUBLISHED_STIFFNESS) > 0.03
+
+
+def test_printed_equations_fall_apart():
+    """No row of a left half has an entry in a column of a right half."""
+    k = printed(Bodies(), PUBLISHED_STIFFNESS).reshape(4, 3, 4, 3)
+    assert not k[np.ix_([0, 2], range(3), [1, 3], range(3))].any()
+
+
+def test_damping_forms():
+    """The ratio in closed form; units are the same."""
+    bodies = Bodies()
+    (i_p, i_g), (r_p, r_g) = bodies.inertia, bodies.base_radius
+    ratio = math.sqrt((r_p**2 * i_g + r_g**2 * i_p) / (r_p**2 * i_p + r_g**2 * i_g))
+    found = finding("mesh_damping", "Mesh damping is")
+    assert found.number == pytest.approx(ratio, rel=1e-9)
+    assert ratio == pytest.approx(0.352, abs=0.0005)
+    constants = outcome("mesh_damping").tables["constants"]
+    assert constants["damping"][0] == pytest.approx(10261.0, rel=1e-4)
+
+
+def test_axial_velocity_is_that_of_the_run_out():
+    """The floating pinion follows the turning parts of f_A: two sines, of pinion and wheel."""
+    turning = 10e-6 * math.hypot(0.3 * OMEGA, 0.3 * OMEGA / 3.0) / math.sqrt(2.0)
+    assert one()[AXIAL] == pytest.approx(1e3 * turning, rel=3e-3)
+
+
+def test_radial_vibration_does_not_know_the_deviation():
+    none, most = one(deviation=0.0), one(deviation=20e-6)
+    assert most[RADIAL] == pytest.approx(none[RADIAL], rel=1e-3)
+    assert finding("symmetry_deviation", "start has died out").verdict is Verdict.CONTRADICTS
+
+
+def test_window_by_another_solver():
+    """The start of the thesis, its equations solved at once by Runge-Kutta of order 8."""
+    wishes = Wishes(values={names.SYMMETRY_DEVIATION: 10e-6})
+    twin = Twin(prepared(names.ON_GROUND, names.GRADUAL, wishes).system)
+    times = np.arange(501) * 4e-5 + 0.02
+    x = solve_ivp(twin.rhs, (0.0, 0.04), twin.state, "DOP853", times, rtol=1e-8, atol=1e-14).y
+    columns = [SIGNALS[name] for name in (AXIAL, RADIAL)]
+    other = 1e3 * twin.observe(times, x, columns).std(axis=0)
+    found = window_levels(window())
+    assert [found[AXIAL], found[RADIAL]] == pytest.approx(list(other), rel=5e-3)
+    change = finding("symmetry_deviation", "does: in the window").number
+    assert change == pytest.approx(79.0, abs=3.0)
+
+
+def test_a_long_run_comes_to_the_settled_state():
+    over = outcome("start_and_window").tables["over settled"]
+    late = over[over["begin"] > 0.2]
+    assert np.abs(late[RADIAL] - 1.0).max() < 1e-3
+    assert np.abs(late["wheel radial displacement"] - 1.0).max() < 1e-2
+    assert over[AXIAL][0] == pytest.approx(7.7, abs=0.3)
+
+
+def test_decay_of_the_window_is_that_of_the_slowest_mode():
+    """Wheel axial: exp(-zeta w t), from one window of 20 ms to the next."""
+    found = natural()
+    lasting = math.exp(
+        -0.02 * float(found.damping_ratio[0] * 2.0 * math.pi * found.frequency_hz[0])
+    )
+    over = outcome("start_and_window").tables["over settled"]["wheel axial velocity"]
+    assert over[2] / over[1] == pytest.approx(lasting, rel=0.05)
+
+
+def test_torque():
+    few = {torque: one(torque=torque) for torque in (200.0, 300.0)}
+    axial, radial = (few[300.0][n] / few[200.0][n] for n in (AXIAL, RADIAL))
+    assert axial == pytest.approx(1.0, abs=2e-3)
+    assert radial == pytest.approx(1.5, rel=0.05)
+    values = {"gear_mesh.stagger": 0.25}
+    apart = [one(torque=torque, values=values)[AXIAL] for torque in (200.0, 300.0)]
+    assert 100.0 * (apart[1] / apart[0] - 1.0) == pytest.approx(62.8, abs=1.0)
+
+
+def test_speeds_of_the_thesis_hide_a_resonance():
+    radial = {speed: one(speed=speed)[RADIAL] for speed in (800.0, 960.0, 1000.0, 1200.0, 1500.0)}
+    assert radial[800.0] < radial[1200.0] < radial[1500.0]
+    assert radial[1000.0] > 2.0 * radial[1200.0]
+    assert radial[960.0] / radial[1200.0] == pytest.approx(4.68, abs=0.1)
+    axial = [one(speed=speed)[AXIAL] for speed in (800.0, 1500.0)]
+    assert axial[1] / axial[0] == pytest.approx(1500.0 / 800.0, rel=2e-3)
+
+
+def test_wheel_moves_more_where_the_mesh_meets_its_mode():
+    speed = 60.0 / 27.0 * natural().frequency_hz[1]
+    found = one(speed=speed)
+    assert found["pinion radial displacement"] < 0.3 * found["wheel radial displacement"]
+
+
+@pytest.mark.slow
+def test_teeth_stay_together():
+    found = outcome("backlash").tables["least deflection"]
+    assert found["least"].min() == pytest.approx(0.958, abs=0.005)
+    assert len(found) == 16
+    assert finding("backlash", "retained").number > 1.3
+    assert math.isclose(backlash._BACKLASH, 1e6 * JOB.mesh.backlash)
+
+
+def test_impact():
+    """Velocity goes with speed; the force with the root of the deflection, which is nearly T."""
+    slow, fast, loaded = (impact._impact(*x) for x in ((800, 200), (1500, 200), (800, 300)))
+    assert fast.velocity / slow.velocity == pytest.approx(1.875, rel=1e-6)
+    assert loaded.force / slow.force == pytest.approx(math.sqrt(1.5), rel=0.02)
+    assert slow.velocity == pytest.approx(0.043, rel=0.06)
+    found = outcome("meshing_impact").tables["impact only"]
+    together = found[found["halves"] == "at the same time"]
+    assert together[AXIAL].max() < 0.02 * together[RADIAL].min()
+    assert finding("meshing_impact", "radial velocity").number == pytest.approx(22.0, abs=1.0)
+    assert finding("meshing_impact", "axial velocity").number == pytest.approx(34.7, abs=1.5)
