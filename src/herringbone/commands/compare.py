@@ -86,12 +86,22 @@ def lines(found: "Comparison") -> Iterator[str]:
                 row.amplitude_first / row.amplitude_second if row.amplitude_second else float("nan")
             )
             yield (f"{label:<{wide}}{f'{row.order} f_m':>12}{row.amplitude_first:>12.4g}"
-                   f"{row.amplitude_second:>12.4g}{ratio:>8.4f}")  # fmt: skip
+                   f"{row.amplitude_second:>12.4g}{ratio:>8.4f}  [{row.unit or '1'}]")  # fmt: skip
     if len(found.parameters):
         yield ""
         yield f"parameters that differ: {len(found.parameters)}"
         for row in found.parameters.head(_MOST_PARAMETERS).itertuples():
-            yield f"  {row.parameter}: {row.first:g} and {row.second:g}"
+            yield f"  {row.parameter}: {row.first:.8g} and {row.second:.8g}"
+        if len(found.parameters) > _MOST_PARAMETERS:
+            yield f"  and {len(found.parameters) - _MOST_PARAMETERS} more, which --json tells"
+    if len(found.resources):
+        yield ""
+        yield f"files of components that differ: {len(found.resources)}"
+        for row in found.resources.itertuples():
+            yield f"  {row.resource}:"
+            yield from (
+                f"    {side} {text}" for side, text in (("A", row.first), ("B", row.second))
+            )
     for note in found.notes:
         yield f"note: {note}"
 

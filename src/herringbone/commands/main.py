@@ -147,7 +147,7 @@ def _chart_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    return EXIT_CODES[run_command.run(options)]
+    return run_command.run(options)
 
 
 def _list(options: argparse.Namespace) -> int:

@@ -1,6 +1,7 @@
 """The command `template`: a file to begin with, such as the pair's or the housing's."""
 
 import argparse
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -35,9 +36,12 @@ def _of(role: Role, name: str) -> Callable[[], Path]:
     return file
 
 
-def _with_optional_keys(text: str) -> str:
+def _gear_file(text: str) -> str:
+    """By the best method that is there, in place of the shipped table's; and all other keys."""
     from herringbone.gears.files.known_keys import optional_keys  # noqa: PLC0415 (numba)
+    from herringbone.gears.stiffness.methods import AUTO  # noqa: PLC0415 (numba)
 
+    text = re.sub(r'^method = ".*"$', f'method = "{AUTO}"', text, flags=re.MULTILINE)
     return f"{text}\n{optional_keys(text)}"
 
 
@@ -45,7 +49,7 @@ TEMPLATES = {
     "gear": Template(
         _of(Role.GEAR_PAIR, "gear_pair.toml"),
         "A gear pair: herringbone gear FILE; herringbone run SYSTEM --gear FILE",
-        _with_optional_keys,
+        _gear_file,
     ),
     "housing": Template(
         _of(Role.HOUSING, "welded_housing.toml"),

@@ -4,6 +4,7 @@ import logging
 
 import numpy as np
 
+from herringbone.core import ParameterError
 from herringbone.core.activity import activity
 from herringbone.gears.job import GearJob
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness, Uncertainty
@@ -12,6 +13,7 @@ from herringbone.gears.stiffness.methods import (
     METHODS,
     Task,
     chosen_method,
+    has_finite_elements,
     mesh_stiffness,
 )
 from herringbone.gears.stiffness.point_mesh import Progress
@@ -52,6 +54,11 @@ def stiffness_for(
         )
 
     def make() -> Arrays:
+        if name == "fe" and not has_finite_elements():
+            raise ParameterError(
+                "the method 'fe' takes the extra of that name, which is missing: pip install "
+                "'herringbone[fe]', or take the method 'auto', which does without"
+            )
         note = "; ".join(filter(None, (chosen.takes, "once for each pair and load")))
         with activity(f"making the stiffness table by {chosen.title}", note):
             found = mesh_stiffness(task, name, progress)

@@ -12,6 +12,10 @@ USUAL_BACKLASH = 0.05
 """Normal backlash over normal module, of pairs that have none by their tooth thickness."""
 _NONE = 1e-9
 """A backlash [m] that is none."""
+_LARGE = 0.1
+"""Backlash over module that is more than that of usual gears."""
+_SAME = 0.1
+"""Difference of two backlashes, over them, that deserves no line."""
 
 
 def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
@@ -25,13 +29,13 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         raise ParameterError(
             f"the pair has halves = {pair.halves}; the component is double helical: halves = 2"
         )
-    notes: tuple[str, ...] = ()
+    notes = backlash_notes(job)
     backlash = mesh.backlash
     if backlash is None:
         backlash = pair.normal_backlash
     if mesh.backlash is None and backlash < _NONE:
         backlash = USUAL_BACKLASH * pair.normal_module
-        notes = (
+        notes += (
             f"backlash assumed: {1e6 * backlash:.4g} um, {USUAL_BACKLASH:g} of the module, as the "
             "teeth are not thinner than nominal; give [mesh] backlash or tooth_thickness_allowance",
         )
@@ -54,6 +58,24 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         bearing_damping_ratio=mesh.bearing_damping_ratio,
     )
     return values, notes
+
+
+def backlash_notes(job: GearJob) -> tuple[str, ...]:
+    """Lines on a backlash by the geometry that is large, or that runs do not take."""
+    geometric, given = job.pair.normal_backlash, job.mesh.backlash
+    lines = []
+    if geometric > _LARGE * job.pair.normal_module:
+        lines.append(
+            f"normal backlash {1e6 * geometric:.4g} um by center distance, profile shift and tooth "
+            f"thickness is more than {_LARGE:g} of the module; in a gear file "
+            'profile_shift_coefficient = "auto" follows from the center distance'
+        )
+    if given is not None and geometric >= _NONE and abs(given - geometric) > _SAME * geometric:
+        lines.append(
+            f"runs take [mesh] backlash = {1e6 * given:.4g} um; by center distance, profile shift "
+            f"and tooth thickness it is {1e6 * geometric:.4g} um"
+        )
+    return tuple(lines)
 
 
 def _coast_phase(pair: GearPair, backlash: float) -> float:

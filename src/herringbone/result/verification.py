@@ -14,6 +14,7 @@ class Verification(NamedTuple):
         worst_error: of that one.
         step: of the other run [s].
         how: what was compared, in words.
+        asked: tolerance that the user asked for, and for which the step was searched; None: none.
     """
 
     groups: Mapping[str, float]
@@ -21,8 +22,14 @@ class Verification(NamedTuple):
     worst_error: float
     step: float
     how: str
+    asked: float | None = None
 
     @property
     def error(self) -> float:
         """Of the group that errs most; 0 if none varies."""
         return max(self.groups.values(), default=0.0)
+
+    @property
+    def missed(self) -> bool:
+        """True if the error is above the tolerance that was asked for."""
+        return self.asked is not None and self.error > self.asked

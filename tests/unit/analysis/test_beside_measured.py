@@ -107,3 +107,12 @@ def test_what_cannot_be_compared_is_refused(predicted):
         beside(short, predicted)
     with pytest.raises(ParameterError, match="is sampled at 5000 Hz and the prediction at 2000 Hz"):
         beside(short._replace(sampling_hz=5000.0), predicted)
+
+
+def test_coherence_follows_periods_that_are_no_whole_samples():
+    """At 447.3 Hz the wheel turns in 362.17 samples; pieces begin within half a sample of it."""
+    ratio = 447.3 / MESH
+    fine = vibration(np.arange(0.0, LENGTH, STEP), ratio)
+    found = beside(record(speed=ratio, noise=0.0), Predicted(fine, STEP, _SENSOR, 447.3, MESHES))
+    assert found.faults == ()
+    assert found.lines.head(10)["coherence"].min() > 0.98

@@ -8,6 +8,8 @@ import pytest
 from support.result import make_foreign_result, make_result
 
 import herringbone as hb
+from herringbone.analysis.accuracy.compared_tables import ORDERS
+from herringbone.commands.compare import lines
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.running.reporting.report import write_report
@@ -48,6 +50,31 @@ def test_differences_levels_and_orders(first, second):
     assert orders.iloc[1]["amplitude_second"] == pytest.approx(0.4 * 12.0, rel=1e-6)
     assert found.parameters.to_dict("records")[0]["first"] == 1e-4
     assert (found.begin, found.end) == (0.0, 0.2)
+
+
+def test_what_differs_is_told_apart(first, second, tmp_path):
+    """Start values by iteration differ in the last digits, tables of the cache in comments."""
+    tables = []
+    for relief in (12, 30):
+        tables.append(tmp_path / f"table-{relief}.csv")
+        text = f"# units: load N\n# Pair: z 23/71.\n# Tip relief {relief} um.\nload\n"
+        tables[-1].write_text(text, encoding="utf-8")
+    sides = []
+    for run, table in zip((first, second), tables, strict=True):
+        force = -1424.827744313 if run is first else -1424.827744348
+        values = {**run.info.parameters, "start.f_x": force}
+        files = {"gear.table": str(table), "gear.errors": "none.csv"}
+        sides.append(replace(run, info=replace(run.info, parameters=values, resources=files)))
+    found = hb.compare(*sides)
+    assert list(found.parameters["parameter"]) == ["gear_mesh.backlash"]
+    assert found.resources.to_dict("records") == [
+        {"resource": "gear.table", "first": "Tip relief 12 um.", "second": "Tip relief 30 um."}
+    ]
+    tables[0].unlink()
+    assert hb.compare(*sides).resources["second"][0] == "table-30.csv"
+    text = "\n".join(lines(found))
+    assert "    B Tip relief 30 um." in text
+    assert text.count("[m/s]") == 1 + ORDERS
 
 
 def test_runs_of_other_record_steps_are_interpolated(first, second):
@@ -103,9 +130,10 @@ def test_command_writes_tables_and_picture(first, second, tmp_path, capsys, monk
     assert main(["compare", *map(str, folders), "-o", str(output)]) == 0
     text = capsys.readouterr().out
     (row,) = [
-        line for line in text.splitlines() if line.startswith("bearing_force ") and "[N]" in line
+        line for line in text.splitlines() if line.startswith("bearing_force ") and "%" in line
     ]
     assert row.split()[1:3] == ["1", "%"]
+    assert "[N]" in row
     assert "parameters that differ: 1" in text
     assert {file.name for file in output.iterdir()} == {
         "compare.json",

@@ -126,3 +126,12 @@ def test_command(tmp_path, capsys):
         "modes.csv", "campbell.png", "shapes.png"
     }  # fmt: skip
     assert main(["modes", "test_rig", "--shapes", "3"]) == 2
+
+
+def test_a_run_out_changes_no_frequency():
+    """A floating pinion follows it, so that the meshes keep their load and their stiffness."""
+    still, turning = (
+        hb.modes("on_ground", values={"gear_mesh.symmetry_deviation": deviation}).frequency_hz
+        for deviation in (0.0, 10e-6)
+    )
+    np.testing.assert_allclose(turning, still, rtol=1e-7)

@@ -16,6 +16,7 @@ from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.read_job import read_mounted_job
 from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.job import GearJob
+from herringbone.gears.pair_values import backlash_notes, pair_values
 
 STAGE = Path(__file__).parents[2] / "gear_stage.rexs"
 """First stage of the FVA two-stage industrial gear unit, as its public REXS model has it."""
@@ -52,6 +53,58 @@ def message(tmp_path):
         return str(caught.value)
 
     return read
+
+
+def test_one_relief_is_that_of_both_gears(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(GOOD.replace('["5 um", 0.0]', '"12 um"'), encoding="utf-8")
+    assert read_gear_file(file).modification.tip_relief == (12e-6, 12e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("face_width = 0.0473", "face_width = 47.3", r"433 times .*write '47.3 mm'"),
+        ('["95 mm", 0.310]', "[95, 310]", "groove diameter 95000 mm must lie between"),
+        ('["5 um", 0.0]', "[0, 5]", r"1.43e\+03 times .*write '5 um'"),
+        ("[table]", "[mesh]\nbacklash = 180\n[table]", "write '180 um'"),
+        ("[table]", "[mesh]\nbacklash = [0, 0]\n[table]", "must be one value"),
+        ("[table]", "[table]\nloads = 5.0", "must be a list"),
+    ],
+)
+def test_lengths_without_their_unit_and_lists_out_of_place(message, old, new, said):
+    """47.3 m over the pinion's 27 * 3.5 mm / cos 30 deg; 5 m over the module."""
+    found = message(old, new)
+    assert re.search(said, found), found
+    assert "bad.toml: " in found
+
+
+def test_auto_follows_from_the_other_values(tmp_path):
+    """Without backlash at the centre distance, as the profile shifts follow from it."""
+    file = tmp_path / "pair.toml"
+    asked = 'center_distance = "220 mm"\nprofile_shift_coefficient = '
+    with_distance = GOOD.replace("face_width", f'{asked}"auto"\nface_width')
+    file.write_text(with_distance, encoding="utf-8")
+    pair = read_gear_file(file).pair
+    assert pair.center_distance == 0.22
+    assert pair.profile_shift_coefficient[0] == pair.profile_shift_coefficient[1] > 0.0
+    assert pair.normal_backlash == pytest.approx(0.0, abs=1e-12)
+    file.write_text(with_distance.replace('"auto"', '[0.1, "auto"]'), encoding="utf-8")
+    assert read_gear_file(file).pair.profile_shift_coefficient[0] == 0.1
+
+
+def test_backlash_of_the_geometry_that_runs_do_not_take_is_told(tmp_path):
+    """A wide center distance: teeth apart; a [mesh] backlash hides it."""
+    file = tmp_path / "pair.toml"
+    text = GOOD.replace("face_width", 'center_distance = "220 mm"\nface_width')
+    file.write_text(text + '[mesh]\nbacklash = "180 um"\n', encoding="utf-8")
+    job = read_gear_file(file)
+    large, other = backlash_notes(job)
+    assert f"{1e6 * job.pair.normal_backlash:.4g} um" in large
+    assert "runs take [mesh] backlash = 180 um" in other
+    assert pair_values(job)[1] == (large, other)
+    file.write_text(GOOD + '[mesh]\nbacklash = "180 um"\n', encoding="utf-8")
+    assert not backlash_notes(read_gear_file(file))
 
 
 def test_units_become_si(tmp_path):

@@ -8,12 +8,19 @@ from support.thesis import finding, outcome
 
 from herringbone.thesis.entry import Verdict
 from herringbone.thesis.readings.grid import Case, cases, combined
-from herringbone.thesis.readings.judging import excluding, fewest_changes, satisfied, tried
+from herringbone.thesis.readings.judging import (
+    Judged,
+    excluding,
+    fewest_changes,
+    satisfied,
+    tried,
+)
 from herringbone.thesis.readings.measures import AS_PUBLISHED, LEVEL, SETTLED, measures, series
 from herringbone.thesis.readings.motion import STEADY, Moving, _of_run
 from herringbone.thesis.readings.points import AS_DRAWN
 from herringbone.thesis.readings.reading import AS_SHIPPED, GROUND
 from herringbone.thesis.readings.sentences import SENTENCES
+from herringbone.thesis.readings.which import compute, draw
 
 SPEED = 1000.0 * math.pi / 30.0
 NAMES = [s.name for s in SENTENCES]
@@ -134,3 +141,19 @@ def test_no_reading_explains_all():
     margins = found.tables["margins"]
     assert margins["assumptions"][0] == "as shipped"
     assert margins["sentences"][0] == 10
+
+
+def test_findings_follow_from_margins(monkeypatch):
+    """Planted margins of all cases: one sentence never holds, one as shipped, one elsewhere."""
+    every = [case for reading in tried() for case in cases(reading)]
+    margins = np.full((len(every), len(SENTENCES)), -0.5)
+    margins[:, 1] = 1.0
+    margins[5, 2] = 0.5
+    planted = Judged(every, margins, 1, 0, {})
+    monkeypatch.setattr("herringbone.thesis.readings.which.judged", lambda readings: planted)
+    found = compute()
+    verdicts = [f.verdict for f in found.findings[: len(SENTENCES)]]
+    assert verdicts[:3] == [Verdict.CONTRADICTS, Verdict.AGREES, Verdict.NEEDS_AN_ASSUMPTION]
+    assert "; ".join(every[5].changes) in found.findings[2].why
+    assert found.tables["smallest_sets"]["sentences"].max() == 2
+    assert set(draw(found.tables)) == {"assumptions", "exclusions"}

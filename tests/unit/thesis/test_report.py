@@ -164,6 +164,5 @@ def test_numbers_as_people_write_them(value, text):
 
 
 def test_signs_and_units():
-    assert typeset("ISO 6336-1 at -7.5 % of 200 N m") == (
-        "ISO 6336-1 at \N{MINUS SIGN}7.5\N{NO-BREAK SPACE}% of 200\N{NO-BREAK SPACE}N m"
-    )
+    told = typeset("ISO 6336-1 at -7.5 % of 200 N m").replace("\N{NO-BREAK SPACE}", "~")
+    assert told == "ISO 6336-1 at \N{MINUS SIGN}7.5~% of 200~N~m"

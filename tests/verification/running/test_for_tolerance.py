@@ -96,7 +96,7 @@ def test_work_follows_the_tolerance():
 )  # fmt: skip
 def test_a_step_is_divided_so_that_runs_have_points_in_common(monkeypatch, wanted, steps, found):
     """By whole numbers, halves and quarters, where the steps of the last run are that many."""
-    search = Search(1e-3)
+    search = Search(1e-3, wished=True)
     search._steps = steps
     monkeypatch.setattr(search, "_shorter", lambda: wanted)
     assert search.pieces() == found

@@ -11,6 +11,7 @@ from support.oscillator import JOINED, Oscillator
 from support.strangers import write_system
 
 import herringbone as hb
+from herringbone.commands import main as cli
 
 TOLERANCES = (1e-2, 1e-4, 1e-6)
 
@@ -51,9 +52,10 @@ def test_foreign_parts_alone_get_a_step_that_suits_them(kinds):
     assert result.info.communication_step > 5e-4
     assert achieved(oscillator, result) < 2e-3
     assert any(note.startswith("tolerance = 0.001: steps of") for note in result.info.notes)
+    assert not result.verification.missed
 
 
-def test_what_is_noise_ends_the_search(kinds, tmp_path):
+def test_what_is_noise_ends_the_search(kinds, tmp_path, capsys):
     """The sensor's noise does not fall with the step; the best run is kept, and says so."""
     system = write_system(
         tmp_path,
@@ -67,4 +69,9 @@ def test_what_is_noise_ends_the_search(kinds, tmp_path):
     assert result.outcome.completed
     (note,) = (note for note in result.info.notes if note.startswith("tolerance = 1e-06"))
     assert "not met: " in note
+    assert result.outcome.message.startswith("tolerance = 1e-06 is not met: error ")
     assert result.verification.error > 1e-6
+    assert result.verification.missed
+    given = ["--tolerance", "1e-6", "--t-end", "0.02", "--start", "rest"]
+    assert cli.main(["run", str(system), *given, "-o", str(tmp_path / "o")]) == 1
+    assert "tolerance 1e-06 not met: error" in capsys.readouterr().err

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -10,11 +12,15 @@ import pandas as pd
 from herringbone.analysis.accuracy.apart import Apart, differences
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
+from herringbone.core.places.files import is_file
+from herringbone.core.reading.texts import read_text
 from herringbone.result.result import TIME, Result
 
 ORDERS = 6
 """Mesh orders that are compared."""
 _SAME = 1e-9
+_SAME_VALUE = 1e-7
+"""Relative difference of parameters below which they are the same: iterations end about there."""
 
 
 class Sides(NamedTuple):
@@ -115,8 +121,39 @@ def _mesh_amplitudes(result: Result, mesh: float, columns: Sequence[str]) -> np.
 
 
 def changed_parameters(first: Result, second: Result) -> pd.DataFrame:
-    """One row per parameter whose values differ."""
+    """One row per parameter whose values differ by more than rounding and iterations leave."""
     ours, theirs = first.info.parameters, second.info.parameters
-    names = [n for n in {**ours, **theirs} if ours.get(n) != theirs.get(n)]
-    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in names]
-    return pd.DataFrame(rows, columns=["parameter", "first", "second"])
+    rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in {**ours, **theirs}]
+    apart = [row for row in rows if not math.isclose(*row[1:], rel_tol=_SAME_VALUE)]
+    return pd.DataFrame(apart, columns=["parameter", "first", "second"])
+
+
+def changed_resources(first: Result, second: Result) -> pd.DataFrame:
+    """One row per file of a component that differs by name: "resource", "first", "second".
+
+    Files of the cache have names by what they are made of. Where both are still there and have
+    comments, such as the relief of a pair's table, those that differ stand in the names' place.
+    """
+    ours, theirs = first.info.resources, second.info.resources
+    rows = []
+    for name in {**ours, **theirs}:
+        files = ours.get(name, ""), theirs.get(name, "")
+        if files[0] != files[1]:
+            rows.append((name, *_told_apart(*files)))
+    return pd.DataFrame(rows, columns=["resource", "first", "second"])
+
+
+def _told_apart(first: str, second: str) -> tuple[str, str]:
+    """What the comments of two files say that the other's do not; else their names."""
+    ours, theirs = _comments(first), _comments(second)
+    alone = [" ".join(c for c in a if c not in b) for a, b in ((ours, theirs), (theirs, ours))]
+    one, other = (Path(file).name or "none" for file in (first, second))
+    return (alone[0], alone[1]) if all(alone) else (one, other)
+
+
+def _comments(file: str) -> list[str]:
+    """Sentences of a resource's comments, without those that programs read."""
+    if not Path(file).is_absolute() or not is_file(Path(file)):
+        return []
+    found = takewhile(lambda line: line.startswith("# "), read_text(Path(file)).splitlines())
+    return [line[2:] for line in found if line[2:3].isupper()]

@@ -19,6 +19,7 @@ from herringbone.analysis.accuracy.apart import differences, groups_of
 from herringbone.analysis.accuracy.compared_tables import (
     Sides,
     changed_parameters,
+    changed_resources,
     table_of_columns,
     table_of_groups,
     table_of_orders,
@@ -51,6 +52,8 @@ class Comparison(Facts):
             "amplitude_second"; empty without steady mesh frequency in both.
         parameters: parameters that differ: "parameter", "first", "second"; NaN where a run has not
             that one.
+        resources: files of components that differ: "resource", "first", "second", what tells them
+            apart.
         notes: lines to read: what is compared at all, and what only one of them has.
     """
 
@@ -62,6 +65,7 @@ class Comparison(Facts):
     columns: pd.DataFrame
     orders: pd.DataFrame
     parameters: pd.DataFrame
+    resources: pd.DataFrame
     notes: tuple[str, ...]
 
     def plot(self, highest: float | None = None) -> "Figure":
@@ -76,7 +80,7 @@ class Comparison(Facts):
 
     def summary(self) -> dict[str, Any]:
         """All tables as lists of rows, for JSON."""
-        tables = ("groups", "columns", "orders", "parameters")
+        tables = ("groups", "columns", "orders", "parameters", "resources")
         return {
             "first": self.first.name,
             "second": self.second.name,
@@ -93,6 +97,7 @@ class Comparison(Facts):
             "compared": f"{self.begin:g} to {self.end:g} s",
             **{str(row.group): f"{100.0 * float(row.difference):.3g} %" for row in rows},
             "parameters that differ": str(len(self.parameters) or ""),
+            "resources that differ": ", ".join(map(str, self.resources["resource"])),
             "notes": "; ".join(self.notes),
         }
 
@@ -130,6 +135,7 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
         table_of_columns(ours, theirs, shared, values, units),
         orders,
         changed_parameters(ours.result, theirs.result),
+        changed_resources(ours.result, theirs.result),
         (*notes, *why),
     )
 

@@ -7,7 +7,10 @@ orders. A signal x is resampled at equal steps of c (computed order tracking):
 
 in blocks of C cycles; x by cubic splines through the records, t by linear interpolation in the
 strictly growing c. N is chosen per block so that a step is never longer than a record's: nothing
-folds. The Hann-windowed Fourier transform of a block gives amplitudes at the orders k / C,
+folds. A block that begins or ends at standstill would take N without end; there a step is at most
+1/64 of the block's mean one: what is slower may fold, at constant acceleration less than a
+thousandth of the block's angle, at the end that the window fades out. The Hann-windowed Fourier
+transform of a block gives amplitudes at the orders k / C,
 
     a_k = 2 / sum(w) |sum_i w_i (x_i - mean) exp(-2 pi j k i / N)|
 
@@ -31,7 +34,9 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
 _FINER = 1.5
-"""Samples of a block over its records where they are sparsest in angle."""
+"""Samples of a block over its records where they are closest in angle."""
+_FINEST = 64
+"""Samples of a block over its records at most: of a block that touches standstill."""
 
 
 class OrderMap(NamedTuple):
@@ -151,13 +156,12 @@ def _block(
     orders: np.ndarray,
 ) -> tuple[float, float, np.ndarray, float] | None:
     """Middle, speed, amplitudes and level of one block; None of one with too few records."""
-    from scipy.signal import detrend  # noqa: PLC0415 (lazy)
-
     first, last = np.searchsorted(cycles, [begin, begin + block])
     if last - first < FEWEST_SAMPLES:
         return None
     gaps = np.diff(cycles[max(first - 1, 0) : last + 1])
-    count = max(math.ceil(_FINER * block / gaps.min()), 2 * orders.size)
+    finest = _FINEST * max(int(last - first), 2 * orders.size)
+    count = max(math.ceil(min(_FINER * block / gaps.min(), finest)), 2 * orders.size)
     at = np.interp(begin + block * np.arange(count + 1) / count, cycles, time)
     values = spline(at[:-1])
     duration = float(at[-1] - at[0])
@@ -167,7 +171,15 @@ def _block(
     speed = block / duration
     steps = np.diff(time[max(first - 1, 0) : last + 1])
     amplitude[orders * speed > 0.5 / steps.max()] = np.nan
-    return float(0.5 * (at[0] + at[-1])), speed, amplitude, float(np.std(detrend(values)))
+    return float(0.5 * (at[0] + at[-1])), speed, amplitude, _level(values)
+
+
+def _level(values: np.ndarray) -> float:
+    """Root mean square of values (n,) less their straight line of least squares."""
+    place = np.arange(values.size) - 0.5 * (values.size - 1)
+    rest = values - values.mean()
+    rest -= (place @ rest) / (place @ place) * place
+    return float(np.sqrt(np.mean(rest**2)))
 
 
 def frequency_map(

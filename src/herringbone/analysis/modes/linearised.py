@@ -1,8 +1,9 @@
 """A system as x' = a x near its equilibrium, with the laws' tangents averaged over a turn.
 
 The laws' tangents are taken at the arguments of the start values, which are an equilibrium, while
-the angles of the laws go around: mesh stiffness by its mean over all mesh positions, contact as it
-is at the start. What varies over the period (parametric excitation) is left out.
+the angles of the laws go around: mesh stiffness by its mean over all mesh positions. Meshes keep
+their forces meanwhile, as slow motions do: a run-out moves a floating gear, and opens no teeth.
+What varies over the period (parametric excitation) is left out.
 """
 
 from typing import NamedTuple
@@ -19,6 +20,9 @@ from herringbone.cosim.structure.system import System
 
 _PLACES = 2048
 """Angles of a turn of the reference shaft at which the laws are evaluated."""
+_MOST = 100
+"""Iterations in which a mesh is brought back to its force; 1 or 2 where none opens."""
+_SAME = 1e-9
 
 
 class Linearised(NamedTuple):
@@ -53,21 +57,27 @@ def linearised(system: System) -> Linearised:
     equations, calls = condensed.equations, condensed.calls()
     values = int(calls.value[-1])
     with one_blas_thread():
-        tangents = _tangents(core)
-        along = tangents[:, None] * condensed.directions
         owner = condensed.table(calls).value
+        mesh = _of_gear_pairs(core, owner)
+        tangents = _tangents(core, mesh, owner[mesh])
+        along = tangents[:, None] * condensed.directions
         tangent = np.zeros((values, len(equations.c)))
         np.add.at(tangent, owner, along)
         inward = equations.b[:, :values]
         a = equations.a + inward @ tangent @ equations.c
         e = equations.e + equations.g[:, :values] @ tangent @ equations.c
-        mesh = _of_gear_pairs(core, owner)
     forces = inward[:, owner[mesh]] * tangents[mesh]
     return Linearised(core, a, e, forces, condensed.directions[mesh] @ equations.c)
 
 
-def _tangents(core: Core) -> np.ndarray:
-    """(tangents,) of all laws at the start values, averaged over a turn."""
+def _tangents(core: Core, mesh: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """(tangents,) of all laws, averaged over a turn in which meshes keep the forces of the start.
+
+    Args:
+        core: the system, taken apart.
+        mesh: tangents that are mesh stiffnesses.
+        force: values that are their forces.
+    """
     condensed, modes = core.condensed, core.condensed.modes
     calls, equations = condensed.calls(), condensed.equations
     late = core.twin.settled
@@ -75,9 +85,21 @@ def _tangents(core: Core) -> np.ndarray:
     signals = condensed.signals(late)
     channels = np.concatenate([np.zeros(int(calls.value[-1])), signals, [1.0]])
     z = equations.c @ core.twin.state + equations.d @ channels
+    start = laws(z[None])
+    wanted, stiffness = start.f[0, force].copy(), start.k[0, mesh].copy()
+    along = condensed.directions[mesh]
+    along = along / (along * along).sum(axis=1, keepdims=True)
     turned = modes.of_angles.sum(axis=1)
     turns = 2.0 * np.pi * np.arange(_PLACES if turned.any() else 1) / _PLACES
-    return laws(np.ascontiguousarray(z + turns[:, None] * turned)).k.mean(axis=0)
+    at = np.ascontiguousarray(z + turns[:, None] * turned)
+    for _ in range(_MOST):
+        found = laws(at)
+        missing = wanted - found.f[:, force]
+        if (np.abs(missing) <= _SAME * np.abs(wanted)).all():
+            break
+        tangent = np.where(found.k[:, mesh] > 0.0, found.k[:, mesh], stiffness)  # of open teeth
+        at += np.divide(missing, tangent, out=np.zeros_like(missing), where=tangent > 0.0) @ along
+    return laws(at).k.mean(axis=0)
 
 
 def _of_gear_pairs(core: Core, owner: np.ndarray) -> np.ndarray:

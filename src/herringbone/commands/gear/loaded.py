@@ -23,7 +23,8 @@ def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
         (f"Under {pair.torque:.6g} N m of the pinion{_symmetry(loaded)}{two}", ""),
         (
             "transmission error, mean and peak to peak",
-            f"{1e6 * pair.transmission_error.mean():.3f} um {1e6 * pair.peak_to_peak:.3f} um",
+            f"{1e6 * pair.transmission_error.mean():.3f} um {1e6 * pair.peak_to_peak:.3f} um, "
+            "transverse: mean normal deflection / cos(base helix angle)",
         ),
     ]
     if loaded.conditions.symmetry:

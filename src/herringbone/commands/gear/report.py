@@ -12,6 +12,7 @@ from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.load.figures import Conditions, Loaded, check_conditions, loaded_figures
+from herringbone.gears.pair_values import backlash_notes
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 from herringbone.gears.stiffness.methods import AUTO, METHODS, check_method, chosen_method
 from herringbone.gears.stiffness.point_mesh import Progress, silent
@@ -65,7 +66,8 @@ def gear(
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:
         return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
-    lines = [gear_tables(job, stiffness, loaded), "", f"Files: {', '.join(written)}"]
+    notes = [f"note: {note}" for note in backlash_notes(job)]
+    lines = [gear_tables(job, stiffness, loaded), "", *notes, f"Files: {', '.join(written)}"]
     if job.pair.halves == 2:
         lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")
     return "\n".join(lines)

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from herringbone.commands.gear.loaded import loaded_json, loaded_rows
 from herringbone.gears.geometry.corner_contact import Impact
 from herringbone.gears.geometry.gear_pair import GearPair
+from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.impact import impact_at
@@ -41,7 +42,7 @@ _PAIR_FIGURES = (
 def gear_tables(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> str:
     """Tables of geometry, forces, mesh stiffness, load and meshing impact, with units."""
     return "\n\n".join([
-        _aligned([*_geometry(job.pair), *_forces(job)]),
+        _aligned([*_geometry(job.pair), *_modification(job.modification), *_forces(job)]),
         _stiffness_table(stiffness, loaded),
         _aligned([*loaded_rows(loaded), *_impact_rows(job, stiffness, loaded)]),
     ])  # fmt: skip
@@ -68,6 +69,7 @@ def gear_figures(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> dict
             "deflection": stiffness.deflection.mean(axis=1).tolist(),
             "harmonics": stiffness.harmonics()[:, :_HARMONICS].tolist(),
         },
+        "modification": asdict(job.modification),
         "loaded": loaded_json(loaded),
         "impact": {"speed": speed, **asdict(impact)},
     }
@@ -126,6 +128,15 @@ def _geometry(pair: GearPair) -> list[_Row]:
     return rows
 
 
+def _modification(modification: Modification) -> list[_Row]:
+    return [
+        ("Modification of the flanks (pinion   wheel)", ""),
+        ("tip relief, parabolic", f"{_pair(modification.tip_relief, 1e6, 2)} um"),
+        ("its length on the path of contact", f"{1e3 * modification.relief_length:g} mm"),
+        ("helix crowning", f"{1e6 * modification.helix_crowning:g} um"),
+    ]
+
+
 def _forces(job: GearJob) -> list[_Row]:
     torque = job.pinion_torque
     forces = job.pair.tooth_forces(torque)
@@ -140,7 +151,7 @@ def _forces(job: GearJob) -> list[_Row]:
 def _stiffness_table(stiffness: MeshStiffness, loaded: Loaded) -> str:
     """Means over a mesh period, at every load; transmission error of the pair at its torque."""
     lines = [
-        "Mesh stiffness of one half, means over a mesh period",
+        "Mesh stiffness of one half, normal to the flank, means over a mesh period",
         stiffness.method,
         f"{'torque':>8}  {'load':>9}  {'secant':>9}  {'tangent':>9}  {'deflection':>10}"
         f"  {'TE p-p':>7}   secant's harmonics",

@@ -57,6 +57,11 @@ ITEMS: dict[str, Item] = {
         "five minutes and 4 GB; extra 'fe'",
         ("-m herringbone.housing.welded.default_data",),
     ),
+    "housing-surface": Item(
+        "surface of the housing with its four lowest modes, in fmus",
+        "ten seconds; extra 'fe'",
+        ("-m herringbone.housing.welded.surface_shapes",),
+    ),
     "components": Item(
         "script, README.md and golden.csv in fmus/*",
         "half a minute",

@@ -14,12 +14,13 @@ from herringbone.commands.options import (
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
 from herringbone.commands.run.options import SLOW
-from herringbone.core import Outcome, OutcomeKind, ParameterError
+from herringbone.core import EXIT_CODES, Outcome, OutcomeKind, ParameterError
 from herringbone.core.places.files import is_folder
 from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
+    from herringbone.result.verification import Verification
     from herringbone.running.output.resumed import Resumed
     from herringbone.running.output.run_output import RunOutput
 
@@ -27,8 +28,8 @@ _NOT_KEPT = frozenset({"command", "debug", "json", "output", "overwrite", "resum
 """What is not kept for `--resume`."""
 
 
-def run(options: argparse.Namespace) -> OutcomeKind:
-    """Run, write the report, and show the summary.
+def run(options: argparse.Namespace) -> int:
+    """Run, write the report, and show the summary; returns the exit code.
 
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
@@ -46,13 +47,22 @@ def run(options: argparse.Namespace) -> OutcomeKind:
 
         found = planned(options)
         if not found.choice.step:
-            return run_steady(options, found)
+            return EXIT_CODES[run_steady(options, found)]
         options = as_chosen(options, found)
     result = _ran(options) if options.resume is None else _resumed(options)
     show(result.to_json() if options.json else summary_text(result))
     if result.outcome.message and result.outcome.kind is not OutcomeKind.INTERRUPTED:
         say(_ended(result.outcome))
-    return result.outcome.kind
+    return EXIT_CODES[result.outcome.kind] or _missed(result.verification)
+
+
+def _missed(found: "Verification | None") -> int:
+    """1, with a line, if a tolerance that was asked for is not met; else 0."""
+    if found is None or not found.missed:
+        return 0
+    say(f"herringbone: tolerance {found.asked:g} not met: error {found.error:.2g}; the results are "
+        "complete, and a note says what kept the run from it")  # fmt: skip
+    return 1
 
 
 def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":

@@ -5,9 +5,10 @@ number_of_teeth = [27, 81]
 normal_module = "3.5 mm"         # text with a unit, or a number in SI
 helix_angle = "30 deg"
 face_width = "47.3 mm"           # of one half
+profile_shift_coefficient = [0.0, "auto"]  # "auto", None in Python: follows from the other values
 
 [modification]                   # optional; see `Modification`
-tip_relief = ["5 um", "5 um"]
+tip_relief = ["5 um", "5 um"]    # or one value for both
 
 [table]                          # optional; see `GearJob`
 torque = "200 N m"
@@ -33,11 +34,13 @@ from herringbone.core import ParameterError, ResourceError
 from herringbone.core.reading.structured import read_toml
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.known_keys import SECTIONS, keys_of
+from herringbone.gears.files.proportions import check_proportions
 from herringbone.gears.files.quantity import quantity
 from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.mesh_assumptions import MeshAssumptions
+from herringbone.gears.stiffness.methods import AUTO
 
 _LENGTHS = {
     "normal_module", "face_width", "center_distance", "tip_radius", "tooth_thickness_allowance",
@@ -56,6 +59,18 @@ _KINDS = {
 _INTEGERS = {"number_of_teeth", "halves", "phases", "slices", "grade", "seed"}
 _FLAGS = {"corner_contact"}
 _TEXTS = {"method", "left", "right"}
+_LISTS = {
+    "number_of_teeth", "profile_shift_coefficient", "addendum_coefficient", "dedendum_coefficient",
+    "tip_alteration_coefficient", "root_fillet_radius_coefficient", "tip_radius",
+    "tooth_thickness_allowance", "bore_diameter", "groove_diameter", "shaft_diameter",
+    "stub_length", "tip_relief", "grade", "loads",
+}  # fmt: skip
+"""Keys of several values."""
+_COMPLETED = {
+    "center_distance", "profile_shift_coefficient", "root_fillet_radius_coefficient", "tip_radius",
+    "groove_diameter", "torque", "loads", "backlash",
+}  # fmt: skip
+"""Keys that follow from the others where it says "auto", None in Python."""
 _REQUIRED = ("number_of_teeth", "normal_module", "face_width")
 
 
@@ -80,14 +95,25 @@ def read_gear_file(file: str | Path) -> GearJob:
     given = content.get("gear_pair", {})
     if missing := [name for name in _REQUIRED if name not in given]:
         raise ResourceError(f"{file}: [gear_pair] {missing[0]} is missing")
-    values = {
+    values: dict[str, dict[str, Any]] = {
         section: _converted(content.get(section, {}), f"{file}: [{section}]") for section in known
     }
+    try:
+        return _job(content, values, file.parent)
+    except ParameterError as error:
+        raise ParameterError(f"{file}: {error}") from None
+
+
+def _job(content: Mapping[str, Any], values: Mapping[str, dict[str, Any]], folder: Path) -> GearJob:
+    pair, relief = GearPair(**values["gear_pair"]), values["modification"]
+    check_proportions(pair, {**relief, **values["mesh"]})
+    if isinstance(amount := relief.get("tip_relief"), float):
+        relief["tip_relief"] = (amount, amount)
     return GearJob(
-        GearPair(**values["gear_pair"]),
-        Modification(**values["modification"]),
+        pair,
+        Modification(**relief),
         mesh=MeshAssumptions(**values["mesh"]),
-        deviations=_deviations(content, values["deviations"], file.parent),
+        deviations=_deviations(content, values["deviations"], folder),
         **values["table"],
     )
 
@@ -110,6 +136,11 @@ def _deviations(
 
 
 def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
+    for name, value in section.items():
+        if isinstance(value, list) and name not in _LISTS:
+            raise ResourceError(f"{where} {name} = {value} must be one value")
+        if name == "loads" and not isinstance(value, list) and value != AUTO:
+            raise ResourceError(f"{where} {name} = {value!r} must be a list, from zero on")
     return {
         name: [_value(name, item, f"{where} {name}") for item in value]
         if isinstance(value, list)
@@ -119,6 +150,8 @@ def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def _value(name: str, value: object, where: str) -> Any:  # noqa: ANN401 (by the name)
+    if name in _COMPLETED and value == AUTO:
+        return None
     if name in _TEXTS:
         if not isinstance(value, str):
             raise ResourceError(f"{where} = {value!r} must be a text")

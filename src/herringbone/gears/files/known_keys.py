@@ -35,7 +35,10 @@ def keys_of(section: str) -> list[str]:
 def optional_keys(text: str) -> str:
     """Comment lines on all keys that the text of a gear file leaves out, with their units."""
     given = tomllib.loads(text)
-    lines = ["# Keys that are left out above; lengths with a unit, such as '5 um', or in m:"]
+    lines = [
+        "# Keys that are left out above; lengths with a unit, such as '5 um', or in m;",
+        '# what is None in these lines is "auto" in this file:',
+    ]
     for section, of in SECTIONS.items():
         left = [key for key in keys_of(section) if key not in given.get(section, {})]
         lines += ["#", f"# [{section}]"] if left else []

@@ -81,7 +81,7 @@ def searched(
     Raises:
         HerringboneError: see `coupled`, for the first run.
     """
-    search = Search(tolerance)
+    search = Search(tolerance, wished=asked.tolerance is not None)
     stable = {} if asked.tolerance is None else stable_inner_steps(system)
     step = asked.step or first_step(system, scene)
     wanted = replace(asked, tolerance=None, warn=False, all_points=True, judge=False)

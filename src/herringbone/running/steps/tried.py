@@ -73,6 +73,7 @@ class Search:
 
     Args:
         tolerance: relative error.
+        wished: it is the user's own.
 
     Attributes:
         tried: runs that ended well.
@@ -80,8 +81,8 @@ class Search:
         why: the search is over; "" while it is not.
     """
 
-    def __init__(self, tolerance: float) -> None:
-        self._tolerance = tolerance
+    def __init__(self, tolerance: float, *, wished: bool) -> None:
+        self._tolerance, self._wished = tolerance, wished
         self.tried: list[_Tried] = []
         self.failed: list[float] = []
         self.why = ""
@@ -174,8 +175,13 @@ class Search:
         note = f"tolerance = {self._tolerance:g}: steps of {last.step:g} s, {size}runs: {runs}"
         notes = (*result.info.notes, note + self._limit())
         result = replace(result, info=replace(result.info, notes=notes))
+        if found and last.error > self._tolerance and result.outcome.completed:
+            said = f"tolerance = {self._tolerance:g} is not met: error {last.error:.2g}; {self.why}"
+            result = replace(result, outcome=replace(result.outcome, message=said))
         if found:
             verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
+            if self._wished:
+                verification = verification._replace(asked=self._tolerance)
             result = replace(result, verification=verification)
         return last.found._replace(result=result)
 

@@ -112,5 +112,5 @@ ENTRY = Entry(
     "shown. Dotted lines are the speeds of the thesis.",
     compute=compute,
     draw=draw,
-    seconds=40.0,
+    seconds=12.0,
 )

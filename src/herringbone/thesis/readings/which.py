@@ -55,7 +55,7 @@ def _margins(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray) -> p
 
 def _sentences(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray) -> pd.DataFrame:
     """A row per sentence: as shipped, in how many cases it holds, and with which fewest changes."""
-    simplest = [simplest(found, holds[:, k], margins[:, k]) for k in range(len(SENTENCES))]
+    best = [simplest(found, holds[:, k], margins[:, k]) for k in range(len(SENTENCES))]
     return table(
         {
             "sentence": [s.name for s in SENTENCES],
@@ -64,7 +64,7 @@ def _sentences(found: Sequence[Case], margins: np.ndarray, holds: np.ndarray) ->
             "needs": [s.needs for s in SENTENCES],
             "as_shipped": margins[0],
             "cases": holds.sum(axis=0),
-            "holds_if": ["" if k is None else whole_words(found[k]) for k in simplest],
+            "holds_if": ["" if k is None else whole_words(found[k]) for k in best],
         }
     )
 

@@ -31,7 +31,8 @@ def number(value: float) -> str:
 def typeset(text: str) -> str:
     """A text with true minus signs, and numbers that stay with their units."""
     text = re.sub(r"(?<![\w.\])])-(?=\d)", "\N{MINUS SIGN}", text)
-    return re.sub(_WITH_UNIT, "\N{NO-BREAK SPACE}", text)
+    text = re.sub(_WITH_UNIT, "\N{NO-BREAK SPACE}", text)
+    return re.sub(r"(?<=\N{NO-BREAK SPACE}N) (?=m\b)", "\N{NO-BREAK SPACE}", text)
 
 
 def told_number(finding: Finding) -> str:
