@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from herringbone.result.result import Result
     from herringbone.running.api import run
     from herringbone.running.exporting.export import build_fmus
-    from herringbone.running.modes import modes
+    from herringbone.running.operating.modes import modes
+    from herringbone.running.operating.steady import steady
     from herringbone.running.own_master import connections, start_values
-    from herringbone.running.steady import steady
     from herringbone.scenes import Ask, Scene
     from herringbone.studies.api import sweep
     from herringbone.studies.planning.plan import Plan, plan
@@ -96,14 +96,14 @@ _WHERE = {
     "Ask": "herringbone.scenes",
     "Scene": "herringbone.scenes",
     "System": "herringbone.cosim.structure.system",
-    "modes": "herringbone.running.modes",
+    "modes": "herringbone.running.operating.modes",
     "compare": "herringbone.analysis.accuracy.comparison",
     "compare_record": "herringbone.analysis.measured.of_run",
     "plateau_statistics": "herringbone.analysis.figures.plateaus",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",
     "SteadyState": "herringbone.analysis.steady.state",
-    "steady": "herringbone.running.steady",
+    "steady": "herringbone.running.operating.steady",
     "radiated_power": "herringbone.analysis.figures.radiated_power",
 }
 

@@ -30,8 +30,8 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import HerringboneError
 from herringbone.housing import default_housing, write_housing
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Operating, Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder

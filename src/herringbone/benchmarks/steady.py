@@ -13,8 +13,8 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.declaring.roles import Role
 from herringbone.running.loading import load_system
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 
 _SYSTEM = "test_rig"
 _RUN_OUT = "symmetry_deviation"

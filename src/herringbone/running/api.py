@@ -18,7 +18,6 @@ from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
 from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.commanded import operated
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.fused.fused import (
     FusedAsked,
@@ -28,7 +27,8 @@ from herringbone.running.fused.fused import (
     fused,
     verified_by_half,
 )
-from herringbone.running.lean import lean_notes, refuse_lean
+from herringbone.running.operating.commanded import operated
+from herringbone.running.operating.lean import lean_notes, refuse_lean
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared

@@ -9,8 +9,8 @@ from herringbone.components.registry import component
 from herringbone.core import ParameterError
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.cosim.structure.system import System
-from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes

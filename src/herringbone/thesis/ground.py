@@ -11,9 +11,9 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import HerringboneError
 from herringbone.running.api import run
-from herringbone.running.modes import modes
+from herringbone.running.operating.modes import modes
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Start
 from herringbone.thesis import names
 

@@ -82,13 +82,13 @@ def test_vectors_are_those_of_the_matrix(rig):
 
 
 def test_mesh_mode_of_the_rig(rig):
-    """It answers most, and the gear pair has most of it; the shipped pair's lies near 2.87 kHz.
+    """It answers most, and the gear pair has most of it.
 
-    With rigid bearings it is sqrt(k cos^2(beta_b) / m_e) / 2 pi = 2753 Hz at 2.011e9 N/m
-    (physics of the thesis' pair); bearings and gap shafts move it by less than 10 %.
+    Twelve degrees of freedom on ground have it at 3432 Hz at 2.011e9 N/m (an independent model of
+    the thesis' pair); the table's stiffness is 8 % less at 200 N m, the mode's 4 %.
     """
     mode = int(rig.mesh_answer[:, 0].argmax())
-    assert rig.frequency_hz[mode] == pytest.approx(2753.0, rel=0.1)
+    assert rig.frequency_hz[mode] == pytest.approx(3432.0, rel=0.05)
     assert rig.participation["gearbox.gear_mesh"][mode] > 0.9
     assert (rig.mesh_answer[:, 0] <= rig.mesh_answer[:, 1] * (1.0 + 1e-12)).all()
 

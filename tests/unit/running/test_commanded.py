@@ -8,7 +8,7 @@ import pytest
 from herringbone.analysis.set_points import addressed
 from herringbone.core import ParameterError, StructureError
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.running.commanded import commanded
+from herringbone.running.operating.commanded import commanded
 
 RPM = math.pi / 30.0
 

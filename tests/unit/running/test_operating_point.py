@@ -7,8 +7,8 @@ import pytest
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.running import api
-from herringbone.running.commanded import commanded, operated, with_known_values
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, operated, with_known_values
 from herringbone.running.prepared import Wishes
 
 POINT = {"speed": 157.0, "torque": 350.0}

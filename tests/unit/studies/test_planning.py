@@ -12,9 +12,9 @@ from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import apart, lines_of
 from herringbone.core import ParameterError
 from herringbone.plotting.studies.plan_chart import plan_chart
-from herringbone.running.lean import lean_of
+from herringbone.running.operating.lean import lean_of
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test

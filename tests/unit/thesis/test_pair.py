@@ -7,9 +7,9 @@ import pytest
 from support.thesis import finding, outcome
 
 from herringbone.thesis.entry import Verdict
-from herringbone.thesis.pair import relief_bearings
 from herringbone.thesis.pair.finite_elements import FILE, RELIEFS, by_elements
-from herringbone.thesis.pair.relief import READINGS, TIPS, change, torque_of
+from herringbone.thesis.pair.relief import bearings
+from herringbone.thesis.pair.relief.readings import READINGS, TIPS, change, torque_of
 
 NEEDS = Verdict.NEEDS_AN_ASSUMPTION
 
@@ -150,12 +150,12 @@ def test_transmission_error_with_relief():
 
 def test_bearing_forces_with_relief(monkeypatch):
     """At the thesis' 1000 r/min relief helps; not at each speed, as the report's curve shows."""
-    monkeypatch.setattr(relief_bearings, "_SPEEDS", (980, 1000, 1400))
-    plain, ten = (dict(relief_bearings._levels(name)) for name in ("none", "both 10"))
+    monkeypatch.setattr(bearings, "_SPEEDS", (980, 1000, 1400))
+    plain, ten = (dict(bearings._levels(name)) for name in ("none", "both 10"))
     assert 100.0 * (ten[1000] / plain[1000] - 1.0) == pytest.approx(-19.0, abs=1.0)
-    assert relief_bearings._verdict(50.0) is NEEDS
-    assert relief_bearings._verdict(95.0) is Verdict.AGREES
-    assert relief_bearings._verdict(5.0) is Verdict.CONTRADICTS
+    assert bearings._verdict(50.0) is NEEDS
+    assert bearings._verdict(95.0) is Verdict.AGREES
+    assert bearings._verdict(5.0) is Verdict.CONTRADICTS
 
 
 def test_the_file_of_finite_elements():

@@ -14,8 +14,8 @@ from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.fused.core import Steps
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 
 GROUPS = ("bearing_force", "seat_velocity")
 PERIODS, PER_PERIOD, STEP = 40, 64, 5e-6

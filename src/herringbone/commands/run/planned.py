@@ -62,7 +62,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
         steady_text,
         write_steady,
     )
-    from herringbone.running.steady import steady  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415
 
     at = found.scene.operating
     state = steady(

@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
-    from herringbone.running.modes import modes  # noqa: PLC0415 (numba: only when something runs)
+    from herringbone.running.operating.modes import modes  # noqa: PLC0415 (numba: only when something runs)
 
     if (options.shapes or options.animate) and options.output is None:
         raise ParameterError("--shapes and --animate draw; add -o FOLDER")

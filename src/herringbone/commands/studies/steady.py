@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
         steady_text,
         write_steady,
     )
-    from herringbone.running.steady import steady  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415
 
     spread = spread_of(options)
     if options.output:

@@ -160,7 +160,7 @@ def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | No
     Raises:
         ParameterError: something is asked of runs, and not the runs.
     """
-    from herringbone.running.steady import is_foreign  # noqa: PLC0415
+    from herringbone.running.operating.steady import is_foreign  # noqa: PLC0415
     from herringbone.studies.evaluators.settled import Settled  # noqa: PLC0415
     from herringbone.studies.evaluators.steady import Steady  # noqa: PLC0415
     from herringbone.studies.evaluators.transient import Transient  # noqa: PLC0415

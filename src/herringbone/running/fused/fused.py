@@ -19,7 +19,7 @@ from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
-from herringbone.running.lean import lean_of, with_model_row
+from herringbone.running.operating.lean import lean_of, with_model_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (

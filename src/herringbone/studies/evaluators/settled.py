@@ -5,9 +5,9 @@ from typing import Any
 
 from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE
 from herringbone.core import OutcomeKind
-from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.settled import LONGEST, settled
+from herringbone.running.operating.commanded import commanded, with_known_values
+from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation
 from herringbone.studies.evaluators.steady import STEADY, UNSETTLED, figures_of
 from herringbone.studies.study import Point

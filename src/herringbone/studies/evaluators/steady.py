@@ -15,9 +15,9 @@ from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core import ParameterError
-from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
-from herringbone.running.steady import prepared_solver
+from herringbone.running.operating.commanded import commanded, with_known_values
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
     PERIOD,

@@ -6,8 +6,8 @@ from typing import Any
 from herringbone.analysis.figures.settling import unsettled
 from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.running.api import run
-from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation
 from herringbone.studies.evaluators.levels import levels_over_time
 from herringbone.studies.study import Point

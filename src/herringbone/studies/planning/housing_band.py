@@ -11,8 +11,8 @@ from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, 
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.points import first_point, points_to_probe
 from herringbone.studies.planning.steady_plan import questions_of

@@ -14,11 +14,11 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.facts import Facts
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
-from herringbone.running.lean import lean_of
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.lean import lean_of
+from herringbone.running.operating.steady import prepared_at
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
-from herringbone.running.steady import prepared_at
 from herringbone.scenes import Model, Motion, Scene
 from herringbone.studies.planning.certified import FINER, tolerance_for
 from herringbone.studies.planning.joint import Joint, joint_choices

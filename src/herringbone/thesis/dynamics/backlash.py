@@ -10,8 +10,8 @@ import pandas as pd
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
 from herringbone.thesis.ground import SPEEDS, settled

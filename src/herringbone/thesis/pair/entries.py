@@ -1,17 +1,8 @@
 """The entries of this room, in the order of the thesis."""
 
 from herringbone.thesis.entry import Entry
-from herringbone.thesis.pair import (
-    definitions,
-    geometry,
-    methods,
-    over_a_period,
-    pressure,
-    relief_bearings,
-    relief_error,
-    relief_over_phase,
-    relief_over_torque,
-)
+from herringbone.thesis.pair import definitions, geometry, methods, over_a_period, pressure
+from herringbone.thesis.pair.relief import bearings, over_phase, over_torque, transmission_error
 
 ENTRIES: tuple[Entry, ...] = (
     geometry.ENTRY,
@@ -19,8 +10,8 @@ ENTRIES: tuple[Entry, ...] = (
     over_a_period.ENTRY,
     definitions.ENTRY,
     pressure.ENTRY,
-    relief_over_phase.ENTRY,
-    relief_over_torque.ENTRY,
-    relief_error.ENTRY,
-    relief_bearings.ENTRY,
+    over_phase.ENTRY,
+    over_torque.ENTRY,
+    transmission_error.ENTRY,
+    bearings.ENTRY,
 )

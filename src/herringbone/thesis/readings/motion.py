@@ -22,8 +22,8 @@ from herringbone.core.declaring.roles import HALVES
 from herringbone.housing import SEAT_DOFS, ModalHousing, default_housing
 from herringbone.result.result import TIME, Result
 from herringbone.running.api import run
-from herringbone.running.commanded import commanded
-from herringbone.running.steady import prepared_solver
+from herringbone.running.operating.commanded import commanded
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.thesis.names import BEARINGS, GEAR, GEARBOX
 from herringbone.thesis.readings.reading import Reading
 

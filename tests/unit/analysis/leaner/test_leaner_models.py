@@ -17,8 +17,8 @@ from herringbone.analysis.twin.condensed.lean import Lean, held_states
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.measured import values_at
 from herringbone.core import StructureError
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 
 _SPEED = 1310.0 * math.pi / 30.0
 

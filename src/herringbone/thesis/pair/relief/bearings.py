@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.steady.set_points import Point
+from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.running.steady import prepared_solver
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.names import GEARBOX, SYMMETRY_DEVIATION
 from herringbone.thesis.pair.finite_elements import modification
 from herringbone.thesis.pair.given import JOB
-from herringbone.thesis.pair.relief import AMOUNTS, TIPS
+from herringbone.thesis.pair.relief.readings import AMOUNTS, TIPS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,7 +10,7 @@ from herringbone.thesis.pair.finite_elements import TORQUES, by_elements
 from herringbone.thesis.pair.given import JOB
 from herringbone.thesis.pair.methods import PUBLISHED
 from herringbone.thesis.pair.methods import torque_of as torque_of_stiffness
-from herringbone.thesis.pair.relief import (
+from herringbone.thesis.pair.relief.readings import (
     AMOUNTS,
     PUBLISHED_CHANGE,
     READINGS,

@@ -9,7 +9,7 @@ from herringbone.gears import MeshStiffness
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.pair.finite_elements import TORQUES, by_elements
 from herringbone.thesis.pair.periods import two_periods
-from herringbone.thesis.pair.relief import AMOUNTS, TIPS, relief
+from herringbone.thesis.pair.relief.readings import AMOUNTS, TIPS, relief
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,8 +9,8 @@ from herringbone.analysis.steady.settled import SettledState
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 from herringbone.running.api import run
-from herringbone.running.commanded import commanded, with_known_values
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Scene
 

@@ -10,12 +10,12 @@ from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
-from herringbone.running.commanded import with_known_values
-from herringbone.running.lean import certified, lean_error, lean_notes, lean_of
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import with_known_values
+from herringbone.running.operating.lean import certified, lean_error, lean_notes, lean_of
+from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Prepared, Wishes, prepared
-from herringbone.running.settled import LONGEST, settled
 from herringbone.scenes import Scene, Start
 
 NOTHING = Wishes()

@@ -1,0 +1,1 @@
+"""Tip relief: what it does to stiffness, transmission error and bearing forces."""
