@@ -12,6 +12,9 @@ BAD_INPUT = 2
 """Exit code."""
 
 
+_NO_NUMBER = re.compile(r"argument (\S+): invalid (?:float|int) value: ")
+
+
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line, and to which -1e-5 is a number and no option."""
 
@@ -35,4 +38,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong, and end with the exit code of bad input."""
+        if wrong := _NO_NUMBER.match(message):
+            about = next(a.help for a in self._actions if wrong[1] == "/".join(a.option_strings))
+            message = f"{message}; it takes a number alone: {about}"
         self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)}; see '{self.prog} --help'\n")

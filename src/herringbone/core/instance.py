@@ -47,6 +47,12 @@ class Instance:
                 f"'herringbone list {self.component.name}' shows them"
             ) from None
 
+    def _unit(self, name: str) -> str:
+        """What a message says of the unit of a variable."""
+        units = {v.name: v.unit for v in self.component.declaration.variables}
+        unit = units.get(name, "")
+        return f" alone, in {unit}" if unit not in {"", "1"} else ""
+
     def __getitem__(self, name: str) -> float:
         return float(self.block[self._known(name)])
 
@@ -65,7 +71,9 @@ class Instance:
             return
         index = self._known(name)
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
-            raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a number")
+            raise ParameterError(
+                f"{self.name}.{name} = {value!r}: it takes a number{self._unit(name)}"
+            )
         if index >= self.component.declaration.mutable_size:
             check_value(self.name, self.component.declaration.variable(name), float(value))
         elif not math.isfinite(value):

@@ -1,6 +1,7 @@
 """The stiffness table of a job: out of the cache, or computed and put there."""
 
 import logging
+from functools import cache
 
 import numpy as np
 
@@ -24,6 +25,21 @@ _ARRAYS = ("loads", "phases", "deflection", "tangent", "zero_load_secant")
 _BOUNDS = ("mean", "harmonics")
 
 
+@cache
+def _tell_missing(pinion_teeth: int, wheel_teeth: int, name: str) -> None:
+    """Say once for each pair of teeth what is taken without the best method."""
+    chosen = METHODS[name]
+    _LOG.warning(
+        "the stiffness table of z %d/%d is made by %s, its mean within %g %% and its harmonics "
+        "within %g %%, because the extra 'fe' is missing: pip install 'herringbone[fe]'",
+        pinion_teeth,
+        wheel_teeth,
+        chosen.title,
+        100.0 * chosen.accuracy.mean,
+        100.0 * chosen.accuracy.share,
+    )
+
+
 def stiffness_for(
     job: GearJob, method: str | None = None, progress: Progress | None = None
 ) -> MeshStiffness:
@@ -44,14 +60,7 @@ def stiffness_for(
     name, task = chosen_method(asked), job.task()
     chosen = METHODS[name]
     if asked == AUTO and name != "fe":
-        _LOG.warning(
-            "the stiffness table of z %d/%d is made by %s, its mean within %g %% and its harmonics "
-            "within %g %%, because the extra 'fe' is missing: pip install 'herringbone[fe]'",
-            *job.pair.number_of_teeth,
-            chosen.title,
-            100.0 * chosen.accuracy.mean,
-            100.0 * chosen.accuracy.share,
-        )
+        _tell_missing(*job.pair.number_of_teeth, name)
 
     def make() -> Arrays:
         if name == "fe" and not has_finite_elements():

@@ -15,13 +15,14 @@ from herringbone.running.output.settings import key_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
 from herringbone.studies.axes import numbers
+from herringbone.studies.computing import Progress
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
 from herringbone.studies.evaluators.settled import Settled
 from herringbone.studies.evaluators.steady import Steady
 from herringbone.studies.evaluators.transient import Transient
 from herringbone.studies.keys import base_settings
 from herringbone.studies.study import SET_POINTS, Study, Value, grid
-from herringbone.studies.sweep import Asked, Progress, Sweep, Told, computed
+from herringbone.studies.sweep import Asked, Sweep, Told, computed
 from herringbone.studies.working.executors import Workers
 
 

@@ -8,6 +8,7 @@ from statistics import median
 
 from herringbone.core import ParameterError
 from herringbone.result.folder.typed import as_json
+from herringbone.studies.evaluators.levels import PERIOD
 from herringbone.studies.working.chain import Done
 
 _MEBIBYTE = 2.0**20
@@ -57,6 +58,12 @@ def expected(points: int, chains: int, missing: int, known: Sequence[Done]) -> E
     cpu = median(each.cpu / len(each.rows) for each in known)
     size = median(_size(each) / len(each.rows) for each in known)
     return Expected(points, chains, missing, cpu * missing, size * points)
+
+
+def longest_period(known: Sequence[Done]) -> float:
+    """Mesh periods after which the motion repeats, of the worst point; 0 if none tells it."""
+    told = (row.figures.get(PERIOD, 0.0) for each in known for row in each.rows)
+    return max((meshes for meshes in told if meshes > 0.0), default=0.0)
 
 
 def check_room(ahead: Expected, folder: Path) -> None:

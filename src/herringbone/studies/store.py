@@ -21,7 +21,7 @@ from herringbone.result.result import Result
 from herringbone.running.output.claim import FolderLock
 from herringbone.running.reporting.report import store_result
 from herringbone.studies.keys import Chain
-from herringbone.studies.working.chain import Done, Row
+from herringbone.studies.working.chain import Done, Row, read_so_far
 
 FORMAT = 1
 STUDY, CHAINS, SERIES = "study.json", "chains", "series"
@@ -102,6 +102,7 @@ class StudyFolder:
         }
         text = json.dumps(body)
         write_text(self._file(chain), f"{digest_of(text)}\n{text}\n")
+        self.so_far(chain).unlink(missing_ok=True)
 
     def _write_series(self, folder: Path, result: Result) -> None:
         try:
@@ -133,10 +134,23 @@ class StudyFolder:
         rows = tuple(Row(**row) for row in body[_ROWS])
         return Done(rows, body[_UNITS], body[_CPU])
 
-    def all(self, chains: list[Chain]) -> Iterator[tuple[Chain, Done]]:
-        """Chains one after the other, of which one is in memory at a time."""
+    def so_far(self, chain: Chain) -> Path:
+        """File of the rows of a chain that is not whole; gone when the folder is used again."""
+        return self.folder / CHAINS / f".{chain.key}{PART}"
+
+    def all(self, chains: list[Chain], *, whole: bool = True) -> Iterator[tuple[Chain, Done]]:
+        """Chains one after the other, of which one is in memory at a time.
+
+        Args:
+            chains: of the study.
+            whole: all are there; else of others the points that are there so far.
+        """
         for chain in chains:
-            yield chain, self.read(chain)
+            if whole or is_file(self._file(chain)):
+                yield chain, self.read(chain)
+            elif done := read_so_far(self.so_far(chain)):
+                count = len(done.rows)
+                yield Chain(chain.numbers[:count], chain.keys[:count]), done
 
 
 def read_study(folder: Path) -> dict[str, Any] | None:

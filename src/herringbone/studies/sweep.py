@@ -1,7 +1,6 @@
 """A study from its points to its table."""
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from itertools import compress
@@ -12,22 +11,23 @@ import pandas as pd
 
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.temporary import temporary_folder
+from herringbone.studies.computing import Progress, compute, measured
 from herringbone.studies.evaluators.evaluator import Base, Evaluator
-from herringbone.studies.expected import Expected, check_room, expected
+from herringbone.studies.expected import Expected, check_room, expected, longest_period
 from herringbone.studies.keys import Chain, chains_of
 from herringbone.studies.store import StudyFolder
 from herringbone.studies.study import Study
 from herringbone.studies.table import study_table
-from herringbone.studies.working.chain import Done, Job, run_chain
-from herringbone.studies.working.executors import Workers, Working, working
+from herringbone.studies.working.chain import Job
+from herringbone.studies.working.executors import Workers, working
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _KNOWN = 16
 """Chains that are there, from which the cost of the others is told."""
-_TRIED = 2
-"""Points of a chain that are computed to tell what the others cost."""
+_LONG = 100.0
+"""Mesh periods of a period from which on a line says why points take long."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,6 @@ class Sweep:
 
 Told = Callable[[str], None]
 """Called before points are computed, with what is ahead."""
-Progress = Callable[[int], None]
-"""Called with the number of points that were done since."""
 
 
 def computed(
@@ -131,61 +129,37 @@ def computed(
 
         known = [store.read(c) for c in list(compress(chains, there))[:_KNOWN]]
         if not known:
-            missing, known = _measured(missing, job, store, progress)
+            missing, known = measured(missing, job, store, progress)
         ahead = expected(len(study.points), len(chains), sum(len(c.keys) for c in missing), known)
         check_room(ahead, place)
         where = stack.enter_context(working(workers, ahead.cpu, len(missing)))
         told(f"{ahead} {where.told}")
-        _compute(missing, job, store, where, progress)
+        if (meshes := longest_period(known)) >= _LONG:
+            told(
+                f"run-outs make the period up to {meshes:.0f} mesh periods long, which is what "
+                "such a point takes its time for"
+            )
+        try:
+            compute(missing, job, store, where, progress)
+        except KeyboardInterrupt:
+            if asked.output:
+                told(_interrupted(study, chains, store, asked, place))
+            raise
         table = study_table(study, chains, store, asked.given)
         files = table.write(place, parquet=asked.parquet) if asked.output else []
         return Sweep(table.data, table.units, ahead, tuple(files))
 
 
-def _measured(
-    missing: list[Chain],
-    job: Callable[[Sequence[int]], Job],
-    store: StudyFolder,
-    progress: Progress,
-) -> tuple[list[Chain], list[Done]]:
-    """What points cost, from the second one on: the first one also loads what all need.
-
-    Returns:
-        What is still missing, and what was measured.
-    """
-    for _ in range(2):
-        numbers = missing[0].numbers
-        done = run_chain(job(numbers[:_TRIED]))
-        if len(numbers) <= _TRIED:
-            store.write(missing[0], done)
-            progress(len(numbers))
-            missing = missing[1:]
-        if not missing:
-            break
-    return missing, [done]
-
-
-def _compute(
-    missing: Sequence[Chain],
-    job: Callable[[Sequence[int]], Job],
-    store: StudyFolder,
-    where: Working,
-    progress: Progress,
-) -> None:
-    """Compute chains; a bounded number of them is under way at a time."""
-    waiting: dict[Future[Done], Chain] = {}
-    left = iter(missing)
-    try:
-        while True:
-            while len(waiting) < where.window and (chain := next(left, None)) is not None:
-                waiting[where.executor.submit(run_chain, job(chain.numbers))] = chain
-            if not waiting:
-                return
-            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                chain = waiting.pop(future)
-                store.write(chain, future.result())
-                progress(len(chain.keys))
-    except BaseException:
-        for future in waiting:
-            future.cancel()
-        raise
+def _interrupted(
+    study: Study, chains: Sequence[Chain], store: StudyFolder, asked: Asked, place: Path
+) -> str:
+    """Write the table of the points that are there; returns a line that says so."""
+    there = sum(len(done.rows) for _, done in store.all(list(chains), whole=False))
+    if not there:
+        return f"interrupted before the first of {len(study.points)} points was there"
+    table = study_table(study, chains, store, asked.given, whole=False)
+    files = table.write(place, parquet=asked.parquet)
+    return (
+        f"interrupted: {there} of {len(study.points)} points are in {files[1]}; the same sweep "
+        "goes on with the lines of neighbours that are whole"
+    )

@@ -1,6 +1,6 @@
 """The tidy table of a study: a row per point."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from herringbone.result.tables import (
 from herringbone.studies.keys import Chain
 from herringbone.studies.store import StudyFolder
 from herringbone.studies.study import Study
+from herringbone.studies.working.chain import Done
 
 TABLE, PARQUET = "table.csv", "table.parquet"
 _POINT, _OUTCOME, _MESSAGE = "point", "outcome", "message"
@@ -58,7 +59,12 @@ class StudyTable:
 
 
 def study_table(
-    study: Study, chains: Sequence[Chain], store: StudyFolder, given: Mapping[str, str]
+    study: Study,
+    chains: Sequence[Chain],
+    store: StudyFolder,
+    given: Mapping[str, str],
+    *,
+    whole: bool = True,
 ) -> StudyTable:
     """The table; its columns are all figures that a point has, in the order in which they come.
 
@@ -67,9 +73,10 @@ def study_table(
     Args:
         study, chains, store: of the study.
         given: units of the parameters.
+        whole: all chains are there; else the points that are there so far, at least one.
     """
     figures: dict[str, str] = {}
-    pieces = list(_pieces(study, chains, store, figures))
+    pieces = list(_pieces(study, store.all(list(chains), whole=whole), figures))
     own = [_POINT, *study.names, _OUTCOME, _MESSAGE]
     units = {_POINT: "", **given, _OUTCOME: "", _MESSAGE: "", **figures}
     data = pd.concat([piece.reindex(columns=[*own, *figures]) for piece in pieces])
@@ -83,16 +90,16 @@ def _has_text(study: Study, parameter: int) -> bool:
 
 
 def _pieces(
-    study: Study, chains: Sequence[Chain], store: StudyFolder, figures: dict[str, str]
+    study: Study, found: Iterable[tuple[Chain, Done]], figures: dict[str, str]
 ) -> Iterator[pd.DataFrame]:
     """Rows with the figures that are known so far, to which those of each chain are added."""
     rows: list[list] = []
-    for chain, done in store.all(list(chains)):
+    for chain, done in found:
         for name, unit in done.units.items():
             figures.setdefault(name, unit)
         for number, row in zip(chain.numbers, done.rows, strict=True):
-            found = [row.figures.get(name, np.nan) for name in figures]
-            rows.append([number, *study.points[number], row.outcome, row.message, *found])
+            own = [row.figures.get(name, np.nan) for name in figures]
+            rows.append([number, *study.points[number], row.outcome, row.message, *own])
         if len(rows) >= _ROWS_IN_PIECE:
             yield _frame(study, rows, figures)
             rows = []

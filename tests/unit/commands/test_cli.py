@@ -55,6 +55,19 @@ def test_a_wrong_name_is_answered_by_what_it_may_mean(capsys, arguments, meant):
     assert f"did you mean {meant}?" in refused(capsys, *arguments)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "unit"),
+    [
+        (("run", "test_rig", "--step", "40us"), "communication step size in s"),
+        (("sweep", "test_rig", "--t-end", "2s"), "duration of each run in s"),
+    ],
+)
+def test_a_refused_number_is_told_its_unit(capsys, arguments, unit):
+    code, _, err = ended(capsys, *arguments)
+    assert code == BAD_INPUT
+    assert f"it takes a number alone: {unit}" in err
+
+
 def test_list_shows_a_system(capsys):
     text = shown(capsys, "list", "test_rig")
     for told in (

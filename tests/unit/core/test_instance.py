@@ -36,7 +36,8 @@ def test_reading_an_unknown_variable(motor):
 
 @pytest.mark.parametrize("value", ["fast", "1.0", True, False])
 def test_wrong_type(motor, value):
-    assert message(motor, "speed", value) == f"motor.speed = {value!r}: it takes a number"
+    told = f"motor.speed = {value!r}: it takes a number alone, in rad/s"
+    assert message(motor, "speed", value) == told
 
 
 @pytest.mark.parametrize("value", [1.0, 3, True])

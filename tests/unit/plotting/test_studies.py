@@ -9,7 +9,7 @@ import pytest
 from herringbone.analysis.figures.sensitivity import sensitivities
 from herringbone.core import ParameterError
 from herringbone.plotting.studies.levels import levels, peaks, waterfall
-from herringbone.plotting.studies.maps import level_map
+from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
 from herringbone.plotting.studies.table import Points
@@ -182,7 +182,7 @@ def test_curves_that_coincide_are_told(table):
     ])  # fmt: skip
     ordered = thrice[["mesh.f_a", *(c for c in thrice if c != "mesh.f_a")]]
     panel = levels(Points(ordered, {**UNITS, "mesh.f_a": "m"})).axes[0]
-    assert panel.get_title(loc="left") == "f_a 0 m, 1e-05 m coincide within 1 %"
+    assert panel.get_title(loc="left") == "f_a 0 µm, 10 µm coincide within 1 %"
 
 
 def test_sensitivities_of_a_table_make_a_band_and_a_tornado_plot(table, tmp_path):
@@ -201,3 +201,12 @@ def test_sensitivities_of_a_table_make_a_band_and_a_tornado_plot(table, tmp_path
     assert write_study_pictures(none, UNITS, tmp_path).missing == [
         "no tornado.force.png: no point has a level and sensitivities of it"
     ]
+
+
+def test_axes_of_small_lengths_are_in_micrometres_and_two_values_make_no_map():
+    table = pd.DataFrame({"mesh.f_a": [0.0, 15e-6] * 2, "speed": [600.0, 600.0, 700.0, 700.0],
+                          "outcome": "steady", "force.rms": 1.0})  # fmt: skip
+    points = Points(table, {"mesh.f_a": "m", "speed": "r/min"})
+    assert points.scaled_label("mesh.f_a") == "mesh.f_a [µm]"
+    assert [label for label, _ in points.curves("speed")] == ["f_a 0 µm", "f_a 15 µm"]
+    assert not is_map(points)

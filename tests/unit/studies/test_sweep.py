@@ -9,12 +9,15 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from support.studies import Cheap
 
 import herringbone as hb
 from herringbone.core import HerringboneError
+from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
+from herringbone.studies.working.chain import Done, Row
 
 SPEEDS = [100.0 * k for k in range(1, 9)]
 TORQUES = [1.0, 2.0, 3.0]
@@ -143,3 +146,31 @@ def test_a_forked_worker_holds_nothing_of_its_parent(tmp_path):
     with (tmp_path / "errors").open("w") as errors:
         done = subprocess.run([sys.executable, "-c", _FORKED, tmp_path], check=False, stderr=errors)
     assert done.returncode == 0, (tmp_path / "errors").read_text()
+
+
+def test_an_interrupted_sweep_has_a_table_of_its_points_so_far(tmp_path):
+    """Seven of ten: a line of five that is whole, and two of the other."""
+    reached, told = [], []
+
+    def progress(points):
+        reached.append(points)
+        if sum(reached) == 7:
+            raise KeyboardInterrupt
+
+    wanted = {"speed": [10.0, 20.0, 30.0, 40.0, 50.0], "torque": [1.0, 2.0], "workers": 1}
+    with pytest.raises(KeyboardInterrupt):
+        hb.sweep(
+            "gearbox", evaluator=Cheap(), output=tmp_path, told=told.append, progress=progress,
+            **wanted,
+        )  # fmt: skip
+    assert "interrupted: 7 of 10 points are in" in told[-1]
+    found = pd.read_csv(tmp_path / "table.csv")
+    whole = hb.sweep("gearbox", evaluator=Cheap(), output=tmp_path, **wanted).table
+    assert found["x"].tolist() == whole["x"].tolist()[:7]
+    assert not list((tmp_path / "chains").glob(".*"))
+
+
+def test_long_periods_are_told():
+    rows = (Row("steady", "", {"period_meshes": 1.0}), Row("steady", "", {"period_meshes": 1633.0}))
+    assert longest_period([Done(rows, {}, 1.0)]) == 1633.0
+    assert longest_period([Done((Row("failed", "", {}),), {}, 1.0)]) == 0.0

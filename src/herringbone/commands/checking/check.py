@@ -9,6 +9,11 @@ from herringbone.core import FmuError, ParameterError
 
 _ROLES = ["housing", "motor", "load", "coupling"]
 
+_USABLE = (
+    "its description departs from FMI as above, which is up to the tool that made it; it loads and "
+    "steps, and may be used here"
+)
+
 
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
@@ -56,7 +61,9 @@ def run(options: argparse.Namespace) -> int:
     show(
         f"{options.fmu}: {len(problems)} problem(s)" if problems else f"{options.fmu}: no problems"
     )
-    for line in (*_remarks(options.fmu), *_signature(options.fmu, options.step)):
+    signature = _signature(options.fmu, options.step)
+    usable = [_USABLE] if problems and signature else []
+    for line in (*usable, *_remarks(options.fmu), *signature):
         show(f"  {line}")
     return 1 if problems else 0
 
@@ -66,9 +73,12 @@ def _remarks(fmu: Path) -> list[str]:
     from herringbone.fmi.check import without_unit  # noqa: PLC0415
 
     try:
-        return [f"remark: {line}, taken as SI" for line in without_unit(fmu)]
+        names = [line.partition(":")[0] for line in without_unit(fmu)]
     except FmuError:
         return []
+    if not names:
+        return []
+    return [f"remark: without unit, taken as SI: {', '.join(names)} (Real, {len(names)} in all)"]
 
 
 def _refuse_wrong(options: argparse.Namespace) -> None:

@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
     replaced = replacements(options)
     evaluator = _evaluator(options, Wishes(housing=files.housing, replace_parts=replaced))
     tqdm.monitor_interval = 0  # a thread, and what has threads is not forked
-    with tqdm(unit=" points", disable=None) as bar:
+    with tqdm(total=len(study.points), unit=" points", disable=None) as bar:
         found = sweep(
             options.system,
             study=study,
@@ -191,9 +191,27 @@ def _refuse_sensitivities(asked: list[str] | None) -> None:
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
+    from herringbone.commands.studies.largest import (  # noqa: PLC0415 (matplotlib)
+        largest_levels,
+        largest_text,
+    )
+    from herringbone.plotting.studies.table import Points  # noqa: PLC0415
+
     outcomes = found.table["outcome"].value_counts().to_dict()
+    points = Points(found.table, found.units)
     if as_json:
-        return json.dumps({"points": len(found.table), "outcomes": outcomes, "results": files})
+        largest = {
+            group: {"rms": rms, "unit": found.units[f"{group}.rms"], "at": at}
+            for group, rms, at in largest_levels(points)
+        }
+        return json.dumps(
+            {
+                "points": len(found.table),
+                "outcomes": outcomes,
+                "largest": largest,
+                "results": files,
+            }
+        )
     told = ", ".join(f"{count} {kind}" for kind, count in outcomes.items())
     lines = [f"{len(found.table)} points: {told}"]
     bad = found.table[~found.table["outcome"].isin(_GOOD)]
@@ -201,4 +219,4 @@ def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
         lines.append(f"point {row.point}: {row.outcome}: {row.message}")
     if len(bad) > 3:
         lines.append(f"... and {len(bad) - 3} more; see the table")
-    return "\n".join([*lines, "Files: " + ", ".join(files)])
+    return "\n".join([*lines, *largest_text(points), "Files: " + ", ".join(files)])

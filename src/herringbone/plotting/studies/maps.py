@@ -8,6 +8,9 @@ from herringbone.core import ParameterError
 from herringbone.plotting.studies.table import Points
 from herringbone.plotting.style import new_figure, styled
 
+_FEWEST = 3
+"""Values of a parameter that make rows of a map; of fewer, the curves of the levels tell more."""
+
 
 @styled
 def level_map(
@@ -47,17 +50,23 @@ def level_map(
         factor, unit = points.scale(column)
         grid = cells[column].max().unstack(across).sort_index()
         drawn = axes.pcolormesh(
-            grid.columns.to_numpy(float), grid.index.to_numpy(float),
+            grid.columns.to_numpy(float) * points.scale(across)[0],
+            grid.index.to_numpy(float) * points.scale(up)[0],
             factor * np.ma.masked_invalid(grid.to_numpy(float)), shading="nearest", cmap="viridis",
         )  # fmt: skip
         axes.grid(visible=False)
         figure.colorbar(drawn, ax=axes, pad=0.02).set_label(f"{column} [{unit}]")
-        axes.set_xlabel(points.label(across))
-        axes.set_ylabel(points.label(up))
+        axes.set_xlabel(points.scaled_label(across))
+        axes.set_ylabel(points.scaled_label(up))
         axes.set_title(column, fontsize=8.5)
     return figure
 
 
 def is_map(points: Points) -> bool:
-    """True if speed and torque, or the first two numbers, make a map."""
-    return len(points.numbers) >= 2 or {SPEED, TORQUE} <= set(points.numbers)
+    """True if two numbers make a map: speed, torque, or one with three values at least."""
+    able = [
+        name
+        for name in points.numbers
+        if name in {SPEED, TORQUE} or points.table[name].nunique() >= _FEWEST
+    ]
+    return len(able) >= 2

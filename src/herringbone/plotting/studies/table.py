@@ -88,6 +88,10 @@ class Points:
         unit = self.units.get(column, "")
         return f"{LABELS.get(column, column)} [{_SHOWN_UNITS.get(unit, unit)}]"
 
+    def scaled_label(self, column: str) -> str:
+        """Name, and the unit that reads well, for an axis."""
+        return f"{LABELS.get(column, column)} [{self.scale(column)[1]}]"
+
     def scale(self, column: str) -> tuple[float, str]:
         """Factor and unit that read well for a figure."""
         values = self.table[column].to_numpy(float)
@@ -108,15 +112,18 @@ class Points:
         for values, rows in self.table.groupby(others, sort=True, dropna=False):
             key = values if isinstance(values, tuple) else (values,)
             told = [
-                f"{c.rpartition('.')[2]} {_short(v)} {self._unit(c)}".rstrip()
+                f"{c.rpartition('.')[2]} {self._told(c, v)}"
                 for c, v in zip(others, key, strict=True)
             ]
             found.append((", ".join(told), rows.sort_values(across)))
         return found
 
-    def _unit(self, column: str) -> str:
-        unit = self.units.get(column, "")
-        return "" if unit in {"", "1"} else _SHOWN_UNITS.get(unit, unit)
+    def _told(self, column: str, value: object) -> str:
+        """A value of a parameter in the unit in which all its values read well."""
+        if column not in self.numbers or not isinstance(value, float | int | np.number):
+            return _short(value)
+        factor, unit = self.scale(column)
+        return f"{factor * float(value):g} {'' if unit == '1' else unit}".rstrip()
 
     @property
     def lost(self) -> pd.DataFrame:

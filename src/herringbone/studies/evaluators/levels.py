@@ -17,6 +17,8 @@ from herringbone.core import ParameterError
 from herringbone.result.result import TIME, Result
 from herringbone.studies.evaluators.evaluator import Figure
 
+PERIOD = "period_meshes"
+"""Figure of a steady state: mesh periods after which it repeats."""
 ORDERS = 8
 """Mesh orders of which each has a column."""
 LARGEST = 3

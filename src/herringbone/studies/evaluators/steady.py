@@ -20,6 +20,7 @@ from herringbone.running.operating.commanded import commanded, with_known_values
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Figure
 from herringbone.studies.evaluators.levels import (
+    PERIOD,
     order_figures,
     prefixed,
 )
@@ -133,6 +134,7 @@ def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figur
         orders = state.mesh_orders[1:]
         kept = slice(None) if known else slice(0)
         figures |= order_figures(name, orders[kept], size[kept], unit)
+    figures[PERIOD] = Figure(float(state.meshes) if known else np.nan, "1")
     figures["error"] = Figure(state.error, "1")
     return figures
 

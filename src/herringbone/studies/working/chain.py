@@ -1,9 +1,11 @@
 """What a worker does: a chain of points, each from the one before, and what they cost."""
 
+import json
 import os
 from collections import OrderedDict
-from contextlib import AbstractContextManager, chdir, nullcontext
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from contextlib import AbstractContextManager, chdir, nullcontext, suppress
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,7 @@ class Job:
         base, evaluator: of the study.
         points: of the chain.
         series: hand on rows over time.
+        so_far: file into which each row goes at once, for who watches; "": none.
     """
 
     common: str
@@ -37,6 +40,7 @@ class Job:
     evaluator: Evaluator
     points: tuple[Point, ...]
     series: bool = False
+    so_far: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,8 +69,12 @@ class Done:
     series: dict[int, Result] = field(default_factory=dict)
 
 
-def run_chain(job: Job) -> Done:
+def run_chain(job: Job, progress: Callable[[int], None] = lambda points: None) -> Done:
     """Compute a chain.
+
+    Args:
+        job: what is computed.
+        progress: called after each point with 1.
 
     Raises:
         HerringboneError: the system itself cannot be loaded.
@@ -86,7 +94,29 @@ def run_chain(job: Job) -> Done:
             units |= {name: figure.unit for name, figure in found.figures.items()}
             if found.series is not None:
                 series[place] = found.series
+            if job.so_far:
+                _append(Path(job.so_far), rows[-1], found)
+            progress(1)
     return Done(tuple(rows), units, cpu_seconds() - before, series)
+
+
+def _append(file: Path, row: Row, found: Evaluated) -> None:
+    """Add a row to those so far; a worker elsewhere may not have the folder: none are seen then."""
+    units = {name: figure.unit for name, figure in found.figures.items()}
+    with suppress(OSError), file.open("a", encoding="utf-8") as stream:
+        stream.write(json.dumps([asdict(row), units]) + "\n")
+
+
+def read_so_far(file: Path) -> Done | None:
+    """The rows so far of a chain that is not whole; None if there are none."""
+    rows: list[Row] = []
+    units: dict[str, str] = {}
+    with suppress(OSError, ValueError):  # the last line may be half there
+        for line in file.read_text(encoding="utf-8").splitlines():
+            row, own = json.loads(line)
+            rows.append(Row(**row))
+            units |= own
+    return Done(tuple(rows), units, 0.0) if rows else None
 
 
 def _evaluated(evaluate: Evaluation, point: Point, near: Any, *, series: bool) -> Evaluated:  # noqa: ANN401

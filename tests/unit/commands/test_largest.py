@@ -1,0 +1,25 @@
+"""What a sweep answers in a line."""
+
+import pandas as pd
+import pytest
+
+from herringbone.commands.studies.largest import largest_levels, largest_text
+from herringbone.plotting.studies.table import Points
+
+TABLE = pd.DataFrame({
+    "point": [0, 1, 2], "torque": 350.0, "gear_mesh.symmetry_deviation": [0.0, 0.0, 15e-6],
+    "speed": [600.0, 2000.0, 600.0], "outcome": "steady", "message": "",
+    "bearing_force.rms": [12.0, 98.28, 97.0], "nothing.rms": float("nan"),
+})  # fmt: skip
+UNITS = {"torque": "N.m", "gear_mesh.symmetry_deviation": "m", "speed": "r/min",
+         "bearing_force.rms": "N"}  # fmt: skip
+
+
+def test_the_largest_level_of_each_group_and_where_it_is():
+    points = Points(TABLE, UNITS)
+    (found,) = largest_levels(points)
+    assert found.rms == pytest.approx(98.28)
+    assert found.at["speed"] == 2000.0
+    (line,) = largest_text(points)
+    assert line.startswith("bearing force: largest 98.28 N rms at torque 350 N m")
+    assert line.endswith("speed 2000 r/min")
