@@ -191,7 +191,7 @@ def _refuse_sensitivities(asked: list[str] | None) -> None:
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
-    from herringbone.commands.studies.largest import (  # noqa: PLC0415 (matplotlib)
+    from herringbone.plotting.studies.largest import (  # noqa: PLC0415 (matplotlib)
         largest_levels,
         largest_text,
     )

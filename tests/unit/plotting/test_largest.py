@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from herringbone.commands.studies.largest import largest_levels, largest_text
+from herringbone.plotting.studies.largest import largest_levels, largest_text
 from herringbone.plotting.studies.table import Points
 
 TABLE = pd.DataFrame({
