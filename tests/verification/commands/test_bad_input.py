@@ -217,7 +217,7 @@ def test_file_that_cannot_be_exported(capsys):
 
 
 def test_unknown_system(refused):
-    assert "'nope': give one of back_to_back, e_axle, gearbox" in refused(system="nope")
+    assert "'nope': give one of back_to_back, boosted_axle, e_axle" in refused(system="nope")
 
 
 XML = (

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from decimal import Decimal
 from pathlib import Path
 
 import pandas as pd
@@ -101,7 +102,7 @@ def test_results_csv(tmp_path, capsys):
     assert len(rows) == 251
     assert all(len(row) == len(header) for row in rows)
     assert (rows[0][0], float(rows[-1][0])) == ("0.0", 0.005)
-    assert all(repr(float(x)) == x for row in rows[::50] for x in row)
+    assert all(Decimal(repr(float(x))) == Decimal(x) for row in rows[::50] for x in row)
     parquet = pd.read_parquet(tmp_path / "results.parquet")
     table = pd.read_csv(tmp_path / "results.csv", float_precision="round_trip")
     pd.testing.assert_frame_equal(parquet, table, check_exact=True)
