@@ -3,6 +3,8 @@
 import html
 import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -166,3 +168,11 @@ def test_numbers_as_people_write_them(value, text):
 def test_signs_and_units():
     told = typeset("ISO 6336-1 at -7.5 % of 200 N m").replace("\N{NO-BREAK SPACE}", "~")
     assert told == "ISO 6336-1 at \N{MINUS SIGN}7.5~% of 200~N~m"
+
+
+def test_entries_need_no_extra():
+    """Of the package's optional libraries none is there."""
+    missing = "skfem", "gmsh", "pyuff", "pyarrow", "distributed", "ziglang"
+    without = f"import sys; sys.modules.update(dict.fromkeys({missing}))"
+    code = f"{without}; import herringbone.thesis.registry"
+    subprocess.run([sys.executable, "-c", code], check=True)

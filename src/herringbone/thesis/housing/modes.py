@@ -7,7 +7,7 @@ import pandas as pd
 
 from herringbone.components.registry import component
 from herringbone.housing import read_housing
-from herringbone.housing.welded.default_data import PUBLISHED
+from herringbone.housing.welded.published import PUBLISHED
 from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 
