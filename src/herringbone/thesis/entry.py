@@ -22,6 +22,13 @@ class Verdict(Enum):
     NEEDS_AN_ASSUMPTION = "needs an assumption"
     CANNOT_BE_TESTED = "cannot be tested"
 
+    @classmethod
+    def of(cls, holds: object, *, assuming: bool = False) -> "Verdict":
+        """Of a sentence that holds, or not; `assuming`: what the thesis does not say."""
+        if not holds:
+            return cls.CONTRADICTS
+        return cls.NEEDS_AN_ASSUMPTION if assuming else cls.AGREES
+
 
 @dataclass(frozen=True)
 class Finding:

@@ -90,17 +90,13 @@ def settled(
 
 
 def natural(system: str = names.ON_GROUND, *, seats_move: bool = True) -> NaturalModes:
-    """Natural modes at the operating point, both halves loaded alike: f_A is 0.
-
-    A mesh's mean stiffness is taken at the depth of the start; with f_A it is that of a pinion that
-    does not follow the run-out.
+    """Natural modes at the operating point.
 
     Args:
         system: shipped system.
         seats_move: two-way housing.
     """
-    values = {names.SYMMETRY_DEVIATION: 0.0, names.SEAT_MOTION: float(seats_move)}
-    return modes(system, values=values)
+    return modes(system, values={names.SEAT_MOTION: float(seats_move)})
 
 
 def window(

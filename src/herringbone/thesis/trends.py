@@ -4,8 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from herringbone.thesis.entry import Verdict
-
 LEAST = 0.01
 """Change from one level to the next, over the level, that a reader of a curve can see."""
 
@@ -19,8 +17,3 @@ def rises(levels: Sequence[float], least: float = LEAST) -> bool:
 def growth(levels: Sequence[float]) -> float:
     """Change from the first to the last level [%]."""
     return 100.0 * (levels[-1] / levels[0] - 1.0)
-
-
-def verdict(*, holds: bool) -> Verdict:
-    """Of a sentence that can be tested as it stands."""
-    return Verdict.AGREES if holds else Verdict.CONTRADICTS

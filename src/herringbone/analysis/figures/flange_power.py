@@ -16,6 +16,8 @@ import numpy as np
 from herringbone.analysis.figures.operating_point import steady_part
 from herringbone.result.result import Result
 
+_VISIBLE = 1e-6
+
 
 class FlangePowers(NamedTuple):
     """Powers at every record.
@@ -80,6 +82,3 @@ def _power(result: Result, one: tuple[str, str], other: tuple[str, str]) -> np.n
 
 def _is_flange(result: Result, end: tuple[str, str]) -> bool:
     return any(f"{'.'.join(end)}.{q}" in result.data for q in ("tau", "w"))
-
-
-_VISIBLE = 1e-6

@@ -13,9 +13,8 @@ from herringbone.core.places.temporary import temporary_folder
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.thesis import names
-from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
+from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SPEEDS, settled
-from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,7 +82,7 @@ def _findings(under_load: pd.DataFrame, jumps: pd.DataFrame) -> tuple[Finding, .
     return (
         Finding(
             "Under heavy load the influence of backlash is small.",
-            verdict(holds=least > 0.0),
+            Verdict.of(least > 0.0),
             100.0 * least,
             "%",
             "of the mean deflection stays at the least over 100 to 400 N m and 800 to 1500 r/min: "
@@ -93,7 +92,7 @@ def _findings(under_load: pd.DataFrame, jumps: pd.DataFrame) -> tuple[Finding, .
         ),
         Finding(
             "Backlash is retained for generality.",
-            verdict(holds=float(ratio.max()) > 1.05),
+            Verdict.of(float(ratio.max()) > 1.05),
             float(ratio[at]),
             "",
             f"times the bearing force of the up-sweep has the down-sweep at {at:.0f} r/min, "

@@ -9,7 +9,7 @@ from herringbone.thesis import names
 from herringbone.thesis.dynamics.equations import PUBLISHED_STIFFNESS, Bodies
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SIGNALS, levels, settled, unit
-from herringbone.thesis.trends import LEAST, verdict
+from herringbone.thesis.trends import LEAST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +61,7 @@ def _findings(ratio: float, found: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "Mesh damping is 2 zeta sqrt(k I_p I_g / (r_p² I_p + r_g² I_g)).",
-            verdict(holds=abs(ratio - 1.0) < LEAST),
+            Verdict.of(abs(ratio - 1.0) < LEAST),
             ratio,
             "",
             f"times that of the damping ratio which it states: 0.1 acts as {_RATIO * ratio:.3f}",

@@ -18,7 +18,7 @@ from herringbone.thesis.ground import (
     window_levels,
 )
 from herringbone.thesis.panels import signal_panels
-from herringbone.thesis.trends import growth, rises, verdict
+from herringbone.thesis.trends import growth, rises
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +54,7 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "Axial vibration grows with the symmetry deviation.",
-            verdict(holds=rises(axial)),
+            Verdict.of(rises(axial)),
             axial[2] / axial[1],
             "",
             "times the axial velocity of the pinion at 20 µm against 10 µm, settled",
@@ -73,7 +73,7 @@ def _radial(by: dict[str, pd.DataFrame]) -> tuple[Finding, ...]:
     return (
         Finding(
             f"{sentence}: once the start has died out.",
-            verdict(holds=rises(by[SETTLED][signal])),
+            Verdict.of(rises(by[SETTLED][signal])),
             change[SETTLED],
             "%",
             "change of the radial velocity of the pinion from 0 to 20 µm",
@@ -82,7 +82,7 @@ def _radial(by: dict[str, pd.DataFrame]) -> tuple[Finding, ...]:
         ),
         Finding(
             f"{sentence}: in the window of the thesis.",
-            Verdict.NEEDS_AN_ASSUMPTION if rises(by[WINDOW][signal]) else Verdict.CONTRADICTS,
+            Verdict.of(rises(by[WINDOW][signal]), assuming=True),
             change[WINDOW],
             "%",
             f"change from 0 to 20 µm; {change[UNLOADED]:+.0f} % if the run starts from equilibrium "
@@ -109,7 +109,7 @@ def _gears(by: dict[str, pd.DataFrame]) -> tuple[Finding, ...]:
             Finding(
                 "The pinion vibrates more than the wheel in both directions"
                 + (": settled." if how == SETTLED else ": in the window of the thesis."),
-                verdict(holds=ratios[least] > 1.0),
+                Verdict.of(ratios[least] > 1.0),
                 ratios[least],
                 "",
                 f"times as much as the wheel, at least ({least})",

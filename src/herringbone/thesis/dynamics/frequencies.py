@@ -16,7 +16,6 @@ from herringbone.thesis.dynamics.equations import (
 )
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import natural
-from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +60,7 @@ def _findings(listed: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "The model has twelve degrees of freedom that an elastic shaft segment joins.",
-            verdict(holds=rigid["printed"] == 1),
+            Verdict.of(rigid["printed"] == 1),
             rigid["printed"],
             "",
             f"rigid rotations of the equations as printed, and each frequency twice: two models of "

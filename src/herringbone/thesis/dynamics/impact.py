@@ -18,7 +18,7 @@ from herringbone.thesis import names
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SIGNALS, SPEED, TORQUES, levels, settled, unit
 from herringbone.thesis.pair.given import JOB
-from herringbone.thesis.trends import growth, rises, verdict
+from herringbone.thesis.trends import growth, rises
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -107,7 +107,7 @@ def _findings(impacts: pd.DataFrame, alone: pd.DataFrame) -> tuple[Finding, ...]
     return (
         Finding(
             f"{sentence} axial velocity.",
-            Verdict.NEEDS_AN_ASSUMPTION if rises(apart[_AXIAL]) else Verdict.CONTRADICTS,
+            Verdict.of(rises(apart[_AXIAL]), assuming=True),
             growth(apart[_AXIAL].to_numpy()),
             "%",
             "change from 200 to 300 N m if the impacts of both halves are a quarter period apart",
@@ -116,7 +116,7 @@ def _findings(impacts: pd.DataFrame, alone: pd.DataFrame) -> tuple[Finding, ...]
         ),
         Finding(
             f"{sentence} radial velocity.",
-            verdict(holds=rises(together[_RADIAL])),
+            Verdict.of(rises(together[_RADIAL])),
             growth(together[_RADIAL].to_numpy()),
             "%",
             f"change from 200 to 300 N m, {together[_RADIAL].iloc[0]:.3g} mm/s at 200 N m",
@@ -125,7 +125,7 @@ def _findings(impacts: pd.DataFrame, alone: pd.DataFrame) -> tuple[Finding, ...]
         ),
         Finding(
             "The impact velocity, and with it the impact force, goes with speed.",
-            verdict(holds=abs(faster / (_SPEEDS[-1] / _SPEEDS[0]) - 1.0) < 1e-6),
+            Verdict.of(abs(faster / (_SPEEDS[-1] / _SPEEDS[0]) - 1.0) < 1e-6),
             faster,
             "",
             f"times the force at {_SPEEDS[-1]:.0f} against {_SPEEDS[0]:.0f} r/min",

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
+from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SPEEDS, levels, natural, settled, unit, window, window_levels
 from herringbone.thesis.pair.given import JOB
-from herringbone.thesis.trends import growth, rises, verdict
+from herringbone.thesis.trends import growth, rises
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,7 +70,7 @@ def _findings(curves: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "From 800 to 1500 r/min the axial velocity of the pinion grows: settled.",
-            verdict(holds=rises(axial[list(SPEEDS)]) and rises(between, least=0.0)),
+            Verdict.of(rises(axial[list(SPEEDS)]) and rises(between, least=0.0)),
             growth(axial[list(SPEEDS)].to_numpy()),
             "%",
             "change, on the whole curve: a displacement that turns with the pinion",
@@ -79,7 +79,7 @@ def _findings(curves: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "The same, in the window of the thesis.",
-            verdict(holds=rises(by[_WINDOW][_AXIAL])),
+            Verdict.of(rises(by[_WINDOW][_AXIAL])),
             growth(by[_WINDOW][_AXIAL].to_numpy()),
             "%",
             "change from 800 to 1500 r/min",
@@ -100,7 +100,7 @@ def _radial(level: pd.Series, seen: str) -> tuple[Finding, ...]:
     return (
         Finding(
             f"Vibration and its fluctuation grow with speed (radial, {seen}).",
-            verdict(holds=rises(level[list(SPEEDS)])),
+            Verdict.of(rises(level[list(SPEEDS)])),
             ratio,
             "",
             f"times the level at the next point has the resonance at {peak:.0f} r/min, which the "
@@ -126,7 +126,7 @@ def _pinion_and_wheel(ground: pd.DataFrame) -> Finding:
     span = f"{less.min():.0f} to {less.max():.0f} r/min" if len(less) else "nowhere"
     return Finding(
         "The pinion vibrates more than the wheel, at any speed.",
-        verdict(holds=bool((ratio > 1.0).all())),
+        Verdict.of((ratio > 1.0).all()),
         float(ratio[at]),
         "",
         f"times the wheel's radial displacement has the pinion at {at:.0f} r/min; less than the "

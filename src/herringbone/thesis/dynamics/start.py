@@ -8,7 +8,6 @@ import pandas as pd
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SIGNALS, SPEED, WINDOW, levels, natural, settled, unit, window
 from herringbone.thesis.pair.given import JOB
-from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,7 +57,7 @@ def _findings(over: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "Speed and load are applied gradually; after 0.02 s the motion is steady.",
-            verdict(holds=abs(float(first[axial]) - 1.0) < _ALIKE),
+            Verdict.of(abs(float(first[axial]) - 1.0) < _ALIKE),
             float(first[axial]),
             "",
             f"times its settled level has the {axial} in the window 0.02 to 0.04 s (rms)",
@@ -79,7 +78,7 @@ def _findings(over: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "Twenty milliseconds show the periodic motion.",
-            verdict(holds=turn * teeth[0] / teeth[1] >= 1.0),
+            Verdict.of(turn * teeth[0] / teeth[1] >= 1.0),
             turn,
             "",
             f"turns of the pinion at {SPEED:.0f} r/min, {turn * teeth[0] / teeth[1]:.3f} of the "

@@ -16,7 +16,7 @@ from herringbone.thesis.ground import (
     window_levels,
 )
 from herringbone.thesis.panels import level_panels
-from herringbone.thesis.trends import growth, rises, verdict
+from herringbone.thesis.trends import growth, rises
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +54,7 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             f"{sentence}: settled.",
-            verdict(holds=rises(by[_SETTLED][_AXIAL])),
+            Verdict.of(rises(by[_SETTLED][_AXIAL])),
             change[_SETTLED],
             "%",
             f"change of the pinion's; of the wheel's {wheel:+.0f} %",
@@ -64,7 +64,7 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             f"{sentence}: if the halves mesh a quarter period apart.",
-            Verdict.NEEDS_AN_ASSUMPTION if rises(by[_APART][_AXIAL]) else Verdict.CONTRADICTS,
+            Verdict.of(rises(by[_APART][_AXIAL]), assuming=True),
             change[_APART],
             "%",
             "change of the pinion's",
@@ -74,7 +74,7 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             f"{sentence}: in the window of the thesis.",
-            verdict(holds=rises(by[_WINDOW][_AXIAL])),
+            Verdict.of(rises(by[_WINDOW][_AXIAL])),
             change[_WINDOW],
             "%",
             f"change of the pinion's; {growth(by[_WINDOW][_AXIAL].to_numpy()[:2]):+.0f} % from 200 "
@@ -84,7 +84,7 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "Radial vibration grows with torque.",
-            verdict(holds=rises(by[_SETTLED][_RADIAL])),
+            Verdict.of(rises(by[_SETTLED][_RADIAL])),
             growth(by[_SETTLED][_RADIAL].to_numpy()),
             "%",
             "change of the pinion's radial velocity from 200 to 300 N m, settled",

@@ -7,10 +7,9 @@ import pandas as pd
 
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.thesis import names
-from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
+from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import SPEED, natural, settled
 from herringbone.thesis.housing.response import FORCES
-from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,7 +72,7 @@ def _findings(
     return (
         Finding(
             "To neglect the flexibility of the gearbox in the dynamic model is a minor difference.",
-            verdict(holds=bool((np.abs(rig[list(_SHOWN)].astype(float) - 1.0) < _MINOR).all())),
+            Verdict.of((np.abs(rig[list(_SHOWN)].astype(float) - 1.0) < _MINOR).all()),
             float(rig[_AXIAL]),
             "",
             f"times the {_AXIAL} with the housing's motion, on the test rig at 1000 r/min and "
@@ -83,7 +82,7 @@ def _findings(
         ),
         Finding(
             "The difference is small at any speed.",
-            verdict(holds=bool((np.abs(ratio - 1.0) < _MINOR).all())),
+            Verdict.of((np.abs(ratio - 1.0) < _MINOR).all()),
             float(ratio.max()),
             "",
             f"times the {_WHEEL} at most ({ratio.idxmax():.0f} r/min), {ratio.min():.2f} at least "
@@ -93,7 +92,7 @@ def _findings(
         ),
         Finding(
             "Modes of the transmission and of the housing can be taken apart.",
-            verdict(holds=abs(lowest["two-way"] / lowest["one way"] - 1.0) < _MINOR),
+            Verdict.of(abs(lowest["two-way"] / lowest["one way"] - 1.0) < _MINOR),
             float(lowest["two-way"]),
             "Hz",
             f"is the lowest coupled mode, {lowest['one way']:.1f} Hz the lowest of both apart",

@@ -4,11 +4,10 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
+from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import DEVIATION, levels, piece, settled, window_levels
 from herringbone.thesis.housing.response import FORCES, thesis_procedure
 from herringbone.thesis.panels import signal_panels
-from herringbone.thesis.trends import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,7 +43,7 @@ def _findings(rms: pd.DataFrame, means: pd.DataFrame) -> tuple[Finding, ...]:
     return (
         Finding(
             "Forces on the active shaft are larger than on the driven one: radial, alternating.",
-            verdict(holds=bool((ratio > 1.0).all())),
+            Verdict.of((ratio > 1.0).all()),
             float(ratio[_GROUND]),
             "",
             f"times that at the wheel, settled on rigid ground ({told})",
@@ -53,14 +52,14 @@ def _findings(rms: pd.DataFrame, means: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "Forces on the active shaft are larger than on the driven one: radial, mean.",
-            verdict(holds=static > 1.01),
+            Verdict.of(static > 1.01),
             static,
             "",
             "times that at the wheel: both carry the force of the line of action",
         ),
         Finding(
             "Forces on the active shaft are larger than on the driven one: axial.",
-            verdict(holds=bool((rms["pinion axial force"] > wheel).all())),
+            Verdict.of((rms["pinion axial force"] > wheel).all()),
             float(rms["pinion axial force"].max()),
             "N",
             f"at the pinion, {wheel[_WINDOW]:.0f} N at the wheel in the window, "
@@ -69,7 +68,7 @@ def _findings(rms: pd.DataFrame, means: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "Reaction forces are periodic with the meshing of the teeth, from 0.02 to 0.04 s.",
-            verdict(holds=float(rms["wheel axial force"][_WINDOW] / wheel[_GROUND]) < 1.1),
+            Verdict.of(float(rms["wheel axial force"][_WINDOW] / wheel[_GROUND]) < 1.1),
             float(rms["wheel radial force"][_WINDOW] / rms["wheel radial force"][_GROUND]),
             "",
             "times the settled level has the wheel's radial force in that window",

@@ -62,9 +62,7 @@ def _frequencies(listed: pd.DataFrame) -> tuple[Finding, ...]:
     return tuple(
         Finding(
             f"Mode {row['mode']} of the constrained housing lies at {row['published']:.2f} Hz.",
-            Verdict.NEEDS_AN_ASSUMPTION
-            if abs(row["deviation"]) <= _WITHIN
-            else Verdict.CONTRADICTS,
+            Verdict.of(abs(row["deviation"]) <= _WITHIN, assuming=True),
             row["here"],
             "Hz",
             f"{row['deviation']:+.2f} % from it",
@@ -90,7 +88,7 @@ def _labels(listed: pd.DataFrame, shares: pd.DataFrame) -> tuple[Finding, ...]:
     return tuple(
         Finding(
             f"Mode {row['mode']} is {row['label']}.",
-            Verdict.AGREES if holds else Verdict.CONTRADICTS,
+            Verdict.of(holds),
             100.0 * share,
             "%",
             what,

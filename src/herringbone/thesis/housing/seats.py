@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, table
+from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
 from herringbone.thesis.ground import DEVIATION, DEVIATIONS, settled, unit, window_levels
 from herringbone.thesis.housing.response import (
     FOUR_MODES,
@@ -14,7 +14,7 @@ from herringbone.thesis.housing.response import (
     thesis_procedure,
 )
 from herringbone.thesis.panels import signal_panels
-from herringbone.thesis.trends import growth, rises, verdict
+from herringbone.thesis.trends import growth, rises
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ def _steady(at: pd.DataFrame) -> Finding:
     ratio = float(at[signal][THESIS] / at[signal][_FOUR])
     return Finding(
         "Figures 4.9 to 4.16 show the steady response.",
-        verdict(holds=abs(ratio - 1.0) < _ALIKE),
+        Verdict.of(abs(ratio - 1.0) < _ALIKE),
         ratio,
         "",
         f"times its settled level has the {signal} in the window ({at[signal][THESIS]:.2f} against "
@@ -77,7 +77,7 @@ def _active(at: pd.DataFrame) -> tuple[Finding, ...]:
         found.append(
             Finding(
                 f"The active shaft's seat vibrates more than the driven one's: {how}.",
-                verdict(holds=bool(ratios[least] > 1.0)),
+                Verdict.of(ratios[least] > 1.0),
                 float(ratios[least]),
                 "",
                 f"times as much, at least ({least})",
@@ -98,7 +98,7 @@ def _radial(at: pd.DataFrame) -> tuple[Finding, ...]:
         found.append(
             Finding(
                 f"Radial vibration of the seats is larger than axial: {how}.",
-                verdict(holds=min(ratio.values()) > 1.0),
+                Verdict.of(min(ratio.values()) > 1.0),
                 float(ratio["pinion"]),
                 "",
                 f"times the axial velocity at the pinion, {ratio['wheel']:.2f} at the wheel",
@@ -117,7 +117,7 @@ def _deviation(found: pd.DataFrame) -> tuple[Finding, ...]:
     return tuple(
         Finding(
             f"Axial vibration of the housing is excited by the symmetry deviation: {how}.",
-            verdict(holds=rises(found[found["how"] == how][signal])),
+            Verdict.of(rises(found[found["how"] == how][signal])),
             change[how],
             "%",
             "change of the axial velocity at the pinion's seat from f_A 0 to 20 µm",

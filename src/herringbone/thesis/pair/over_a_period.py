@@ -111,7 +111,7 @@ def _findings(means: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "The stiffnesses of both sides become increasingly different.",
-            Verdict.AGREES if ahead[_MOST] > ahead[10.0] > ahead[0.0] else Verdict.CONTRADICTS,
+            Verdict.of(ahead[_MOST] > ahead[10.0] > ahead[0.0]),
             ahead[_MOST] - ahead[10.0],
             "%",
             f"more difference at {_MOST:g} than at 10 µm ({ahead[10.0]:.1f} %), pinion {_HELD}",

@@ -59,7 +59,7 @@ def _finding(curve: pd.DataFrame, what: str) -> Finding:
     grows = float(fall.max()) < 1.0 + _SEEN
     return Finding(
         f"Axial velocity grows from 800 to 1500 r/min ({_WHAT[what]}).",
-        Verdict.AGREES if grows and at_points else Verdict.CONTRADICTS,
+        Verdict.of(grows and at_points),
         float(fall.max()),
         "",
         f"times the level at {worst:.0f} r/min is that at {peak:.0f} r/min; {words}",

@@ -76,7 +76,7 @@ def together(
         found.append(
             Finding(
                 f"One reading explains {_WORDS[about]}.",
-                Verdict.CONTRADICTS if best["sentences"] < best["of"] else Verdict.AGREES,
+                Verdict.of(best["sentences"] >= best["of"]),
                 best["sentences"],
                 "",
                 f"of {best['of']} sentences hold at most together; as shipped "
@@ -100,7 +100,7 @@ def together(
     found.append(
         Finding(
             "The sentences can be true together.",
-            Verdict.CONTRADICTS if len(pairs) else Verdict.AGREES,
+            Verdict.of(not len(pairs)),
             len(pairs),
             "",
             f"pairs of {len(SENTENCES)} sentences never hold in one case, though each of them does "

@@ -46,7 +46,7 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
         ),
         Finding(
             "At 1500 r/min the velocity grows from A over B to C (figure 5.3).",
-            Verdict.AGREES if ratio > 1.0 + LITTLE else Verdict.CONTRADICTS,
+            Verdict.of(ratio > 1.0 + LITTLE),
             ratio,
             "",
             f"is C over A with teeth of {REAL}; "
@@ -91,7 +91,7 @@ def _needing(perfect: bool, real: bool) -> Verdict:
     """As it holds with perfect teeth, with real ones, or with neither."""
     if perfect:
         return Verdict.AGREES
-    return Verdict.NEEDS_AN_ASSUMPTION if real else Verdict.CONTRADICTS
+    return Verdict.of(real, assuming=True)
 
 
 def draw(tables: Tables) -> dict[str, "Figure"]:

@@ -79,7 +79,7 @@ def _findings(means: pd.DataFrame) -> tuple[Finding, ...]:
         ),
         Finding(
             "Relief reduces the fluctuation of the stiffness.",
-            Verdict.AGREES if ten["peak_to_peak"] < plain["peak_to_peak"] else Verdict.CONTRADICTS,
+            Verdict.of(ten["peak_to_peak"] < plain["peak_to_peak"]),
             ten["peak_to_peak"],
             "%",
             f"of the mean, peak to peak, with 10 µm at both tips against "

@@ -52,7 +52,7 @@ def _findings(error: pd.Series) -> tuple[Finding, ...]:
     return (
         Finding(
             "Relief potentially alleviates the dynamic excitation.",
-            Verdict.AGREES if both < 0.0 else Verdict.CONTRADICTS,
+            Verdict.of(both < 0.0),
             both,
             "%",
             f"of the transmission error, peak to peak, by 10 µm at both tips, {_TORQUE:g} N m",
