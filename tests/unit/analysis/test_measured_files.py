@@ -5,6 +5,7 @@ import struct
 import numpy as np
 import pytest
 from scipy.io import wavfile
+from support.universal_file import write_universal
 
 from herringbone.analysis.measured.record import read_measured
 from herringbone.core import HerringboneError
@@ -22,28 +23,6 @@ def csv_text(time=TIME, values=SIGNAL, unit="mm/s", scale=1e3):
     return f"# units: time s, A {unit}\ntime,A\n{rows}\n"
 
 
-def write_universal(file, *, kind=11, unit="mm/s", spacing=1, scale=1e3):
-    pyuff = pytest.importorskip("pyuff")
-    names = ["abscissa", "ordinate", "orddenom", "z_axis"]
-    blank = dict.fromkeys(
-        (f"{n}_{w}" for n in names for w in ("axis_lab", "axis_units_lab")), "NONE"
-    )
-    exponents = (f"{n}_{w}_unit_exp" for n in names for w in ("len", "force", "temp"))
-    dataset = {
-        **blank,
-        **dict.fromkeys(exponents, 0),
-        **dict.fromkeys((f"{n}_spec_data_type" for n in names), 0),
-        "type": 58, "binary": 0, "func_type": 1, "ver_num": 0, "load_case_id": 0,
-        "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 1, "data": scale * SIGNAL, "x": TIME,
-        **{f"id{k}": "A" if k == 1 else "NONE" for k in range(1, 6)},
-        "rsp_ent_name": "NONE", "ref_ent_name": "NONE", "abscissa_spacing": spacing,
-        "ord_data_type": 4, "num_pts": SIGNAL.size, "abscissa_min": 0.0, "abscissa_inc": 1.0 / RATE,
-        "z_axis_value": 0.0, "ordinate_spec_data_type": kind, "ordinate_axis_units_lab": unit,
-        "abscissa_spec_data_type": 17,
-    }  # fmt: skip
-    pyuff.UFF(str(file)).write_sets(dataset, "add")
-
-
 def test_all_formats_give_the_same_record(tmp_path):
     (tmp_path / "a.csv").write_text(csv_text())
     shares = SIGNAL / FULL
@@ -57,7 +36,7 @@ def test_all_formats_give_the_same_record(tmp_path):
     for name, (samples, step) in kinds.items():
         wavfile.write(tmp_path / f"{name}.wav", RATE, samples)
         found.append((read_measured(tmp_path / f"{name}.wav", full_scale=FULL), FULL * 1.01 * step))
-    write_universal(tmp_path / "a.uff")
+    write_universal(tmp_path / "a.uff", SIGNAL, RATE)
     found.append((read_measured(tmp_path / "a.uff"), 1e-6 * np.abs(SIGNAL).max()))
     for record, tolerance in found:
         assert record.sampling_hz == pytest.approx(RATE, rel=1e-6), record.file
@@ -122,9 +101,9 @@ def test_a_wav_file_is_whole_and_has_a_scale(tmp_path):
 
 
 def test_universal_files_hold_velocities(tmp_path):
-    write_universal(tmp_path / "acceleration.uff", kind=12, unit="m/s2")
+    write_universal(tmp_path / "acceleration.uff", SIGNAL, RATE, kind=12, unit="m/s2")
     with pytest.raises(HerringboneError, match="it has no velocity"):
         read_measured(tmp_path / "acceleration.uff")
-    write_universal(tmp_path / "inches.uff", unit="in/s")
+    write_universal(tmp_path / "inches.uff", SIGNAL, RATE, unit="in/s")
     with pytest.raises(HerringboneError, match="is in 'in/s'; it takes m/s or mm/s"):
         read_measured(tmp_path / "inches.uff")

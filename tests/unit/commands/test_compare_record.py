@@ -4,9 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
+from support.universal_file import write_universal
 
 import herringbone as hb
 from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.measured.of_run import predicted_of
 from herringbone.commands.main import main
 
 
@@ -57,6 +60,54 @@ def test_faults_are_told_and_lines_are_written(results, samples, tmp_path, capsy
     told = capsys.readouterr().out
     assert "fault: gain: all its lines are 2" in told
     assert (out / "lines.csv").read_text().startswith("order,mesh_order,frequency,shows_at")
+
+
+def into_csv(file, velocity):
+    write(file, velocity)
+    return []
+
+
+def into_wav(file, velocity):
+    wavfile.write(file, 2000, (velocity / 0.05).astype(np.float32))
+    return ["--full-scale", "0.05"]
+
+
+def into_universal(file, velocity):
+    write_universal(file, velocity, 2000)
+    return []
+
+
+SUFFIXES = {".csv": into_csv, ".wav": into_wav, ".uff": into_universal}
+
+
+def sampled(result, faster=1.0):
+    """Samples of the run's vibration at sensor A, all of it faster."""
+    own = predicted_of(result, "A")
+    whole, record = (
+        own.sensor.measure(own.vibration, own.step / x).velocity for x in (1.0, faster)
+    )
+    return record[whole.size - own.samples.size :]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize(
+    ("fault", "plant", "number"),
+    [
+        ("time shift", lambda result: sampled(result)[37:], "begins 18.5"),
+        ("gain", lambda result: 2.0 * sampled(result), "are 2"),
+        ("other speed", lambda result: sampled(result, 1.2), "120.0"),
+    ],
+)
+def test_planted_faults_are_named_in_each_format(
+    results, tmp_path, capsys, suffix, fault, plant, number
+):
+    """A record that begins 37 samples later, is doubled, or is of 1200 r/min."""
+    file = tmp_path / f"wrong{suffix}"
+    options = SUFFIXES[suffix](file, plant(hb.load(results)))
+    assert main(["compare", str(results), str(file), *options, "--json"]) == 1
+    faults = json.loads(capsys.readouterr().out)["faults"]
+    assert [one.partition(":")[0] for one in faults] == [fault]
+    assert number in faults[0]
 
 
 def test_what_is_missing_is_one_line(results, tmp_path, capsys):
