@@ -29,6 +29,11 @@ class Verdict(Enum):
             return cls.CONTRADICTS
         return cls.NEEDS_AN_ASSUMPTION if assuming else cls.AGREES
 
+    @classmethod
+    def needing(cls, shipped: object, otherwise: object) -> "Verdict":
+        """Of a sentence that holds with shipped values, or else with others."""
+        return cls.AGREES if shipped else cls.of(otherwise, assuming=True)
+
 
 @dataclass(frozen=True)
 class Finding:

@@ -39,6 +39,7 @@ SIGNALS = {
 """Columns of what figures 3.5 to 3.20 show, of the left halves."""
 SAMPLE = 40e-6
 """Between shown values [s]."""
+_ANGLE = f"{names.GEAR}.pinion.phi"
 _LEAST = 1e-12
 _SPEED_IN = math.pi / 30.0
 
@@ -142,10 +143,17 @@ def window_times() -> np.ndarray:
     return WINDOW[0] + np.arange(round((WINDOW[1] - WINDOW[0]) / SAMPLE) + 1) * SAMPLE
 
 
+def in_step(state: SteadyState) -> np.ndarray:
+    """Times of a settled state at which its pinion stands as in a run's window [s].
+
+    A run begins with the pinion at no angle; when a state's period begins is its own.
+    """
+    return window_times() - state.mean(_ANGLE) / state.speed
+
+
 def piece(state: SteadyState, columns: Mapping[str, str] = SIGNALS) -> pd.DataFrame:
-    """A settled state at the times of the window."""
-    times = window_times()
-    found = {"time": times}
+    """A settled state at the times of the window, its pinion standing as in a run."""
+    found, times = {"time": window_times()}, in_step(state)
     values = (state.signal(column, times) for column in columns.values())
     found |= {name: _in_tables(name, x) for name, x in zip(columns, values, strict=True)}
     return pd.DataFrame(found)

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from herringbone.thesis.ground import unit as unit_of
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -45,7 +47,7 @@ def level_panels(
     levels: pd.DataFrame,
     over: str,
     signals: Sequence[str],
-    labels: tuple[str, str],
+    label: str,
     split: str = "",
 ) -> "Figure":
     """Levels over a parameter, two panels a row; one curve for each value of another column.
@@ -55,7 +57,7 @@ def level_panels(
         levels: a row per point.
         over: column of the abscissa.
         signals: columns, in the order of the panels.
-        labels: of abscissa and ordinate.
+        label: of the abscissa.
         split: column whose values make curves; one curve if "".
     """
     from herringbone.plotting.style import figure_legend, new_figure  # noqa: PLC0415 (lazy)
@@ -68,10 +70,10 @@ def level_panels(
             axes.plot(rows[over], rows[signal], marker="o", markersize=4.0, label=str(name))
     for axes, signal in zip(panels, signals, strict=True):
         axes.set_title(signal)
-        axes.set_ylabel(labels[1])
+        axes.set_ylabel(f"rms [{unit_of(signal)}]")
         axes.set_ylim(bottom=0.0)
     for axes in panels[-2:]:
-        axes.set_xlabel(labels[0])
+        axes.set_xlabel(label)
     if split:
         figure_legend(figure, panels[0])
     return figure

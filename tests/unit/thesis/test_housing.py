@@ -20,7 +20,10 @@ def test_frequencies_and_labels():
     assert np.abs(found.tables["modes"]["deviation"]).max() < 1.0
     verdicts = [f.verdict for f in found.findings]
     agrees, contradicts = Verdict.AGREES, Verdict.CONTRADICTS
-    assert verdicts == [Verdict.NEEDS_AN_ASSUMPTION] * 4 + [agrees, contradicts] * 2
+    needs = [Verdict.NEEDS_AN_ASSUMPTION] * 4
+    assert verdicts == [agrees, *needs, agrees, contradicts, agrees, contradicts]
+    shares = [f.number for f in found.findings[5:]]
+    assert shares == pytest.approx([71.2, 35.2, 60.0, 0.0], abs=1.0)
 
 
 def test_shares_are_those_of_the_shipped_mesh():
@@ -105,6 +108,38 @@ def test_seats_of_the_entry():
     assert verdicts[sentence + "settled, one way."] is Verdict.AGREES
     assert verdicts[sentence + "settled, two-way."] is Verdict.CONTRADICTS
     assert verdicts[sentence + "procedure of the thesis."] is Verdict.CONTRADICTS
+
+
+def test_radial_may_be_read_in_two_ways():
+    """Along the line of action, and with what is across it: the latter as x and y have it."""
+    levels = outcome("seat_response").tables["levels"].set_index(["how", "f_A"])
+    rows = levels.loc[("settled, two-way", 10.0)]
+    (state,) = settled(deviation=10e-6, seats_move=True)
+    least = math.inf
+    for gear in ("pinion", "wheel"):
+        x, y, z = (state.level(f"modal_housing.{gear}_left.v_{axis}") for axis in "xyz")
+        both = math.hypot(
+            rows[f"{gear} seat radial velocity"], rows[f"{gear} seat velocity across"]
+        )
+        assert both == pytest.approx(1e3 * math.hypot(x, y), rel=1e-9)
+        least = min(least, both / (1e3 * z))
+    found = {f.sentence: f for f in outcome("seat_response").findings}
+    settled_one = found["Radial vibration of the seats is larger than axial: settled, two-way."]
+    assert settled_one.verdict is Verdict.NEEDS_AN_ASSUMPTION
+    assert settled_one.number == pytest.approx(0.69, abs=0.05)
+    assert f"it is {least:.2f}" in settled_one.why
+
+
+def test_forces_of_both_shafts():
+    found = {f.sentence.rpartition(": ")[2]: f for f in outcome("bearing_forces").findings}
+    for seen, number, verdict in (
+        ("radial, alternating, window of the thesis.", 0.57, Verdict.CONTRADICTS),
+        ("radial, alternating, settled, rigid ground.", 8.28, Verdict.AGREES),
+        ("radial, alternating, settled, two-way.", 1.38, Verdict.AGREES),
+        ("radial, mean.", 1.0, Verdict.CONTRADICTS),
+    ):
+        assert found[seen].number == pytest.approx(number, abs=0.05), seen
+        assert found[seen].verdict is verdict, seen
 
 
 def test_factors_on_the_rig():

@@ -61,6 +61,16 @@ def entries(tmp_path, monkeypatch):
     return both
 
 
+def test_verdicts():
+    needs = Verdict.NEEDS_AN_ASSUMPTION
+    assert [Verdict.of(h, assuming=a) for h, a in ((True, False), (True, True), (False, True))] == [
+        Verdict.AGREES, needs, Verdict.CONTRADICTS,
+    ]  # fmt: skip
+    assert [Verdict.needing(*b) for b in ((True, False), (False, True), (False, False))] == [
+        Verdict.AGREES, needs, Verdict.CONTRADICTS,
+    ]  # fmt: skip
+
+
 def test_names_groups_and_words():
     assert all(entry.name == name for name, entry in ENTRIES.items())
     assert {entry.group for entry in ENTRIES.values()} <= set(GROUPS)

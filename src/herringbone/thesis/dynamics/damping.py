@@ -86,8 +86,8 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
     from herringbone.thesis.panels import level_panels  # noqa: PLC0415 (matplotlib: lazy)
 
     title = "200 N m, f_A 0: mesh damping as it should be and as printed"
-    labels = ("speed [r/min]", "rms")
-    return {"levels": level_panels(title, tables["levels"], "speed", _SHOWN, labels, "form")}
+    panels = level_panels(title, tables["levels"], "speed", _SHOWN, "speed [r/min]", "form")
+    return {"levels": panels}
 
 
 ENTRY = Entry(

@@ -6,6 +6,7 @@ from herringbone.thesis.dynamics import (
     deviations,
     frequencies,
     impact,
+    parameters,
     speed,
     start,
     torque,
@@ -13,6 +14,7 @@ from herringbone.thesis.dynamics import (
 from herringbone.thesis.entry import Entry
 
 ENTRIES: tuple[Entry, ...] = (
+    parameters.ENTRY,
     frequencies.ENTRY,
     damping.ENTRY,
     backlash.ENTRY,

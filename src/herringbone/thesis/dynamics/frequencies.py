@@ -77,7 +77,7 @@ def _findings(listed: pd.DataFrame) -> tuple[Finding, ...]:
             "The thesis publishes no natural frequency of it, and neither masses nor gap shafts.",
         ),
         Finding(
-            "The mean mesh stiffness is a constant of the pair.",
+            "One value of the mean mesh stiffness describes the pair.",
             Verdict.NEEDS_AN_ASSUMPTION,
             loaded,
             "Hz",
@@ -119,7 +119,7 @@ ENTRY = Entry(
     name="natural_frequencies",
     group="dynamics",
     title="Natural frequencies of the twelve degrees of freedom",
-    source="chapter 3.2, figure 3.1",
+    source="chapters 3.1 and 3.2, figure 3.1",
     shows="Equations of motion of four gear bodies; no natural frequency.",
     compute=compute,
     draw=draw,

@@ -170,7 +170,7 @@ ENTRY = Entry(
     name="meshing_impact",
     group="dynamics",
     title="Meshing impact over speed and torque, and alone",
-    source="chapter 3.3.3, chapter 3.5",
+    source="chapters 3.3.3 and 3.5",
     shows="Impact velocity and force where teeth enter; axial velocity of the pinion for 200, 250 "
     "and 300 N m with the impact alone, said to grow with torque.",
     compute=compute,

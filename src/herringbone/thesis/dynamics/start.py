@@ -60,7 +60,8 @@ def _findings(over: pd.DataFrame) -> tuple[Finding, ...]:
             Verdict.of(abs(float(first[axial]) - 1.0) < _ALIKE),
             float(first[axial]),
             "",
-            f"times its settled level has the {axial} in the window 0.02 to 0.04 s (rms)",
+            f"times its settled level has the {axial} in the window 0.02 to 0.04 s (rms; settled: "
+            "over a turn of the wheel)",
             f"The wheel on its axial bearing, at {slow.frequency_hz[0]:.0f} Hz with a damping "
             f"ratio of {slow.damping_ratio[0]:.3f}, dies out slowly. Damping of shafts and "
             "bearings is an assumption: the thesis gives none.",
@@ -124,7 +125,8 @@ ENTRY = Entry(
     title="The original start and window beside a settled run",
     source="chapter 3.4",
     shows="Speed and load are applied gradually, the first 0.02 s are discarded, and 0.02 to "
-    "0.04 s are taken as the steady state.",
+    "0.04 s are taken as the steady state. Here the speed is there from the start: how it was "
+    "applied is not stated; torques on the bodies grow over 0.02 s.",
     compute=compute,
     draw=draw,
     seconds=3.0,

@@ -97,8 +97,8 @@ def _findings(found: pd.DataFrame) -> tuple[Finding, ...]:
 def draw(tables: Tables) -> dict[str, "Figure"]:
     """Velocities over torque."""
     title = "1000 r/min, f_A 10 µm: velocities over torque, settled and in the thesis' window"
-    labels = ("torque at the pinion [N m]", "rms [mm/s]")
-    return {"torque": level_panels(title, tables["levels"], "torque", _SHOWN, labels, "seen")}
+    return {"torque": level_panels(title, tables["levels"], "torque", _SHOWN,
+                                   "torque at the pinion [N m]", "seen")}  # fmt: skip
 
 
 ENTRY = Entry(

@@ -81,7 +81,7 @@ def _findings(
             margin=0.1,
         ),
         Finding(
-            "The difference is small at any speed.",
+            "It is minor at any speed.",
             Verdict.of((np.abs(ratio - 1.0) < _MINOR).all()),
             float(ratio.max()),
             "",
@@ -91,7 +91,7 @@ def _findings(
             margin=0.1,
         ),
         Finding(
-            "Modes of the transmission and of the housing can be taken apart.",
+            "Modes of the transmission and of the housing may be computed apart.",
             Verdict.of(abs(lowest["two-way"] / lowest["one way"] - 1.0) < _MINOR),
             float(lowest["two-way"]),
             "Hz",
@@ -121,7 +121,7 @@ ENTRY = Entry(
     name="one_way_and_two_way",
     group="housing",
     title="One-way against two-way housing",
-    source="chapter 4.3, chapter 5.3.4",
+    source="chapters 4.3 and 5.3.4",
     shows="Bearing forces of a model on rigid ground drive the housing, whose motion does not act "
     "back; differences to the test are put down to it among others, and called minor.",
     compute=compute,

@@ -1,5 +1,6 @@
 """The four modes of the housing, with labels that are judged."""
 
+import tomllib
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,8 @@ _MOST = 0.5
 """Share of the kinetic, or strain, energy that makes a label true."""
 _SOME = 0.1
 """Share that makes the second half of a label true."""
+_STEEL = (210.0, 7850.0, 0.3)
+"""Q235A of table 4.1 [GPa], [kg/m3], [1]."""
 _TWISTS = ("Rx", "Ry", "Rz")
 _MOTIONS = {"Tx": "sway across the shafts", "Ty": "bounce", "Tz": "sway along the shafts",
             "Rx": "roll about x", "Ry": "yaw about the vertical", "Rz": "rocking about the shafts",
@@ -50,12 +53,28 @@ def compute() -> Outcome:
         "modes": listed, "energy shares": table(shares),
         "surface nodes": table(nodes, units), "surface triangles": table(triangles),
     }  # fmt: skip
-    return Outcome(tables, (*_frequencies(listed), *_labels(listed, shares)))
+    return Outcome(tables, (_steel(), *_frequencies(listed), *_labels(listed, shares)))
 
 
 def _told(shares: pd.Series) -> str:
     most = shares[list(_MOTIONS)].sort_values(ascending=False)[:2]
     return ", ".join(f"{_MOTIONS[str(n)]} {100.0 * x:.0f} %" for n, x in most.items() if x > 0.01)
+
+
+def _steel() -> Finding:
+    """Of what the shipped housing is made."""
+    file = component(names.HOUSING).folder / "welded_housing.toml"
+    material = tomllib.loads(file.read_text(encoding="utf-8"))["material"]
+    young, density, poisson = (
+        material[name] for name in ("young_modulus", "density", "poisson_ratio")
+    )
+    return Finding(
+        "The housing is of steel with 210 GPa, 7850 kg/m³ and a Poisson's ratio of 0.3.",
+        Verdict.of((1e-9 * young, density, poisson) == _STEEL),
+        1e-9 * young,
+        "GPa",
+        f"with {density:g} kg/m³ and {poisson:g} has the shipped one",
+    )
 
 
 def _frequencies(listed: pd.DataFrame) -> tuple[Finding, ...]:
@@ -119,7 +138,7 @@ ENTRY = Entry(
     name="housing_modes",
     group="housing",
     title="Four constrained modes of the housing",
-    source="chapter 4.2, table 4.2, figures 4.3 to 4.6",
+    source="chapter 4.2, tables 4.1 and 4.2",
     shows="Four natural frequencies of the welded housing on its bolts, with descriptions of the "
     "shapes; no dimension.",
     compute=compute,

@@ -14,7 +14,7 @@ from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
 from herringbone.running.api import run
 from herringbone.running.loading import load_system
 from herringbone.thesis import names
-from herringbone.thesis.ground import SAMPLE, WINDOW, factor, window_times
+from herringbone.thesis.ground import SAMPLE, WINDOW, factor, in_step, window_times
 
 FORCES = {
     f"{gear} {direction} force": f"{names.BEARINGS}.shaft.{gear}_left.f_{axis}"
@@ -29,6 +29,12 @@ SEATS = {
     for what in ("displacement", "velocity")
 }
 """Motions of the left seats; radial is along the line of action (n)."""
+ACROSS = {
+    f"{gear} seat velocity across": (f"{gear}_left", "t", "velocity")
+    for gear in ("pinion", "wheel")
+}
+"""Across the line of action (t), in the plane of the gears."""
+_EVERY = {**SEATS, **ACROSS}
 FOUR_MODES = {
     f"{names.HOUSING}.modes": "thesis_modes.csv",
     f"{names.HOUSING}.shapes": "thesis_shapes.csv",
@@ -37,11 +43,16 @@ FOUR_MODES = {
 _LEAST = 1e-9
 
 
-def line_of_action() -> np.ndarray:
-    """Its unit vector along x, y, z of the housing."""
+def directions() -> dict[str, np.ndarray]:
+    """Unit vectors along x, y, z of the housing: n, t and z, see `SEATS` and `ACROSS`."""
     system, _ = load_system(names.GEARBOX)
     angle = value_at(system, f"{names.BEARINGS}.pressure_angle")
-    return np.array([math.sin(angle), math.cos(angle), 0.0])
+    along, across = math.sin(angle), math.cos(angle)
+    return {
+        "n": np.array([along, across, 0.0]),
+        "t": np.array([across, -along, 0.0]),
+        "z": np.array([0.0, 0.0, 1.0]),
+    }
 
 
 def four_modes() -> ModalHousing:
@@ -73,7 +84,7 @@ def thesis_procedure(deviation: float) -> tuple[pd.DataFrame, pd.DataFrame]:
         deviation: f_A [m].
 
     Returns:
-        Forces [N] and motions over time, columns as `FORCES` and `SEATS`, and `time` [s].
+        Forces [N] and motions over time, columns as `FORCES`, `SEATS` and `ACROSS`, and `time` [s].
     """
     values = {names.SYMMETRY_DEVIATION: deviation}
     result = run(names.ON_GROUND, scene=names.GRADUAL, values=values, fuse=True)
@@ -82,13 +93,12 @@ def thesis_procedure(deviation: float) -> tuple[pd.DataFrame, pd.DataFrame]:
     housing = four_modes()
     modal = modal_velocity(housing, seat_forces(result), step)
     velocities = modal @ housing.seat_shapes.T
-    direction = line_of_action()
+    unit_vectors = directions()
     chosen = slice(int(np.searchsorted(time, WINDOW[0] - _LEAST)), None, round(SAMPLE / step))
     forces = {name: result.data[result.column(c)].to_numpy()[chosen] for name, c in FORCES.items()}
     motions = {}
-    for name, (seat, axis, what) in SEATS.items():
-        own = velocities[:, [SEAT_DOFS.index((seat, a)) for a in "xyz"]]
-        v = own @ direction if axis == "n" else own[:, 2]
+    for name, (seat, axis, what) in _EVERY.items():
+        v = velocities[:, [SEAT_DOFS.index((seat, a)) for a in "xyz"]] @ unit_vectors[axis]
         shown = v if what == "velocity" else cumulative_trapezoid(v, dx=step, initial=0.0)
         motions[name] = factor(name) * shown[chosen]
     at = {"time": time[chosen]}
@@ -96,7 +106,7 @@ def thesis_procedure(deviation: float) -> tuple[pd.DataFrame, pd.DataFrame]:
 
 
 def seat_levels(state: SteadyState) -> dict[str, float]:
-    """Rms of the alternating motions of the seats, by `SEATS`."""
+    """Rms of the alternating motions of the seats, by `SEATS` and `ACROSS`."""
     return {
         name: factor(name) * float(np.sqrt(0.5 * np.sum(np.abs(found[1:]) ** 2)))
         for name, found in _amplitudes(state).items()
@@ -104,22 +114,20 @@ def seat_levels(state: SteadyState) -> dict[str, float]:
 
 
 def seat_piece(state: SteadyState) -> pd.DataFrame:
-    """Motions of the seats at the times of the window, without their means."""
-    times = window_times()
-    turning = np.exp(2j * np.pi * np.outer(times, state.frequencies[1:]))
+    """Motions of the seats at the times of the window, see `in_step`, without their means."""
+    turning = np.exp(2j * np.pi * np.outer(in_step(state), state.frequencies[1:]))
     found = {
         name: factor(name) * (turning @ amplitudes[1:]).real
         for name, amplitudes in _amplitudes(state).items()
     }
-    return pd.DataFrame({"time": times, **found})
+    return pd.DataFrame({"time": window_times(), **found})
 
 
 def _amplitudes(state: SteadyState) -> dict[str, np.ndarray]:
     """Complex amplitudes (harmonics,) of the motions of the seats."""
-    direction, letters = line_of_action(), {"displacement": "s", "velocity": "v"}
+    unit_vectors, letters = directions(), {"displacement": "s", "velocity": "v"}
     found = {}
-    for name, (seat, axis, what) in SEATS.items():
+    for name, (seat, axis, what) in _EVERY.items():
         columns = [f"{names.HOUSING}.{seat}.{letters[what]}_{a}" for a in "xyz"]
-        each = state.amplitudes(*columns)
-        found[name] = direction @ each if axis == "n" else each[2]
+        found[name] = unit_vectors[axis] @ state.amplitudes(*columns)
     return found

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
 _MM = 1e3
 _PUBLISHED_DISTANCE = 218.2
-"""Centre distance of Table 2.1 [mm], given with one decimal."""
+_HALF_DIGIT = 0.05
+"""Centre distance of Table 2.1, given with one decimal [mm]."""
 
 
 def compute() -> Outcome:
@@ -77,7 +78,7 @@ def _findings(pair: GearPair) -> tuple[Finding, ...]:
     return (
         Finding(
             "The centre distance of 27 and 81 teeth of module 3.5 mm at 30° is 218.2 mm.",
-            Verdict.AGREES,
+            Verdict.of(abs(distance - _PUBLISHED_DISTANCE) < _HALF_DIGIT),
             distance,
             "mm",
             f"without profile shift, {1e3 * (distance - _PUBLISHED_DISTANCE):+.0f} µm from it",

@@ -7,6 +7,9 @@ import numpy as np
 import pandas as pd
 
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table
+from herringbone.thesis.ground import natural
+from herringbone.thesis.names import RIG
+from herringbone.thesis.pair.given import JOB
 from herringbone.thesis.readings.measures import LEVEL, SETTLED, measures
 from herringbone.thesis.readings.motion import Moving
 from herringbone.thesis.readings.points import SPEEDS, TORQUE
@@ -28,8 +31,10 @@ _WHAT = {
     "A": "sensor A, axial",
 }
 _MM = 1e3
-_SEEN = 0.05
-"""A fall that a printed figure shows."""
+_ORDERS = 2
+"""Mesh harmonics that are looked at."""
+_SEEN = 5.0
+"""A fall that a printed figure shows [%]."""
 
 
 def compute() -> Outcome:
@@ -44,27 +49,55 @@ def compute() -> Outcome:
     frame = pd.DataFrame(rows)
     curve = table({name: frame[name] for name in frame},
                   {"speed": "r/min", **dict.fromkeys(_WHAT, "mm/s")})  # fmt: skip
-    return Outcome({"curves": curve}, tuple(_finding(curve, what) for what in ("pinion.v_z", "A")))
+    told = [_finding(curve, what) for what in ("pinion.v_z", "A")]
+    return Outcome({"curves": curve}, (*told, _resonance()))
 
 
 def _finding(curve: pd.DataFrame, what: str) -> Finding:
     """Whether a level grows over the thesis' speeds, and over those in between, as shipped."""
     own = curve[curve["reading"] == next(iter(_READINGS))].set_index("speed")[what]
     at_points = bool((np.diff(own[list(SPEEDS)].to_numpy()) > 0.0).all())
-    largest = own.cummax()
-    fall = largest / own
-    worst = float(fall.idxmax())
-    peak = float(own[own.index <= worst].idxmax())
+    fall = 100.0 * (own / own.cummax() - 1.0)
+    deepest = float(fall.idxmin())
+    peak = float(own[own.index <= deepest].idxmax())
+    where = f", from {peak:.0f} to {deepest:.0f} r/min" if fall.min() < 0.0 else ""
     words = f"at the points it {'grows' if at_points else 'does not grow'}"
-    grows = float(fall.max()) < 1.0 + _SEEN
+    grows = float(fall.min()) > -_SEEN
     return Finding(
         f"Axial velocity grows from 800 to 1500 r/min ({_WHAT[what]}).",
         Verdict.of(grows and at_points),
-        float(fall.max()),
-        "",
-        f"times the level at {worst:.0f} r/min is that at {peak:.0f} r/min; {words}",
+        float(fall.min()),
+        "%",
+        f"is the deepest fall of the level{where}; {words}",
         "On the speed curve, as shipped; resonances with mesh harmonics lie between the points.",
-        0.02,
+        0.5,
+    )
+
+
+def _resonance() -> Finding:
+    """Of mesh orders near natural frequencies of the rig: within half of a half-power bandwidth."""
+    modes, teeth = natural(RIG), JOB.pair.number_of_teeth[0]
+
+    def nearest(speed: float) -> tuple[float, float, int]:
+        """Distance over half a bandwidth, natural frequency [Hz], and mesh order."""
+        return min(
+            (abs(order * teeth * speed / 60.0 / f - 1.0) / z, f, order)
+            for order in range(1, _ORDERS + 1)
+            for f, z in zip(modes.frequency_hz, modes.damping_ratio, strict=True)
+        )
+
+    last = SPEEDS[-1]
+    distance, frequency, order = nearest(last)
+    met = 100.0 * float(np.mean([nearest(speed)[0] < 1.0 for speed in _CURVE]))
+    return Finding(
+        f"At {last:.0f} r/min there is possibly a resonance near a natural frequency.",
+        Verdict.of(distance < 1.0),
+        frequency,
+        "Hz",
+        f"is a natural frequency of the rig, which mesh harmonic {order} meets at {last:.0f} r/min "
+        f"({order * teeth * last / 60.0:.0f} Hz) by {distance:.1f} of half its bandwidth",
+        f"So does one of {_ORDERS} mesh harmonics at {met:.0f} % of the speeds of the curve: it does "
+        "not set this speed apart.",
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.thesis.entry import Tables
+from herringbone.thesis.readings.findings import RELIEF
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,7 +25,9 @@ def over_assumptions(tables: Tables) -> "Figure":
 
     sentences, margins = tables["sentences"], tables["margins"]
     cases = margins[margins["changes"] <= 1].drop_duplicates("assumptions")
-    best = tables["smallest_sets"].groupby("about", sort=False)["case"].last().drop_duplicates()
+    sets = tables["smallest_sets"]
+    of_motion = sets[sets["about"] != RELIEF]
+    best = of_motion.groupby("about", sort=False)["case"].last().drop_duplicates()
     cases = pd.concat([cases, margins.loc[[k for k in best if k not in cases.index]]])
     values = cases[list(sentences["sentence"])].to_numpy().T
     needed = sentences["needs"].to_numpy()[:, None]
@@ -71,7 +74,8 @@ def exclusions(tables: Tables) -> "Figure":
     names = list(tables["sentences"]["sentence"])
     count = tables["sentences"]["cases"].to_numpy()
     matrix = np.full((len(names), len(names)), np.nan)
-    for row in tables["excluding_pairs"].itertuples():
+    pairs = tables["excluding_pairs"]
+    for row in pairs[pairs["one"].isin(names)].itertuples():
         one, other = names.index(str(row.one)), names.index(str(row.other))
         matrix[one, other] = matrix[other, one] = 1.0
     figure = new_figure("Pairs of sentences that never hold in one case (red)", 2, 1, width=10.5)

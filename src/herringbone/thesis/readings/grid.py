@@ -45,13 +45,18 @@ SINGLE: dict[str, tuple[Choice, ...]] = {
     "damping": (Choice("mesh damping 0.035", 0.035),),
     "wheel_thrust": (Choice("wheel's thrust bearing per shaft", 1.015e8),),
     "gear_ratio": (Choice("torque is the wheel's", 3.0),),
-    "grade": (Choice(f"teeth of class {_CLASS}", _CLASS),),
+    "grade": tuple(Choice(f"teeth of class {c}", c) for c in (5, _CLASS, 7)),
 }
 """These are changed alone, from what is shipped."""
 
-_WITH_REAL_TEETH: tuple[dict[str, float | str], ...] = ({"run_out": "still"},)
-"""What is changed besides, where teeth are those of a class. Such points are runs; with a pinion
-that is held, teeth separate at 100 N m in a way that a fused run does not get over."""
+_WITH_REAL_TEETH: tuple[dict[str, float | str], ...] = (
+    {"run_out": "still"},
+    {"run_out": "turning"},
+    {"foundation": GROUND},
+    {"foundation": GROUND, "run_out": "still"},
+    {"stagger": 0.25},
+)
+"""What is changed besides, where teeth are those of a class. Such points are runs."""
 
 
 class Case(NamedTuple):

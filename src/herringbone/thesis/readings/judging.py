@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import pandas as pd
@@ -14,6 +14,7 @@ from herringbone.thesis.readings.points import DEVIATIONS, computed, looked_up, 
 from herringbone.thesis.readings.reading import Reading
 from herringbone.thesis.readings.sentences import SENTENCES
 
+SHIPPED = "as shipped"
 MOST = 1e3
 """Larger margins are cut: a sentence holds by far."""
 
@@ -72,7 +73,15 @@ def satisfied(margins: np.ndarray) -> np.ndarray:
     return margins >= np.array([s.needs for s in SENTENCES])
 
 
-def fewest_changes(found: Sequence[Case], holds: np.ndarray) -> pd.DataFrame:
+class Changed(Protocol):
+    """A case that can tell what it changes."""
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """What differs from what is shipped, in words."""
+
+
+def fewest_changes(found: Sequence[Changed], holds: np.ndarray) -> pd.DataFrame:
     """The best case for each number of changes from what is shipped, while it gets better.
 
     Args:
@@ -96,7 +105,7 @@ def fewest_changes(found: Sequence[Case], holds: np.ndarray) -> pd.DataFrame:
             {
                 "changes": number,
                 "sentences": best,
-                "assumptions": "; ".join(found[k].changes) or "as shipped",
+                "assumptions": whole_words(found[k]),
                 "ways": int((counts[inside] == best).sum()),
                 "case": k,
             }
@@ -104,24 +113,59 @@ def fewest_changes(found: Sequence[Case], holds: np.ndarray) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def whole_words(case: Case) -> str:
+def joined(one: pd.DataFrame, other: pd.DataFrame) -> pd.DataFrame:
+    """The best for each number of changes of two sets of cases that do not touch each other.
+
+    Args:
+        one: of `fewest_changes`; the number of a case is that of this set.
+        other: of another set of sentences.
+    """
+    rows: list[dict[str, object]] = []
+    both = itertools.product(one.to_dict("records"), other.to_dict("records"))
+
+    def order(pair: tuple[dict, dict]) -> tuple[int, int]:
+        return sum(r["changes"] for r in pair), -sum(r["sentences"] for r in pair)
+
+    for first, second in sorted(both, key=order):
+        count = first["sentences"] + second["sentences"]
+        if rows and count <= rows[-1]["sentences"]:
+            continue
+        words = [r["assumptions"] for r in (first, second) if r["changes"]]
+        rows.append(
+            {
+                "changes": first["changes"] + second["changes"],
+                "sentences": count,
+                "assumptions": "; ".join(words) or SHIPPED,
+                "ways": first["ways"] * second["ways"],
+                "case": first["case"],
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def whole_words(case: Changed) -> str:
     """What a case changes, in words."""
-    return "; ".join(case.changes) or "as shipped"
+    return "; ".join(case.changes) or SHIPPED
 
 
-def excluding(holds: np.ndarray) -> pd.DataFrame:
+def excluding(holds: np.ndarray, names: Sequence[str]) -> pd.DataFrame:
     """Pairs of sentences that never hold in one case, although each holds in some.
 
-    Columns: one, other, one_alone, other_alone (numbers of cases).
+    Args:
+        holds: (cases, sentences).
+        names: of the sentences.
+
+    Returns:
+        Columns: one, other, cases_of_one, cases_of_other (in how many cases each holds).
     """
     rows = []
-    for one, other in itertools.combinations(range(len(SENTENCES)), 2):
+    for one, other in itertools.combinations(range(len(names)), 2):
         alone, too = int(holds[:, one].sum()), int(holds[:, other].sum())
         if alone and too and not (holds[:, one] & holds[:, other]).any():
             rows.append(
                 {
-                    "one": SENTENCES[one].name,
-                    "other": SENTENCES[other].name,
+                    "one": names[one],
+                    "other": names[other],
                     "cases_of_one": alone,
                     "cases_of_other": too,
                 }

@@ -17,15 +17,14 @@ from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.set_points import Point, SetPoints
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.core import HerringboneError
 from herringbone.core.declaring.roles import HALVES
 from herringbone.housing import SEAT_DOFS, ModalHousing, default_housing
-from herringbone.result.result import TIME, Result
-from herringbone.running.api import run
+from herringbone.result.result import TIME
 from herringbone.running.operating.commanded import commanded
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.thesis.names import BEARINGS, GEAR, GEARBOX
 from herringbone.thesis.readings.reading import Reading
+from herringbone.thesis.rig.runs import fused_or_coupled
 
 MOTIONS = tuple(f"{GEAR}.{half}.{kind}_{axis}" for half in HALVES for kind in "sv" for axis in "yz")
 FORCES = tuple(f"{BEARINGS}.shaft.{half}.f_{axis}" for half in HALVES for axis in "yz")
@@ -143,7 +142,13 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
     own = {**values, **commanded(system.with_values(values), dict(point))}
     own |= {n: v for n, v in SetPoints(system).values(Point(None, point[TORQUE])).items()}
     turn = 3.0 * 2.0 * math.pi / point[SPEED]
-    result = _run(reading, own, _SETTLING + turn)
+    result = fused_or_coupled(
+        system,
+        t_end=_SETTLING + turn,
+        record_step=_STEP,
+        values=own,
+        gear=reading.gear(),
+    )
     data, known = result.data, result.data.columns
     count = round(turn / _STEP)
     signals: dict[Key, np.ndarray] = {
@@ -154,22 +159,6 @@ def _of_run(reading: Reading, point: Mapping[str, float], values: Mapping[str, f
     velocity = modal_velocity(_housing(), forces, step)[-count:] @ _shapes().T
     signals |= zip(PLACES, velocity.T, strict=True)
     return Motion(step, signals, repeats=False, how=RUN)
-
-
-def _run(reading: Reading, values: Mapping[str, float | str], t_end: float) -> Result:
-    """A run; raises HerringboneError where it does not come to its end."""
-    result = run(
-        reading.system(),
-        fuse=True,
-        start="equilibrium",
-        t_end=t_end,
-        record_step=_STEP,
-        values=values,
-        gear=reading.gear(),
-    )
-    if not result.outcome.reached_end or result.outcome.unstable:
-        raise HerringboneError(result.outcome.message)
-    return result
 
 
 def _full(known: Collection[str], name: str) -> str:

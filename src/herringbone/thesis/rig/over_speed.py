@@ -36,12 +36,13 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
     return [
         Finding(
             "At 800 and 1200 r/min the sensor's position does not matter (figure 5.3).",
-            _needing(alike[_PERFECT] <= LITTLE, alike[REAL] <= LITTLE),
+            Verdict.needing(alike[_PERFECT] <= LITTLE, alike[REAL] <= LITTLE),
             100.0 * alike[_PERFECT],
             "%",
             "the largest of A, B, C exceeds the least with perfect teeth; "
-            f"{100.0 * alike[REAL]:.0f} % with teeth of {REAL}",
-            "Teeth that deviate excite other modes than mesh harmonics of perfect ones.",
+            f"{100.0 * alike[REAL]:.1f} % with teeth of {REAL}",
+            f"Up to {100.0 * LITTLE:.0f} % are called alike. Teeth that deviate excite other modes "
+            "than mesh harmonics of perfect ones.",
             2.0,
         ),
         Finding(
@@ -56,7 +57,7 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
         ),
         Finding(
             "The velocity grows with speed (figure 5.4).",
-            _needing(rising[_PERFECT] > 0.0, rising[REAL] > 0.0),
+            Verdict.needing(rising[_PERFECT] > 0.0, rising[REAL] > 0.0),
             100.0 * rising[_PERFECT],
             "%",
             f"is the least step with perfect teeth, {100.0 * rising[REAL]:+.0f} % with teeth of "
@@ -85,13 +86,6 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
             0.05,
         ),
     ]
-
-
-def _needing(perfect: bool, real: bool) -> Verdict:
-    """As it holds with perfect teeth, with real ones, or with neither."""
-    if perfect:
-        return Verdict.AGREES
-    return Verdict.of(real, assuming=True)
 
 
 def draw(tables: Tables) -> dict[str, "Figure"]:
