@@ -36,6 +36,8 @@ _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3
+_LONG, _SIDES = 200, 3
+"""Meshes of a period of which lines alone are looked at; how far aside, at first."""
 _TRIED, _REPEATS = 2, 0.1
 """Of a march: how many periods of repetition are tried; a change over the alternation that is none.
 """
@@ -164,26 +166,30 @@ class SteadySolver:
         """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
         if near is not None and near.meshes % structure.meshes == 0:
             values = near.orbit.channels[: structure.problem.values]
-            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+            guess = Guess(values, near.orbit.response.orders, near.orbit.resolved.per_mesh)
             yield near.meshes // structure.meshes, guess
         yield 1, begun(structure, motion, standing(structure, motion), _PLACES)
 
     def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
         """A motion over some periods with as many harmonics as the tolerance needs."""
         meshes, problem = times * structure.meshes, structure.problem
-        per_mesh, thin = guess.per_mesh, _THIN * self.tolerance
+        per_mesh, thin, sides = guess.per_mesh, _THIN * self.tolerance, _SIDES
         start, known = guess.values, guess.orders
         while True:
             period = Period(per_mesh // 4, meshes * per_mesh, meshes, thin)
+            if times == 1 and meshes >= _LONG:
+                period = period.thinned_to_lines(structure.bases, sides) or period
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
             if not orbit.converged:
-                return Found(motion, orbit, Accuracy({}, {}, {}))
+                return Found(motion, orbit, Accuracy({}, {}, {}, {}))
             errors = accuracy(structure, period, motion, orbit)
             if errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
                 return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
             if errors.by_thinning:
                 thin *= _THINNER * self.tolerance / errors.worst
+            elif errors.by_sides:
+                sides *= 2
             else:
                 per_mesh *= 2
 
