@@ -28,7 +28,7 @@ from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.own_master import connections
 from herringbone.running.prepared import Wishes, prepared
 
-SYSTEMS = ("back_to_back", "e_axle", "gearbox", "ship", "turbine")
+SYSTEMS = ("back_to_back", "boosted_axle", "e_axle", "gearbox", "on_ground", "ship", "turbine")
 OFFERED = ("gearbox", True)
 """Its torques are connectors of the whole there, which fmpy holds at zero."""
 STEP, COUNT, EVERY = 1e-6, 200, 50

@@ -128,6 +128,7 @@ def measure(
         micro_step,
         tuple(point for point, _ in found),
         tuple(dict.fromkeys([*notes, *(note for _, own in found for note in own)])),
+        bool(structure.foreign_parts),
     )
 
 

@@ -93,7 +93,7 @@ class Run:
             f"step helps; {instead}{loop.remedy()}"
         )
         outcome = Outcome(OutcomeKind.COUPLING_FAILED, 0.0, loop.culprit, message)
-        return self._recording(0, outcome, 0.0)
+        return self._recording(0, outcome, 0.0, 0.0)
 
     def go(self, progress: Progress | None) -> Recording:
         """Run chunk after chunk."""
@@ -105,7 +105,7 @@ class Run:
         checkpoints = Checkpoints(self)
         if self.checkpoint is not None:
             done, before = checkpoints.take_up(self.checkpoint)
-        begin = time.perf_counter() - before
+        begin, worked = time.perf_counter() - before, time.thread_time()
         with InterruptFlag() as flag:
             while done < self.grid.count and status == DONE and not flag.raised:
                 earlier, started = done, time.perf_counter()
@@ -121,11 +121,11 @@ class Run:
                 chunk = max(1, min(int(rate * CHUNK_SECONDS), 4 * chunk))
                 if progress:
                     progress(done * self.grid.step, self.grid.count * self.grid.step)
-        wall = time.perf_counter() - begin
+        wall, cpu = time.perf_counter() - begin, time.thread_time() - worked
         if status == DONE and done < self.grid.count:
             checkpoints.take(done, wall)
         outcome = self._outcome(done, status, culprit)
-        return self._recording(done, outcome, wall)
+        return self._recording(done, outcome, wall, cpu)
 
     def _first_row(self) -> None:
         """Record the start."""
@@ -226,7 +226,7 @@ class Run:
         )
         return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
 
-    def _recording(self, done: int, outcome: Outcome, wall: float) -> Recording:
+    def _recording(self, done: int, outcome: Outcome, wall: float, cpu: float) -> Recording:
         kept, record_step = self.rows.finish(done, outcome)
         rows = self.rows
         notes = wrapped_angles(rows.names, rows.recorded, kept.time, kept.values)
@@ -244,6 +244,7 @@ class Run:
             ),
             self.prepared.rollbacks,
             wall,
+            cpu,
             (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes, *notes),
             self.prepared.steps,
             self.watch.report() if done else None,

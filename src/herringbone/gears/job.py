@@ -36,6 +36,7 @@ class GearJob:
         corner_contact: follow tip corners outside the path of contact.
         mesh: what geometry does not tell, see `MeshAssumptions`; no table depends on it.
         deviations: of the teeth, for runs; None: perfect teeth. No table depends on them.
+        unread: lines on what its file has and this does not.
     """
 
     pair: GearPair
@@ -49,6 +50,7 @@ class GearJob:
     corner_contact: bool = False
     mesh: MeshAssumptions = field(default_factory=MeshAssumptions)
     deviations: GivenDeviations | None = None
+    unread: tuple[str, ...] = ()
 
     @property
     def pinion_torque(self) -> float:

@@ -29,7 +29,7 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         raise ParameterError(
             f"the pair has halves = {pair.halves}; the component is double helical: halves = 2"
         )
-    notes = backlash_notes(job)
+    notes = (*job.unread, *backlash_notes(job))
     backlash = mesh.backlash
     if backlash is None:
         backlash = pair.normal_backlash

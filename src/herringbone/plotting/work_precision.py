@@ -1,4 +1,4 @@
-"""The picture of a speed-accuracy chart: error against passes and against wall time."""
+"""The picture of a speed-accuracy chart: error against passes and against time."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -58,7 +58,10 @@ def write_chart(found: WorkPrecision, file: str | Path) -> None:
 
 @styled
 def chart_picture(found: WorkPrecision) -> Figure:
-    """Draw error against passes and against wall time, failures above, the Pareto front marked."""
+    """Draw error against passes and against time, failures above, the Pareto front marked.
+
+    Time is that of the processor, or of the clock where parts may run in child processes.
+    """
     title = (
         f"{found.system}, {found.scene}: error against the monolithic twin over "
         f"{1e3 * found.t_end:g} ms\n"
@@ -83,7 +86,9 @@ def chart_picture(found: WorkPrecision) -> Figure:
     looks = _looks(found.algorithms)
     panels: tuple[tuple[Cost, str], ...] = (
         (lambda p: p.passes_per_ms, "passes (doStep calls per part) per simulated ms [1/ms]"),
-        (lambda p: p.wall_per_ms, "wall time of the loop per simulated time [ms/ms]"),
+        (lambda p: p.wall_per_ms, "wall time of the loop per simulated time [ms/ms]")
+        if found.foreign
+        else (lambda p: p.cpu_per_ms, "CPU time of the loop per simulated time [ms/ms]"),
     )
     axes: list[Axes] = []
     for column, (cost, label) in enumerate(panels):

@@ -19,13 +19,14 @@ from herringbone.plotting.work_precision import chart_picture, write_chart
 CHEAP, GOOD = "jacobi:order=1,schedule=bodies_first", "li:degree=3,iterations=1"
 KEYS = {
     "model", "mode_count", "micro_step", "algorithm", "step", "passes_per_ms", "wall_s",
-    "t_reached", "error", "outcome",
+    "cpu_s", "t_reached", "error", "outcome",
 }  # fmt: skip
 
 
 def point(algorithm, step, error, passes=1, outcome="completed"):
     errors = {"bearing_force": error, "seat_velocity": error / 2.0}
-    return Point(algorithm, step, passes * 1e-3 / step, 2e-7 / step, 0.02, errors, outcome)
+    times = 2e-7 / step, 1e-7 / step
+    return Point(algorithm, step, passes * 1e-3 / step, *times, 0.02, errors, outcome)
 
 
 def chart():
@@ -50,6 +51,19 @@ def test_pareto_front():
     by_wall = chart().front(lambda p: p.wall_per_ms)
     assert all(not p.failed for p in by_wall)
     assert np.all(np.diff([p.worst for p in by_wall]) < 0.0)
+
+
+def test_time_is_that_of_the_processor_but_where_parts_are_apart():
+    """The picture's axis, and the values on it."""
+    for foreign, label, cost in (
+        (False, "CPU time", "cpu_per_ms"),
+        (True, "wall time", "wall_per_ms"),
+    ):
+        panel = chart_picture(replace(chart(), foreign=foreign)).axes[2]
+        assert panel.get_xlabel().startswith(label)
+        line = next(line for line in panel.lines if line.get_label().startswith("li:degree=3"))
+        best = chart().of(GOOD)[-1]
+        assert line.get_xdata()[-1] == pytest.approx(getattr(best, cost))
 
 
 def test_failures_are_kept():

@@ -255,7 +255,8 @@ def test_interrupt_ends_the_run_within_a_chunk(handler, monkeypatch):
             interrupt()
         return OK
 
-    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=lambda: now[0]))
+    clock = lambda: now[0]  # noqa: E731
+    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=clock, thread_time=clock))
     recording = PROBLEM.run(Jacobi(order=2), 0.1, 1000.0, misbehave=dawdle_and_interrupt)
     outcome = recording.outcome
     assert outcome.kind is OutcomeKind.INTERRUPTED
@@ -288,7 +289,8 @@ def test_interrupt_of_quick_parts(handler):
 
 def test_chunks_grow_no_more_than_fourfold(monkeypatch):
     """A clock that stands still promises any rate: 1, 4, 16, ... steps."""
-    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=lambda: 0.0))
+    clock = lambda: 0.0  # noqa: E731
+    monkeypatch.setattr(run, "time", SimpleNamespace(perf_counter=clock, thread_time=clock))
     reached = []
     simulate(TWO_MASS_SYSTEM, PROBLEM.parts(), Jacobi(order=2), make_grid(8.5, 0.1, 0.1),
              lambda time, end: reached.append(time))  # fmt: skip

@@ -13,7 +13,7 @@ from herringbone.core.places.paths import component_folder
 from herringbone.gears.accuracy.deviation_file import write_deviations
 from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.gears.files.read_job import read_mounted_job
+from herringbone.gears.files.read_job import read_job, read_mounted_job
 from herringbone.gears.files.rexs import read_rexs
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import backlash_notes, pair_values
@@ -241,7 +241,8 @@ def test_rexs_stage():
         ('type="cylindrical_stage"', 'type="bevel_stage"', "it has no cylindrical_stage"),
         ('role="gear_2"', 'role="gear_3"', "has no relation to two cylindrical_gears"),
         ("<model", "<models", "is not well-formed"),
-        ('mm">190', 'mm">18', "center distance 18.0000 mm is impossible"),
+        ('mm">190', 'mm">18', "bad.rexs: center distance 18.0000 mm is impossible"),
+        ('"face_width" unit="mm"', '"face_width" unit="m"', "bad.rexs: face_width = 50 m is 384"),
     ],
 )  # fmt: skip
 def test_bad_rexs(tmp_path, old, new, expected):
@@ -252,6 +253,22 @@ def test_bad_rexs(tmp_path, old, new, expected):
     with pytest.raises(HerringboneError, match=re.escape(expected)) as caught:
         read_rexs(file)
     assert "\n" not in str(caught.value)
+
+
+def test_modifications_in_rexs_are_named(tmp_path):
+    """REXS 1.4 has them as components of their own."""
+    more = "".join(
+        f'<component id="{30 + i}" type="{kind}"/>'
+        for i, kind in enumerate(("tip_relief", "helix_crowning", "tip_relief", "worm_gear_flank"))
+    )
+    file = tmp_path / "relieved.rexs"
+    text = STAGE.read_text(encoding="utf-8").replace("</components>", f"{more}</components>")
+    file.write_text(text, encoding="utf-8")
+    (line,) = read_job(file).unread
+    assert "relieved.rexs: modifications of flanks are not read (1 helix_cr" in line
+    assert "2 tip_relief)" in line
+    assert pair_values(read_mounted_job(file))[1][0] == line
+    assert read_job(STAGE).unread == ()
 
 
 def test_flanks_that_differ(tmp_path):

@@ -136,9 +136,13 @@ def test_map_and_waterfall_have_units(table):
     assert bar.get_ylabel().startswith("dB re ")
 
 
-def test_map_says_that_it_shows_the_largest_of_several(table):
-    title = level_map(Points(table, UNITS), across="speed", up="torque").get_suptitle()
-    assert "largest of the further parameters" in title
+def test_maps_say_that_they_show_the_largest_of_several(table):
+    told = "largest of the further parameters"
+    several = Points(table, UNITS)
+    one = Points(shipped(table, torque=200.0, zeta=0.02, backlash=1e-4), UNITS)
+    assert told in level_map(several, across="speed", up="torque").get_suptitle()
+    assert told in waterfall(several).get_suptitle()
+    assert told not in waterfall(one).get_suptitle()
 
 
 def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):

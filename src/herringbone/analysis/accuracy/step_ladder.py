@@ -179,16 +179,20 @@ def _point(
     algorithm: Algorithm,
     grid: Grid,
 ) -> tuple[Point, tuple[str, ...]]:
-    """One point: the error of a run, and the shortest wall time of a few."""
+    """One point: the error of a run, and the shortest times of a few."""
     walls: list[float] = []
+    worked: list[float] = []
     while True:
         try:
             recording = _simulated(system, open_parts, algorithm, grid)
         except HerringboneError as error:
             errors = dict.fromkeys(reference.groups, math.inf)
-            point = Point(str(algorithm), grid.step, 1e-3 / grid.step, 0.0, 0.0, errors, REFUSED)
+            point = Point(
+                str(algorithm), grid.step, 1e-3 / grid.step, 0.0, 0.0, 0.0, errors, REFUSED
+            )
             return point, (f"{algorithm} at {grid.step * 1e6:.4g} us: {error}",)
         walls.append(recording.wall_seconds)
+        worked.append(recording.cpu_seconds)
         if not recording.outcome.completed or len(walls) == _REPEATS:
             break
         if walls[-1] > _LONG or (len(walls) > 1 and sum(walls) > _ENOUGH):
@@ -199,6 +203,7 @@ def _point(
         recording.step,
         1e-3 * max(recording.passes.values()) / made,
         min(walls),
+        min(worked),
         recording.outcome.time,
         reference.errors(recording),
         str(recording.outcome.kind),

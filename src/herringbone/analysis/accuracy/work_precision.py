@@ -1,7 +1,8 @@
 """Error of coupling algorithms against their cost, over a ladder of communication step sizes.
 
 The error is that of `accuracy.error.relative_error` against the monolithic twin. Cost is counted in
-passes (doStep calls of the part that is called most) and in wall time of the loop.
+passes (doStep calls of the part that is called most), in CPU time of the loop's thread, and in its
+wall time.
 """
 
 import csv
@@ -31,6 +32,7 @@ class Point:
         step: communication step size, as used [s]; the mean of an adaptive run.
         passes_per_ms: doStep calls of the most called part per simulated millisecond [1/ms].
         wall_s: wall time of the loop, the shortest of the repeats [s].
+        cpu_s: CPU time of its thread, likewise; child processes are not in it [s].
         t_reached: simulated time reached [s].
         error: relative error by channel group [1]; infinite if the run ended early.
         outcome: "completed", "unstable", "diverged", "part_failed", "interrupted" or "refused".
@@ -40,6 +42,7 @@ class Point:
     step: float
     passes_per_ms: float
     wall_s: float
+    cpu_s: float
     t_reached: float
     error: Mapping[str, float]
     outcome: str
@@ -63,6 +66,11 @@ class Point:
     def wall_per_ms(self) -> float:
         """Wall time of the loop per simulated millisecond [ms/ms]; NaN without any step."""
         return self.wall_s / self.t_reached if self.t_reached > 0.0 else math.nan
+
+    @property
+    def cpu_per_ms(self) -> float:
+        """CPU time of the loop's thread per simulated millisecond [ms/ms]; NaN without any step."""
+        return self.cpu_s / self.t_reached if self.t_reached > 0.0 else math.nan
 
 
 @dataclass(frozen=True)
@@ -97,6 +105,7 @@ class WorkPrecision:
         micro_step: shortest internal step of a part [s]; 0 if no part has one.
         points: one per run, by algorithm, then step.
         notes: downgrades and refusals.
+        foreign: parts may run in child processes, whose time is not that of the loop's thread.
     """
 
     system: str
@@ -107,6 +116,7 @@ class WorkPrecision:
     micro_step: float
     points: tuple[Point, ...]
     notes: tuple[str, ...] = ()
+    foreign: bool = False
 
     @property
     def algorithms(self) -> tuple[str, ...]:
@@ -157,6 +167,7 @@ class WorkPrecision:
                 "step": p.step,
                 "passes_per_ms": _finite(p.passes_per_ms),
                 "wall_s": p.wall_s,
+                "cpu_s": p.cpu_s,
                 "t_reached": p.t_reached,
                 "error": {name: _finite(error) for name, error in p.error.items()},
                 "outcome": p.outcome,
@@ -178,8 +189,9 @@ class WorkPrecision:
     def to_csv(self, file: str | Path) -> None:
         """Write the points: a `#` line with units, a header row, one row per run."""
         rows = [_flat(row) for row in self.rows()]
-        units = {"micro_step": "s", "step": "s", "passes_per_ms": "1/ms", "wall_s": "s"}
-        units |= {"t_reached": "s"} | {name: "1" for name in rows[0] if name.startswith("error_")}
+        units = {"micro_step": "s", "step": "s", "passes_per_ms": "1/ms"}
+        units |= dict.fromkeys(("wall_s", "cpu_s", "t_reached"), "s")
+        units |= {name: "1" for name in rows[0] if name.startswith("error_")}
         with replacing(Path(file)) as stream:
             stream.write("# units: " + ", ".join(f"{n} {u}" for n, u in units.items()) + "\n")
             writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")

@@ -111,7 +111,7 @@ class Estimates:
         state, orbit = self._state, self._state.orbit
         with one_blas_thread(), np.errstate(all="ignore"):
             balance = Balance(structure.problem, self._period, state.motion)
-            response, missing = balance.missing(orbit)
+            response, missing, _ = balance.missing(orbit)
             orders, known = response.orders, orbit.response.orders
             own = on(known, missing[: structure.problem.values], orders)
             step = on(orders, own, known)
@@ -127,9 +127,7 @@ class Estimates:
     @property
     def _period(self) -> Period:
         state = self._state
-        per_mesh = state.orbit.places // state.meshes
-        thin = 0.0 if state.meshes == 1 else state.tolerance
-        return Period(per_mesh // 4, state.orbit.places, state.meshes, thin)
+        return state.orbit.resolved._replace(thin=0.0 if state.meshes == 1 else state.tolerance)
 
     def _answered(self, own: Sequence[int], push: np.ndarray) -> np.ndarray:
         """Changes of the laws' unknown values (unknowns, harmonics) under reactions."""

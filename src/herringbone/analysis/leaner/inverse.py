@@ -34,8 +34,8 @@ def of_a_mesh(state: SteadyState, found: Bent) -> Inverse:
 def of_many(state: SteadyState, found: Bent) -> Inverse:
     """For a period of many meshes."""
     orbit = state.orbit
-    answer, per_mesh = orbit.response, orbit.places // state.meshes
-    families = Families(answer.orders, state.meshes, per_mesh // 4)
+    answer = orbit.response
+    families = Families(answer.orders, state.meshes, orbit.resolved.order)
     inverses = families.inverses(state.structure.problem, answer, found)
     gains = answer.gain(found.along, found.along_angle, found.unknown, answer.orders.size)
 

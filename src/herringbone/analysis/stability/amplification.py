@@ -9,12 +9,13 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 1061-1081, section 3: recurrence equations of co-simulation; here the parts are the real ones.)
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
+from herringbone.analysis.stability.coordinates import Coordinates
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
 from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, linear_part
 from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
@@ -61,7 +62,6 @@ class Amplification:
         self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
-        self._counts = [len(part.state_changes) for part in self._parts]
         layout = algorithm.prepare(self.network).layout
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
@@ -69,12 +69,14 @@ class Amplification:
         self._base = np.zeros((HISTORY, self._outputs))
         get_all(layout, self._base, self._records, 0)
         self._base[1:] = self._base[0]
-        self._change = self._changes(layout.output_first, layout.output_reference)
+        signals = self._signal_changes(layout.output_first, layout.output_reference)
+        self._coordinates = Coordinates(self._parts, signals.size)
+        self._changes = np.concatenate([self._coordinates.changes, signals])
+        self._z_changes = np.concatenate([self._coordinates.z_changes, signals])
         self._used: np.ndarray | None = None
 
-    def _changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
-        """Difference of each entry of z."""
-        found = [change for part in self._parts for change in part.state_changes]
+    def _signal_changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
+        """Difference of each signal that an algorithm looks back to."""
         signals: list[float] = []
         for p, part in enumerate(self._parts):
             known = self.network.parts[p].variables.values()
@@ -83,7 +85,7 @@ class Amplification:
                 v = outputs[int(reference)]
                 change = CHANGE.get(v.unit or "", OTHER_CHANGE)
                 signals.append(part.output_change(v.name, change))
-        return np.array(found + signals * _ROWS)
+        return np.array(signals * _ROWS)
 
     def growth(self, step: float) -> Growth:
         """The fastest growing motion at a macro step [s], from the eigenvalues.
@@ -115,10 +117,11 @@ class Amplification:
         Raises:
             HerringboneError: a part fails at this step.
         """
-        if self._used is None:
-            everything = np.arange(self._change.size)
-            self._used = _coupled(self._differences(step, everything))
-        return self._differences(step, self._used)
+        with one_blas_thread():
+            if self._used is None:
+                everything = np.arange(self._z_changes.size)
+                self._used = _coupled(self._differences(step, everything))
+            return self._differences(step, self._used)
 
     @property
     def residual(self) -> float:
@@ -139,15 +142,22 @@ class Amplification:
         sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
         used = np.empty(0, int) if self._used is None else self._used
-        vector = vector / np.abs(vector / self._change[used]).max()
+        vector = vector / np.abs(vector / self._z_changes[used]).max()
         history = self._base.copy()
+        offset = self._changes.size - self._z_changes.size
         with self._prepared(step) as prepared:
             self._advance(prepared, step, history)
             self._advance(prepared, step, history)
-            base = history[0].copy()
+            base, steps = history[0].copy(), self._coordinates.steps()
             found = []
             for changes in (vector.real, vector.imag):
-                self._advance(prepared, step, history, dict(zip(used, changes, strict=True)))
+
+                def disturbed(changes: np.ndarray = changes) -> None:
+                    for entry, change in zip(used, changes, strict=True):
+                        if not self._coordinates.move(int(entry), change, steps):
+                            self._perturb(history, int(entry) + offset, change)
+
+                self._advance(prepared, step, history, disturbed)
                 found.append(history[0] - base)
         return np.split(found[0] + 1j * found[1], self._first[1:-1])
 
@@ -169,14 +179,13 @@ class Amplification:
         prepared: PreparedRun,
         step: float,
         history: np.ndarray,
-        changes: Mapping[int, float] | None = None,
+        disturbed: Callable[[], None] = lambda: None,
     ) -> np.ndarray:
-        """z after one macro step from the operating point, some of its entries changed."""
+        """Entries after one macro step from the operating point, which is disturbed before."""
         chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
         while True:
             self._restore(history)
-            for entry, change in (changes or {}).items():
-                self._perturb(history, int(entry), change)
+            disturbed()
             status, _, culprit = prepared.run(history, chunk)
             if status == DONE or not any([part.learn() for part in self._parts]):
                 break
@@ -187,23 +196,28 @@ class Amplification:
 
     def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
         history = self._base.copy()
-        matrix = np.empty((used.size, used.size))
         with self._prepared(step) as prepared:
             # An algorithm may build its correction in the first call.
             self._advance(prepared, step, history)
-            base = self._advance(prepared, step, history)[used]
+            base = self._advance(prepared, step, history)
+            steps = self._coordinates.steps()
+            entries = self._coordinates.entries(used, steps)
 
             def moved(entry: int, change: float) -> np.ndarray:
-                return self._advance(prepared, step, history, {entry: change})[used] - base
+                def disturbed() -> None:
+                    self._perturb(history, entry, change)
 
-            uneven = self._noise > 0.0 and _is_uneven(moved, used, self._change)
-            for column, entry in enumerate(used):
-                change = self._change[entry]
-                matrix[:, column] = moved(entry, change) / change
+                return self._advance(prepared, step, history, disturbed) - base
+
+            found = np.empty((base.size, entries.size))
+            uneven = self._noise > 0.0 and _is_uneven(moved, entries, self._changes)
+            for column, entry in enumerate(entries.tolist()):
+                change = self._changes[entry]
+                found[:, column] = moved(entry, change) / change
                 if uneven:
-                    matrix[:, column] -= moved(entry, -change) / change
-                    matrix[:, column] *= 0.5
-        return matrix
+                    found[:, column] -= moved(entry, -change) / change
+                    found[:, column] *= 0.5
+        return self._coordinates.matrix(found, entries, used, steps)
 
     def _restore(self, history: np.ndarray) -> None:
         history[:] = self._base
@@ -212,7 +226,7 @@ class Amplification:
 
     def _perturb(self, history: np.ndarray, entry: int, change: float) -> None:
         rest = entry
-        for part, count in zip(self._parts, self._counts, strict=True):
+        for part, count in zip(self._parts, self._coordinates.counts, strict=True):
             if rest < count:
                 part.values[rest] += change
                 return
@@ -220,21 +234,22 @@ class Amplification:
         history[rest // self._outputs, rest % self._outputs] += change
 
     def _vector(self, history: np.ndarray) -> np.ndarray:
-        states = [p.values[:count] for p, count in zip(self._parts, self._counts, strict=True)]
-        return np.concatenate([*states, history[:_ROWS].ravel()])
+        counts = self._coordinates.counts
+        entries = [p.values[:count] for p, count in zip(self._parts, counts, strict=True)]
+        return np.concatenate([*entries, history[:_ROWS].ravel()])
 
 
 def _is_uneven(
-    moved: Callable[[int, float], np.ndarray], used: np.ndarray, changes: np.ndarray
+    moved: Callable[[int, float], np.ndarray], entries: np.ndarray, changes: np.ndarray
 ) -> bool:
     """True if a change and its opposite do not answer alike, by an entry that looks back.
 
     An algorithm that corrects until little is left may take one correction less at rest than after
     any change: a difference that belongs to no column, and that differences to both sides cancel.
     """
-    if used.size == 0:
+    if entries.size == 0:
         return False
-    there, back = (moved(used[-1], sign * changes[used[-1]]) for sign in (1.0, -1.0))
+    there, back = (moved(int(entries[-1]), sign * changes[entries[-1]]) for sign in (1.0, -1.0))
     return bool(np.linalg.norm(there + back) > _EVEN * np.linalg.norm(there))
 
 

@@ -5,12 +5,17 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.marched import March, marched
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
+LONG = 200
+"""Meshes of a period of which lines alone are looked at."""
+_TURNS, _SETTLED = 3.0, 0.7
+"""Of the slowest shaft that are marched, and the share of them that is looked at."""
 _SLOW, _THIN, _SAME = 6, 1e-3, 1e-2
 """Of slow motion: points in time for each mesh, alternation that is not in use, last change."""
 SETTLING = 0.3
@@ -61,6 +66,23 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
     slow = Balance(structure.problem, Period(0, places, meshes, _THIN), motion)
     found = slow.solve(rough, np.arange(rough.shape[1]), _SAME)
     return Guess(found.channels[:values], found.response.orders, per_mesh)
+
+
+def begun_shortly(
+    structure: Structure, motion: Motion, still: Orbit, per_mesh: int
+) -> Guess | None:
+    """The same of a long period, by the lines of a march over few turns; None without turns."""
+    meshes = structure.meshes
+    slow = [base for base in structure.bases if base < meshes]
+    periods = _TURNS / min(slow, default=1)
+    if meshes < LONG or periods >= 1.0 or not _can_be_marched(still):
+        return None
+    lines = lines_between(structure.bases, meshes, 0, 1, meshes)
+    try:
+        march = marched(structure, motion, still, periods, _SLOW * meshes, kept=_SETTLED * periods)
+    except HerringboneError:
+        return None
+    return None if lines is None else Guess(march.lines(lines), lines, per_mesh)
 
 
 def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:

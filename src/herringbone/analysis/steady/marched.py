@@ -81,6 +81,16 @@ class March(NamedTuple):
         turning = np.arange(size // 2) * self.frequency / periods
         return found * np.exp(-1j * turning * begun)
 
+    def lines(self, orders: np.ndarray) -> np.ndarray:
+        """Coefficients (values, orders) of the period, ascending from 0, by least squares."""
+        step = 2.0 * np.pi / (self.places * self.frequency)
+        since = self.turned / self.speed + np.arange(self.values.shape[1]) * step
+        turning = np.exp(1j * np.outer(since, orders[1:]) * self.frequency)
+        known = np.hstack([np.ones((since.size, 1)), 2.0 * turning.real, -2.0 * turning.imag])
+        found = np.linalg.lstsq(known, self.values.T, rcond=None)[0].T
+        count = orders.size
+        return found[:, :count] + 1j * np.pad(found[:, count:], ((0, 0), (1, 0)))
+
     def change(self, periods: int) -> float:
         """How far the last period is from the one some periods before, over its alternation."""
         size = self.values.shape[1]
@@ -106,7 +116,12 @@ class March(NamedTuple):
 
 
 def marched(
-    structure: Structure, motion: Motion, begin: Orbit, periods: int, places: int, kept: int = 1
+    structure: Structure,
+    motion: Motion,
+    begin: Orbit,
+    periods: float,
+    places: int,
+    kept: float = 1.0,
 ) -> March:
     """March for a while.
 
@@ -130,8 +145,9 @@ def marched(
     run.state.q[: own.size] = own
     gap = begin.period / places
     step = gap / np.ceil(gap / _LONGEST)
-    times = structure.late + (np.arange(kept * places) + (periods - kept) * places) * gap
-    end = structure.late + periods * places * gap
+    count, last = round(kept * places), round(periods * places)
+    times = structure.late + (np.arange(count) + last - count) * gap
+    end = structure.late + last * gap
     found: list[np.ndarray] = []
     angle = 0.0
     for part in run.piece(structure.late, end, step, times):

@@ -9,7 +9,7 @@ from herringbone.analysis.steady.harmonic_balance.problem import Problem, Sample
 from herringbone.analysis.twin.condensed.along import laws_along
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.system import Condensed
-from herringbone.core import StructureError, common_period
+from herringbone.core import StructureError
 
 _NONE = 1e-9
 """Turn of an argument, over the largest one, that is rounding."""
@@ -90,8 +90,8 @@ def _means(tangent: np.ndarray, directions: np.ndarray) -> np.ndarray:
     return (tangent * directions).sum(axis=1) / (directions * directions).sum(axis=1)
 
 
-def turn_of(system: Condensed, of_angle: np.ndarray) -> Fraction:
-    """Turns of the reference after which all laws repeat.
+def turns_of(system: Condensed, of_angle: np.ndarray) -> tuple[Fraction, ...]:
+    """Turns of the reference after which all that laws see of angles repeats, one by one.
 
     Raises:
         StructureError: the turns of two laws have no common multiple, or none depends on an angle.
@@ -102,7 +102,7 @@ def turn_of(system: Condensed, of_angle: np.ndarray) -> Fraction:
             f"{system.twin.system.name}: nothing in it depends on an angle, so that its steady "
             "state does not vibrate"
         )
-    return common_period(found)
+    return tuple(found)
 
 
 def _turns(system: Condensed, of_angle: np.ndarray) -> Iterator[Fraction]:

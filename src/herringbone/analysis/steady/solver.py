@@ -11,6 +11,7 @@ from herringbone.analysis.steady.guess import (
     SETTLING,
     Guess,
     begun,
+    begun_shortly,
     motion_at,
     settling,
     several,
@@ -19,7 +20,8 @@ from herringbone.analysis.steady.guess import (
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
-from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.resolution import MOST_PLACES, first
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
@@ -30,12 +32,8 @@ from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3
 AS_IT_IS = Point()
-_PLACES, _MOST_PLACES = 64, 2048
-"""Points in time of a mesh period: at first, and at most."""
-_THIN = 0.05
-"""Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
-at first, of many meshes."""
-_THINNER = 0.3
+_PLACES = 64
+"""Points in time of a mesh period, at first."""
 _TRIED, _REPEATS = 2, 0.1
 """Of a march: how many periods of repetition are tried; a change over the alternation that is none.
 """
@@ -164,28 +162,27 @@ class SteadySolver:
         """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
         if near is not None and near.meshes % structure.meshes == 0:
             values = near.orbit.channels[: structure.problem.values]
-            guess = Guess(values, near.orbit.response.orders, near.orbit.places // near.meshes)
+            guess = Guess(values, near.orbit.response.orders, near.orbit.resolved.per_mesh)
             yield near.meshes // structure.meshes, guess
-        yield 1, begun(structure, motion, standing(structure, motion), _PLACES)
+        still = standing(structure, motion)
+        if shortly := begun_shortly(structure, motion, still, _PLACES):
+            yield 1, shortly
+        yield 1, begun(structure, motion, still, _PLACES)
 
     def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
         """A motion over some periods with as many harmonics as the tolerance needs."""
-        meshes, problem = times * structure.meshes, structure.problem
-        per_mesh, thin = guess.per_mesh, _THIN * self.tolerance
+        problem, resolution = structure.problem, first(guess.per_mesh, self.tolerance)
         start, known = guess.values, guess.orders
         while True:
-            period = Period(per_mesh // 4, meshes * per_mesh, meshes, thin)
+            period = resolution.period(structure, times)
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
             if not orbit.converged:
-                return Found(motion, orbit, Accuracy({}, {}, {}))
+                return Found(motion, orbit, Accuracy({}, {}, {}, {}))
             errors = accuracy(structure, period, motion, orbit)
-            if errors.worst <= self.tolerance or per_mesh >= _MOST_PLACES:
+            if errors.worst <= self.tolerance or resolution.per_mesh >= MOST_PLACES:
                 return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
-            if errors.by_thinning:
-                thin *= _THINNER * self.tolerance / errors.worst
-            else:
-                per_mesh *= 2
+            resolution = resolution.finer(errors, self.tolerance)
 
 
 def _grows(unstable: Found | None) -> tuple[str, ...]:

@@ -109,7 +109,7 @@ class SteadyState(PeriodicMotion):
         Takes some ten milliseconds for each mesh of the period.
         """
         per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
-        steps = max(per_mesh, self.orbit.places // self.meshes // 2) * self.meshes
+        steps = max(per_mesh, self.orbit.resolved.per_mesh // 2) * self.meshes
         with one_blas_thread():
             return multipliers(self.structure.problem, self.motion, self.orbit, steps)
 

@@ -9,12 +9,12 @@ import numpy as np
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
-from herringbone.analysis.steady.of_system import problem_of, turn_of
+from herringbone.analysis.steady.of_system import problem_of, turns_of
 from herringbone.analysis.steady.set_points import SetPoints
 from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
-from herringbone.core import StructureError
+from herringbone.core import StructureError, common_period
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
 from herringbone.cosim.structure.system import System
 
@@ -37,6 +37,7 @@ class Structure:
         problem: linear part and laws.
         late: time [s] after which no set point changes.
         turn: angle of the reference shaft over a period [rad].
+        bases: orders, in a period, of what turns and of the meshes.
         meshes: periods of the first gear pair's mesh in a period.
         points: what speed and torque stand for.
 
@@ -58,7 +59,9 @@ class Structure:
         condensed, twin = self.core.condensed, self.core.twin
         self.late = twin.settled
         self.problem: Problem = problem_of(condensed, self.late)
-        turns = turn_of(condensed, self.problem.of_angle)
+        every = turns_of(condensed, self.problem.of_angle)
+        turns = common_period(every)
+        self.bases = tuple(sorted({int(turns / each) for each in every}))
         self.turn = 2.0 * np.pi * float(turns)
         self.points = SetPoints(system)
         self.pinion = self._pinion()

@@ -66,7 +66,7 @@ def gear(
     written = [str(path) for path in _write(stiffness, loaded, folder, file.stem)]
     if as_json:
         return json.dumps({**gear_figures(job, stiffness, loaded), "files": written})
-    notes = [f"note: {note}" for note in backlash_notes(job)]
+    notes = [f"note: {note}" for note in (*job.unread, *backlash_notes(job))]
     lines = [gear_tables(job, stiffness, loaded), "", *notes, f"Files: {', '.join(written)}"]
     if job.pair.halves == 2:
         lines.append(f"In a gearbox: herringbone run SYSTEM --gear {file}")

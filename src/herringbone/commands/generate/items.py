@@ -35,7 +35,8 @@ class Item(NamedTuple):
 
 
 def _chart(scene: str) -> str:
-    return f"-m herringbone chart test_rig --scene {scene} --t-end 0.02 -o {{out}}/{scene}"
+    options = "--t-end 0.02 --fuse --tolerances 1e-2 1e-3 1e-4"
+    return f"-m herringbone chart test_rig --scene {scene} {options} -o {{out}}/{scene}"
 
 
 _SCENES = ("loaded", "separation")

@@ -32,7 +32,6 @@ from herringbone.core import (
     Declaration,
     Kernels,
     Laws,
-    common_period,
     input_,
     output,
     parameter,
@@ -209,7 +208,7 @@ def _periods(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
     rows = range(_FIRST, _FIRST + _ROW * ORDERS, _ROW)
     orders = [block[row] for row in rows if block[row] > 0.0 and block[row + 1] > 0.0]
     turns = [1 / Fraction(float(order)).limit_denominator(_FINEST) for order in orders]
-    return ((0, common_period(turns)),) if turns else ()
+    return tuple((0, turn) for turn in turns)
 
 
 def _settle(block: np.ndarray) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.contact import derive, meshes
-from herringbone.components.gear_mesh.period import period, settle
+from herringbone.components.gear_mesh.period import settle, turns
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Laws
 from herringbone.core.declaring.roles import GEARS
@@ -148,7 +148,7 @@ def _mean(block: np.ndarray) -> np.ndarray:
 
 
 def _periods(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
-    return ((_TURN, period(block)),)
+    return tuple((_TURN, turn) for turn in turns(block))
 
 
 def _refusal(block: np.ndarray) -> str:

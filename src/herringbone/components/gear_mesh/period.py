@@ -12,16 +12,17 @@ import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.resources import tooth_deviations, transmission_error
-from herringbone.core import common_period
 
 
-def period(block: np.ndarray) -> Fraction:
-    """Turns of the pinion, of a settled block."""
+def turns(block: np.ndarray) -> tuple[Fraction, ...]:
+    """Turns of the pinion after which the contact, and what moves with each gear, repeats.
+
+    Of a settled block; the contact of perfect gears is first.
+    """
     teeth = [round(float(block[i])) for i in at.TEETH]
-    turns = (Fraction(1), Fraction(teeth[1], teeth[0]))
+    once = (Fraction(1), Fraction(teeth[1], teeth[0]))
     moved = {*_run_outs(block), *_errors(block), *_deviations(block)}
-    own = [turns[gear] / order for gear, order in sorted(moved)]
-    return common_period([Fraction(1, teeth[0]), *own])
+    return (Fraction(1, teeth[0]), *(once[gear] / order for gear, order in sorted(moved)))
 
 
 def settle(block: np.ndarray) -> None:

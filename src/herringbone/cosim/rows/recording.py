@@ -81,6 +81,8 @@ class Recording:
         passes: doStep calls by instance.
         rollbacks: state restores.
         wall_seconds: wall time of the loop, without compilation and the first Jacobian.
+        cpu_seconds: CPU time of its thread since it began or went on; what child processes of
+            foreign FMUs take is not in it.
         notes: downgrades and other lines that the user should read.
         steps: of an adaptive run, the lengths of its macro steps.
         energy: what the coupling added; None where no element has dampers.
@@ -102,6 +104,7 @@ class Recording:
     passes: dict[str, int]
     rollbacks: int
     wall_seconds: float
+    cpu_seconds: float
     notes: tuple[str, ...]
     steps: StepStatistics | None = None
     energy: EnergyReport | None = None

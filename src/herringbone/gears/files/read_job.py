@@ -5,7 +5,7 @@ from pathlib import Path
 from herringbone.core import ParameterError
 from herringbone.core.places.files import is_file
 from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.gears.files.rexs import STAGE_MARK, read_rexs
+from herringbone.gears.files.rexs import STAGE_MARK, read_rexs_job
 from herringbone.gears.job import GearJob
 
 _READERS = (".toml", ".rexs", ".xml")
@@ -28,7 +28,7 @@ def read_job(file: Path, *, stage: str | None = None, halves: int | None = None)
     if suffix not in _READERS:
         raise ParameterError(f"{file}: a gear file ends with one of {', '.join(_READERS)}")
     if suffix != ".toml":
-        return GearJob(read_rexs(file, stage=stage, halves=1 if halves is None else halves))
+        return read_rexs_job(file, stage=stage, halves=1 if halves is None else halves)
     for option, value in (("stage", stage), ("halves", halves)):
         if value is not None:
             raise ParameterError(f"{file}: --{option} is of REXS files only")

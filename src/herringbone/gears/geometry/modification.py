@@ -26,7 +26,7 @@ class Modification:
     helix_crowning: float = 0.0
 
     def __post_init__(self) -> None:
-        relief = tuple(float(amount) for amount in self.tip_relief)
+        relief = tuple(float(amount) for amount in np.atleast_1d(self.tip_relief))
         if len(relief) != 2 or min(relief) < 0.0:
             raise ParameterError(
                 f"tip relief {self.tip_relief} m must be two amounts (pinion, wheel), not negative"

@@ -202,7 +202,8 @@ def waterfall(points: Points, group: str | None = None) -> Figure:
     """Mesh orders of steady states over speed and frequency, as coloured squares.
 
     Args:
-        points: of a study over speed.
+        points: of a study over speed; of several points at a speed the largest amplitudes are
+            seen, and the title says so.
         group: that is shown; the first one if not given.
 
     Raises:
@@ -213,7 +214,9 @@ def waterfall(points: Points, group: str | None = None) -> Figure:
     orders = points.orders(shown)
     if MESH not in points.table or not orders:
         raise ParameterError(f"the table has no mesh frequency or no mesh orders of '{shown}'")
-    figure = new_figure(f"Mesh orders of {shown}{points.told_lost}: {points.title}", 1, width=10.0)
+    most = points.told_largest(across)
+    title = f"Mesh orders of {shown}{most}{points.told_lost}: {points.title}"
+    figure = new_figure(title, 1, width=10.0)
     figure.set_figheight(6.5)
     axes = figure.subplots()
     rows = list(_cells(points, shown, across, orders))

@@ -41,7 +41,7 @@ def level_map(
     if not columns:
         raise ParameterError("the table has no levels: there is no column that ends in .rms")
     cells = points.table.groupby([up, across], dropna=False)
-    most = ", largest of the further parameters" if (cells.size() > 1).any() else ""
+    most = points.told_largest(up, across)
     title = f"Levels over {across} and {up}{most}{points.told_lost}: {points.title}"
     figure = new_figure(title, 1, len(columns), width=7.0 * len(columns), gap=1.2)
     figure.set_figheight(5.5)

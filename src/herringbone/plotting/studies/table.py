@@ -125,6 +125,11 @@ class Points:
         factor, unit = self.scale(column)
         return f"{factor * float(value):g} {'' if unit == '1' else unit}".rstrip()
 
+    def told_largest(self, *shown: str) -> str:
+        """For titles of pictures that show the largest of points alike in the columns shown."""
+        several = (self.table.groupby(list(shown), dropna=False).size() > 1).any()
+        return ", largest of the further parameters" if several else ""
+
     @property
     def lost(self) -> pd.DataFrame:
         """Points without figures."""

@@ -41,6 +41,7 @@ def fused_points(
                 grid.step,
                 1e-3 * evaluations / reached if reached else math.nan,
                 min(run.wall_seconds for run in runs),
+                min(run.cpu_seconds for run in runs),
                 reached,
                 reference.errors(recording),
                 str(recording.outcome.kind),

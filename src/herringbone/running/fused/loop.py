@@ -49,7 +49,7 @@ class FusedRun:
         else:
             table = TableColumns(tuple(columns), self._units, {}, {})
             streaming.sink.begin(table, grid.count + 1)
-        self._done, self._wall = 0, 0.0
+        self._done, self._wall, self._cpu = 0, 0.0, 0.0
 
     def go(self, progress: Progress | None) -> Recording:
         """Portion after portion."""
@@ -59,6 +59,7 @@ class FusedRun:
             course.put(saved)
             self._done, self._wall = int(saved["rows"]), float(saved["wall"])
         begin = taken = flushed = time.perf_counter()
+        worked = time.thread_time()
         before = self._wall
         with InterruptFlag() as flag:
             while not course.ended and not flag.raised and stopped is None:
@@ -76,6 +77,7 @@ class FusedRun:
                     taken = now
                 if progress:
                     progress(float(self._times[max(course.row - 1, 0)]), float(self._times[-1]))
+        self._cpu = time.thread_time() - worked
         self._flush()
         if not course.ended and stopped is None:
             self._checkpoint()
@@ -140,6 +142,7 @@ class FusedRun:
             {},
             counts["halvings"],
             self._wall,
+            self._cpu,
             (),
             core=CoreStatistics(steps.degree, length, **counts),
         )

@@ -99,7 +99,7 @@ def start_of(
     outcome = Outcome(OutcomeKind.INTERRUPTED, 0.0)
     nothing = Recording(
         np.empty(0), np.empty((0, 0)), (), (), outcome, grid.step, grid.every * grid.step, 0, {}, 0,
-        0.0, (),
+        0.0, 0.0, (),
     )  # fmt: skip
     return make_result(system, scene, algorithm, fmu, nothing, notes)
 

@@ -27,11 +27,13 @@ class Accuracy(NamedTuple):
         left_out: of what places twice as dense would add.
         thinned: the part of it that harmonics give which the places tell apart, but which are not
             in use.
+        aside: the part of it that lines farther aside give, of a period of lines alone.
         change: of the last correction of the iteration, whose square is about what is left.
     """
 
     left_out: Mapping[str, float]
     thinned: Mapping[str, float]
+    aside: Mapping[str, float]
     change: Mapping[str, float]
 
     @property
@@ -42,26 +44,36 @@ class Accuracy(NamedTuple):
     @property
     def by_thinning(self) -> bool:
         """True if harmonics that are not in use are most of the largest error."""
+        return self._mostly(self.thinned)
+
+    @property
+    def by_sides(self) -> bool:
+        """True if lines farther aside are most of the largest error."""
+        return self._mostly(self.aside)
+
+    def _mostly(self, part: Mapping[str, float]) -> bool:
         largest = max(self.left_out, key=self.left_out.__getitem__, default="")
-        return bool(largest) and self.thinned[largest] > _MOST * self.left_out[largest]
+        return bool(largest) and part[largest] > _MOST * self.left_out[largest]
 
 
 def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit) -> Accuracy:
     """Errors of a motion that was found with a period's resolution."""
     groups, rows = structure.groups
-    twice = period._replace(places=2 * period.places, thin=_THINNER * period.thin)
-    finer = Balance(structure.problem, twice, motion)
-    response, missing = finer.missing(orbit)
+    twice = period.doubled._replace(thin=_THINNER * period.thin)
+    response, missing, outside = Balance(structure.problem, twice, motion).missing(orbit)
     values = orbit.response.outputs(rows, orbit.q, orbit.channels)
     lacking = response.outputs(rows, response.coordinates(missing), missing)
     moved = orbit.response.outputs(rows, orbit.moved, orbit.step)
     apart = ~np.isin(response.orders, orbit.response.orders)
-    apart &= response.orders < period.places // 2
-    left_out, thinned, change = {}, {}, {}
+    apart &= period.told_apart(response.orders)
+    aside = response.orders < period.per_mesh // 2 * period.meshes
+    aside &= ~period.told_apart(response.orders)
+    left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
         alternating = float(np.linalg.norm(values[own, 1:]))
         if alternating > _NOTHING * np.abs(values[own, 0]).max(initial=0.0):
-            left_out[group] = float(np.linalg.norm(lacking[own, 1:])) / alternating
+            left_out[group] = float(np.linalg.norm(lacking[own, 1:])) / alternating + outside
             thinned[group] = float(np.linalg.norm(lacking[own][:, apart])) / alternating
+            besides[group] = float(np.linalg.norm(lacking[own][:, aside])) / alternating + outside
             change[group] = float(np.linalg.norm(moved[own, 1:])) / alternating
-    return Accuracy(left_out, thinned, change)
+    return Accuracy(left_out, thinned, besides, change)

@@ -46,6 +46,20 @@ class _Answered(NamedTuple):
     z: np.ndarray
 
 
+class Missing(NamedTuple):
+    """What a motion lacks.
+
+    Attributes:
+        response: of the linear part.
+        channels: (channels, harmonics).
+        outside: share of the values' alternation that is at none of the lines of the period.
+    """
+
+    response: Response
+    channels: np.ndarray
+    outside: float
+
+
 class Balance:
     """Harmonic balance of a problem with one resolution of the period.
 
@@ -58,8 +72,7 @@ class Balance:
     def __init__(self, problem: Problem, period: Period, motion: Motion) -> None:
         self.problem, self.period, self.motion = problem, period, motion
         self._share = np.arange(period.places) / period.places
-        highest = period.places // 2 - 1 if period.order else period.meshes // 2
-        self._every = np.arange(highest + 1)
+        self._every = period.lines
 
     def _channels(self, orders: np.ndarray, values: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Channels (channels, harmonics) from values (values, harmonics) of known orders."""
@@ -104,7 +117,7 @@ class Balance:
         speed = self._first_speed(self._channels(orders[:1], values[:, :1], known[:1]))
         if self.period.meshes > 1:
             used = self._in_use(self._response(speed, orders[:1]), values, known)
-            orders = used[used < orders.size]
+            orders = np.intersect1d(used, orders)
         channels = self._channels(orders, values, known)
         return self._answered(self._response(speed, orders), channels)
 
@@ -148,6 +161,7 @@ class Balance:
         return Orbit(
             now.channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples,
             change, merit, iterations, change <= close or merit <= _ROUNDING,
+            self.period,
         )  # fmt: skip
 
     def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
@@ -165,7 +179,7 @@ class Balance:
         still = _less(now.q, now.q)
         return Orbit(
             channels, now.response, now.q, still, nothing, now.angle, samples, 0.0,
-            self._size(samples, off, self._every), 1, converged=False,
+            self._size(samples, off, self._every), 1, converged=False, resolved=self.period,
         ), off  # fmt: skip
 
     def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:
@@ -174,9 +188,13 @@ class Balance:
         channels[: len(step)] += step
         return self._answered(now.response, channels)
 
+    def _rest(self, samples: Samples) -> np.ndarray:
+        """Laws' values less mean tangents (values, places)."""
+        return (samples.f - samples.z @ self.problem.tangent.T).T
+
     def _with_orders(self, now: _Answered, samples: Samples) -> tuple[_Answered, np.ndarray]:
         """The motion on all orders that are in use, and the laws' values there."""
-        rest = (samples.f - samples.z @ self.problem.tangent.T).T
+        rest = self._rest(samples)
         if self.period.meshes == 1:
             return now, in_frequency(rest, self._every)
         every = in_frequency(rest, self._every)
@@ -186,17 +204,14 @@ class Balance:
             own = now.channels[: self.problem.values]
             channels = self._channels(wanted, own, now.response.orders)
             now = self._answered(self._response(now.response.speed, wanted), channels)
-        return now, every[:, wanted]
+        return now, every[:, np.searchsorted(self._every, wanted)]
 
     def _in_use(self, answer: Response, values: np.ndarray, orders: np.ndarray) -> np.ndarray:
         """Orders without which the values (values, harmonics) lose a share of their alternation.
 
         Values count by what they move the stiff arguments by, at the mesh frequency.
         """
-        problem = self.problem
-        mesh = answer.at(np.array([0, self.period.meshes]))
-        gains = mesh.gain(problem.along, problem.along_angle, np.arange(len(values)), 2)[:, :, 1]
-        weights = np.abs(problem.mean[:, None] * gains).sum(axis=0)
+        weights = self._weights(answer, len(values))
         energy = ((weights[:, None] * np.abs(values)) ** 2).sum(axis=0)
         energy[0] = 0.0
         ascending = np.argsort(energy)
@@ -206,18 +221,34 @@ class Balance:
         used[0] = True
         return orders[used]
 
-    def missing(self, orbit: Orbit) -> tuple[Response, np.ndarray]:
-        """What the laws give at these places, and an orbit at fewer of them lacks.
+    def _weights(self, answer: Response, count: int) -> np.ndarray:
+        """(count,) what values move the stiff arguments by, at the mesh frequency."""
+        problem = self.problem
+        mesh = answer.at(np.array([0, self.period.meshes]))
+        gains = mesh.gain(problem.along, problem.along_angle, np.arange(count), 2)[:, :, 1]
+        return np.abs(problem.mean[:, None] * gains).sum(axis=0)
 
-        Returns:
-            The linear part, and channels (channels, harmonics).
-        """
+    def missing(self, orbit: Orbit) -> Missing:
+        """What the laws give at these places, and an orbit at fewer of them lacks."""
         now = self._begun(orbit.channels[: self.problem.values], orbit.response.orders)
         samples = self.problem.laws(self._arguments(now))
+        outside = self._outside(now.response, samples)
         now, laws = self._with_orders(now, samples)
         found = np.zeros_like(now.channels)
         found[: len(laws)] = laws - now.channels[: len(laws)]
-        return now.response, found
+        return Missing(now.response, found, outside)
+
+    def _outside(self, answer: Response, samples: Samples) -> float:
+        """Share of the values' alternation that is at none of the lines."""
+        if not self.period.bases:
+            return 0.0
+        rest = self._rest(samples)
+        lines = in_frequency(rest, self._every)[:, 1:]
+        every = rest.var(axis=1)
+        other = np.maximum(every - 2.0 * (np.abs(lines) ** 2).sum(axis=1), 0.0)
+        weights = self._weights(answer, len(rest)) ** 2
+        whole = float(weights @ every)
+        return float(np.sqrt(weights @ other / whole)) if whole else 0.0
 
     def _arguments(self, now: _Answered) -> np.ndarray:
         """Arguments (places, arguments) in time."""

@@ -62,7 +62,7 @@ class Families:
         )[:, :, place.reshape(orders.shape)]
         gains = np.where(orders < 0, gains.conj(), gains)
         lags = np.arange(2 * self._size - 1) * self._meshes
-        lags = lags[lags <= found.bends.shape[0] // 2]
+        lags = lags[lags <= 2 * self._order * self._meshes]
         products = np.zeros((found.owner.size, 2 * self._size - 1), dtype=complex)
         products[:, : lags.size] = in_frequency(found.bends.T, lags)
         lag = k[:, None] - k[None, :]

@@ -4,7 +4,15 @@ import numpy as np
 
 
 def in_time(coefficients: np.ndarray, orders: np.ndarray, places: int) -> np.ndarray:
-    """Values (n, places) of signals of coefficients (n, harmonics) of ascending orders."""
+    """Values (n, places) of signals of coefficients (n, harmonics) of ascending orders.
+
+    Fewer places than the orders need take them for lower ones; see `lattice`.
+    """
+    if orders[-1] > places // 2:
+        found, back = _taken_for(orders, places)
+        lower = np.zeros((len(coefficients), places // 2 + 1), dtype=complex)
+        lower[:, found] = np.where(back, coefficients.conj(), coefficients)
+        return np.fft.irfft(lower * places, places, axis=1)
     if orders.size <= orders[-1]:
         every = np.zeros((len(coefficients), orders[-1] + 1), dtype=complex)
         every[:, orders] = coefficients
@@ -15,8 +23,19 @@ def in_time(coefficients: np.ndarray, orders: np.ndarray, places: int) -> np.nda
 def in_frequency(values: np.ndarray, orders: np.ndarray) -> np.ndarray:
     """Coefficients (n, harmonics), of some orders, of values (n, places)."""
     found = np.fft.rfft(values, axis=1)
+    if orders[-1] > values.shape[1] // 2:
+        taken, back = _taken_for(orders, values.shape[1])
+        found = found[:, taken]
+        return np.where(back, found.conj(), found) / values.shape[1]
     found = found[:, : orders[-1] + 1] if orders.size > orders[-1] else found[:, orders]
     return found / values.shape[1]
+
+
+def _taken_for(orders: np.ndarray, places: int) -> tuple[np.ndarray, np.ndarray]:
+    """The orders as which places see others, and which of them as conjugates."""
+    rest = orders % places
+    back = rest > places // 2
+    return np.where(back, places - rest, rest), back
 
 
 def on(orders: np.ndarray, coefficients: np.ndarray, known: np.ndarray) -> np.ndarray:

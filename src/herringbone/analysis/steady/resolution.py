@@ -1,0 +1,52 @@
+"""How finely a period is looked at, and what is made finer if that was not enough."""
+
+from typing import NamedTuple
+
+from herringbone.analysis.steady.guess import LONG
+from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
+from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.structure import Structure
+
+MOST_PLACES = 2048
+"""Points in time of a mesh period, at most."""
+_THIN = 0.05
+"""Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
+at first, of many meshes."""
+_THINNER = 0.3
+SIDES = 3
+"""How far aside lines are looked for in long periods, at first."""
+
+
+class Resolution(NamedTuple):
+    """How finely a period is looked at.
+
+    Attributes:
+        per_mesh: points in time of a mesh period.
+        thin: of many meshes, alternating part that harmonics may have that are not in use.
+        sides: how far aside lines are looked for in long periods.
+    """
+
+    per_mesh: int
+    thin: float
+    sides: int
+
+    def period(self, structure: Structure, times: int) -> Period:
+        """Of so many periods of a structure."""
+        meshes = times * structure.meshes
+        found = Period(self.per_mesh // 4, meshes * self.per_mesh, meshes, self.thin)
+        if times > 1 or meshes < LONG:
+            return found
+        return found.thinned_to_lines(structure.bases, self.sides) or found
+
+    def finer(self, errors: Accuracy, tolerance: float) -> "Resolution":
+        """What makes the largest part of the errors smaller."""
+        if errors.by_thinning:
+            return self._replace(thin=self.thin * _THINNER * tolerance / errors.worst)
+        if errors.by_sides:
+            return self._replace(sides=2 * self.sides)
+        return self._replace(per_mesh=2 * self.per_mesh)
+
+
+def first(per_mesh: int, tolerance: float) -> Resolution:
+    """As coarse as may do for a tolerance."""
+    return Resolution(per_mesh, _THIN * tolerance, SIDES)
