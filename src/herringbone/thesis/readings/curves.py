@@ -96,8 +96,8 @@ def _resonance() -> Finding:
         "Hz",
         f"is a natural frequency of the rig, which mesh harmonic {order} meets at {last:.0f} r/min "
         f"({order * teeth * last / 60.0:.0f} Hz) by {distance:.1f} of half its bandwidth",
-        f"So does one of {_ORDERS} mesh harmonics at {met:.0f} % of the speeds of the curve: it does "
-        "not set this speed apart.",
+        f"So does one of {_ORDERS} mesh harmonics at {met:.0f} % of the speeds of the curve: it "
+        "does not set this speed apart.",
     )
 
 
