@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 from herringbone.commands.options import (
     add_replacements,
     add_start_values,
-    files_of_parts,
+    given_by,
     replacements,
-    start_values,
 )
 from herringbone.commands.output import say
 
@@ -62,16 +61,10 @@ def _wishes(options: argparse.Namespace) -> "Wishes | None":
     """Other parts and values of the rig; None if there are none."""
     from herringbone.running.prepared import Wishes  # noqa: PLC0415
 
-    files, values, parts = files_of_parts(options), start_values(options.set), replacements(options)
-    if not (files.gear or files.housing or values or parts):
+    own, parts = given_by(options), replacements(options)
+    if not (any(own.values()) or parts):
         return None
-    return Wishes(
-        values=values,
-        gear=files.gear,
-        housing=files.housing,
-        replace_parts=parts,
-        start_offset={},
-    )
+    return Wishes(**own, replace_parts=parts, start_offset={})
 
 
 def _macro_step(wishes: "Wishes | None") -> tuple[str, dict[str, Any]]:

@@ -25,7 +25,7 @@ from herringbone.commands.options import (
     add_replacements,
     add_scene,
     add_start_values,
-    files_of_parts,
+    given_by,
     replacements,
     start_values,
 )
@@ -169,7 +169,6 @@ def _chart(options: argparse.Namespace) -> int:
     check_writable(options.output or Path("results"))
     given = {"algorithms": options.algorithm, **vars(options)}
     given = {name: given[name] for name in ("algorithms", "steps", "tolerances", "t_end")}
-    files = files_of_parts(options)
     text, outcome = chart(
         options.system,
         options.output,
@@ -177,9 +176,7 @@ def _chart(options: argparse.Namespace) -> int:
         scene=options.scene,
         fmu=options.fmu,
         fuse=options.fuse,
-        values=start_values(options.set),
-        gear=files.gear,
-        housing=files.housing,
+        **given_by(options),
         replace_parts=replacements(options),
         **{name: value for name, value in given.items() if value is not None},
     )

@@ -4,7 +4,7 @@ import argparse
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, TypedDict
 
 from herringbone.core import ParameterError
 
@@ -157,11 +157,26 @@ def _number(text: str) -> float:
         return value
 
 
-class PartFiles(NamedTuple):
+class PartFiles(TypedDict):
     """Files of gear pairs and housings by path of their part; "": of the only one."""
 
     gear: dict[str, Path]
     housing: dict[str, Path]
+
+
+class Given(PartFiles):
+    """What `add_start_values` declares, as whatever takes a system takes it."""
+
+    values: dict[str, float | str]
+
+
+def given_by(options: argparse.Namespace) -> Given:
+    """What --set, --gear and --housing give.
+
+    Raises:
+        ParameterError: an item is no assignment, or there are two for the same part.
+    """
+    return Given(values=start_values(options.set), **files_of_parts(options))
 
 
 def files_of_parts(options: argparse.Namespace) -> PartFiles:
@@ -170,9 +185,8 @@ def files_of_parts(options: argparse.Namespace) -> PartFiles:
     Raises:
         ParameterError: two for the same part.
     """
-    found: dict[str, dict[str, Path]] = {}
-    for name in ("gear", "housing"):
-        files: dict[str, Path] = {}
+    found = PartFiles(gear={}, housing={})
+    for name, files in (("gear", found["gear"]), ("housing", found["housing"])):
         for item in getattr(options, name):
             path, equals, file = item.partition("=")
             path, file = (path, file) if equals and not Path(item).exists() else ("", item)
@@ -182,8 +196,7 @@ def files_of_parts(options: argparse.Namespace) -> PartFiles:
                     f"--{name} {item}: it is given twice {where}; write PATH=FILE, each PATH once"
                 )
             files[path] = Path(file)
-        found[name] = files
-    return PartFiles(**found)
+    return found
 
 
 def assignments(items: Sequence[str], option: str, form: str) -> dict[str, str]:

@@ -54,13 +54,11 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
-    given = files_of_parts(options)
     wishes = Wishes(
         values=values,
         start=Start.EQUILIBRIUM,
         start_offset={},
-        gear=given.gear,
-        housing=given.housing,
+        **files_of_parts(options),
         replace_parts=replacements(options),
     )
     structure, scene, notes = prepared(options.system, options.scene, wishes)

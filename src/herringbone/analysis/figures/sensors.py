@@ -7,20 +7,20 @@ distance of samples are interpolated by cubic splines.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from weakref import ref
-from zlib import crc32
 
 import numpy as np
 
+from herringbone.analysis.asked import signal
 from herringbone.analysis.figures.modal_response import housing_of, modal_velocity, seat_forces
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
+from herringbone.analysis.figures.remembered_figures import figure_of
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, spectral_lines
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 from herringbone.components.registry import component_for
 from herringbone.core import ParameterError
-from herringbone.core.declaring.roles import Role
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.sensor_spec import SensorSpec
 from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing
@@ -121,33 +121,28 @@ def sensor_figures(
 
 
 _Found = tuple[dict[str, SensorFigures], dict[str, str]]
-_last: list[tuple[ref, tuple, tuple[int, ...], _Found]] = []
-"""The last answer, and of what: a report asks several times for the same."""
 
 
 def _kept(result: Result) -> _Found:
     """Figures of all sensors, or why there are none, by name."""
+    return figure_of(lambda: _of_all(result.uniform()), "sensors", *_followed(result))
+
+
+def _followed(result: Result) -> Iterator[object]:
+    """What figures of sensors follow from: a table may be changed in place."""
     info = result.info
-    of = (info.sensors, info.parameters, info.resources, info.anatomy, result.outcome)
-    digest = _digest(result)
-    for data, known, forces, found in _last:
-        same = all(one is other for one, other in zip(known, of, strict=True))
-        if same and data() is result.data and forces == digest:
-            return found
-    found = _of_all(result.uniform())
-    _last[:] = [(ref(result.data, lambda _: _last.clear()), of, digest, found)]
-    return found
-
-
-def _digest(result: Result) -> tuple[int, ...]:
-    """Of times and forces: a table may be changed in place."""
-    found = [crc32(result.data[TIME].to_numpy(float).tobytes())]
-    for part in dict.fromkeys(spec.part for spec in result.info.sensors.values()):
+    yield from (info.system, info.sensors, info.anatomy, result.outcome.unstable)
+    yield result.data[TIME].to_numpy(float)
+    for part in dict.fromkeys(spec.part for spec in info.sensors.values()):
         try:
-            found.append(crc32(seat_forces(result, part).tobytes()))
-        except ParameterError:  # why, is told where the forces are used
-            found.append(0)
-    return tuple(found)
+            housing = housing_of(result, part)
+            if housing is not None:
+                yield from (housing.frequency_hz, housing.damping_ratio, housing.shapes)
+                yield from (housing.kind, housing.points, part, seat_forces(result, part))
+        except ParameterError as error:
+            yield str(error)
+    speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
+    yield from (np.zeros(0) if speed is None else speed, run_mesh_frequency(result))
 
 
 def _of_all(result: Result) -> _Found:

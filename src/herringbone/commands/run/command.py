@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from herringbone.commands.options import (
     ANY_KIND,
     assignments,
-    files_of_parts,
+    given_by,
     replacements,
-    start_values,
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
 from herringbone.commands.run.options import SLOW
@@ -78,7 +77,7 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         for name in ("scene", "algorithm", "step", "tolerance", "t_end", "record_step", "start")
         if (value := getattr(options, name)) is not None
     }
-    files = files_of_parts(options)
+    own = given_by(options)
     output = RunOutput(
         options.output,
         overwrite=options.overwrite,
@@ -96,9 +95,7 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
             torque=options.torque,
             fmu=options.fmu,
             replace_parts=replacements(options),
-            values=start_values(options.set),
-            gear=files.gear,
-            housing=files.housing,
+            **own,
             slow=_multiples(options.slow),
             probe=not options.no_probe,
             in_process=options.in_process,

@@ -1,11 +1,11 @@
 """`run --plan`: what a scene asks is planned, and the choice is run."""
 
 import argparse
-import json
 import math
 
-from herringbone.commands.options import files_of_parts, start_values
-from herringbone.commands.output import say, show
+from herringbone.commands.options import given_by
+from herringbone.commands.output import say
+from herringbone.commands.studies.steady import tell
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.scenes.asking import Range
 from herringbone.studies.planning.plan import Plan, plan
@@ -31,13 +31,10 @@ def planned(options: argparse.Namespace) -> Plan:
     if taken:
         names = ", ".join(f"--{name.replace('_', '-')}" for name in taken)
         raise ParameterError(f"--plan chooses the model and the solver; drop {names}")
-    files = files_of_parts(options)
     found = plan(
         options.system,
         scene=options.scene,
-        values=start_values(options.set),
-        gear=files.gear,
-        housing=files.housing,
+        **given_by(options),
     )
     say("\n".join(plan_text(found)))
     return found
@@ -57,12 +54,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
         ParameterError: it is asked over a range.
         HerringboneError: see `running.steady`.
     """
-    from herringbone.analysis.steady.report import (  # noqa: PLC0415 (numba)
-        steady_summary,
-        steady_text,
-        write_steady,
-    )
-    from herringbone.running.operating.steady import steady  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415 (numba)
 
     at = found.scene.operating
     state = steady(
@@ -74,9 +66,7 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
     )
     for note in state.notes:
         say(note)
-    if options.output:
-        write_steady(state, options.output)
-    show(json.dumps(steady_summary(state)) if options.json else "\n".join(steady_text(state)))
+    tell(state, {}, options.output, as_json=options.json)
     return OutcomeKind.COMPLETED if state.converged else OutcomeKind.DIVERGED
 
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from herringbone.commands.options import (
     add_scene,
     add_start_values,
-    files_of_parts,
-    start_values,
+    given_by,
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import HerringboneError, ParameterError
@@ -64,13 +63,10 @@ def run(options: argparse.Namespace) -> int:
         raise ParameterError("--highest and --speed must be positive, in Hz and r/min")
     if options.output:
         check_writable(options.output)
-    files = files_of_parts(options)
     found = modes(
         options.system,
         scene=options.scene,
-        values=start_values(options.set),
-        gear=files.gear,
-        housing=files.housing,
+        **given_by(options),
     )
     for note in found.notes:
         say(f"note: {note}")

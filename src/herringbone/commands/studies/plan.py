@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from herringbone.commands.options import (
     add_scene,
     add_start_values,
-    files_of_parts,
-    start_values,
+    given_by,
 )
 from herringbone.commands.output import check_writable, show
 from herringbone.core import HerringboneError, ParameterError
@@ -50,13 +49,10 @@ def run(options: argparse.Namespace) -> int:
         raise ParameterError("--chart: in which folder? add -o FOLDER")
     if options.output:
         check_writable(options.output)
-    files = files_of_parts(options)
     found = plan(
         options.system,
         scene=options.scene,
-        values=start_values(options.set),
-        gear=files.gear,
-        housing=files.housing,
+        **given_by(options),
         chart=options.chart,
     )
     written = write_plan(found, options.output) if options.output else []

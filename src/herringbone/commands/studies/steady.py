@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,10 +12,9 @@ from herringbone.commands.options import (
     add_scene,
     add_sensitivities,
     add_start_values,
-    files_of_parts,
+    given_by,
     replacements,
     spread_of,
-    start_values,
 )
 from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
@@ -52,49 +52,66 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    from herringbone.analysis.steady.report import (  # noqa: PLC0415 (numba)
-        per_second,
-        sensitivity_text,
-        steady_summary,
-        steady_text,
-        write_steady,
-    )
+    from herringbone.analysis.steady.report import per_second  # noqa: PLC0415 (numba)
     from herringbone.running.operating.steady import steady  # noqa: PLC0415
 
     spread = spread_of(options)
     if options.output:
         check_writable(options.output)
-    files = files_of_parts(options)
     state = steady(
         options.system,
         scene=options.scene,
         speed=None if options.speed is None else per_second(options.speed),
         torque=options.torque,
-        values=start_values(options.set),
-        gear=files.gear,
-        housing=files.housing,
+        **given_by(options),
         replace_parts=replacements(options),
         tolerance=options.tolerance,
         longest=options.longest,
     )
     for note in state.notes:
         say(note)
-    found = _sensitivities(state, options)
-    written = write_steady(state, options.output) if options.output else []
-    if options.output:
+    tell(state, _sensitivities(state, options), options.output, spread, as_json=options.json)
+    return 0 if state.converged else 1
+
+
+Found = Mapping[str, Mapping[str, "Sensitivity"]]
+"""Sensitivities by group of channels and parameter."""
+
+
+def tell(
+    state: "SteadyState | SettledState",
+    found: Found,
+    folder: Path | None,
+    spread: float = 1.0,
+    *,
+    as_json: bool,
+) -> None:
+    """Write files and pictures if a folder is given, and show a state.
+
+    Raises:
+        HerringboneError: files cannot be written.
+    """
+    from herringbone.analysis.steady.report import (  # noqa: PLC0415 (numba)
+        sensitivity_text,
+        steady_summary,
+        steady_text,
+        write_steady,
+    )
+
+    written = write_steady(state, folder) if folder else []
+    if folder:
         from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
             write_steady_pictures,
         )
 
-        written += write_steady_pictures(state, found, options.output, spread)
-    if options.json:
+        written += write_steady_pictures(state, found, folder, spread)
+    if as_json:
         told = {g: {n: x.relative for n, x in own.items()} for g, own in found.items()}
         more = {"sensitivities": told} if told else {}
         show(json.dumps({**steady_summary(state), **more, "results": [str(f) for f in written]}))
     else:
         lines = [*steady_text(state), *sensitivity_text(found)]
         show("\n".join([*lines, *(f"Files: {f}" for f in written)]))
-    return 0 if state.converged else 1
 
 
 def _sensitivities(

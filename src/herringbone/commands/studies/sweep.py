@@ -100,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
         study = read_study_file(options.study)
     files = files_of_parts(options)
     replaced = replacements(options)
-    evaluator = _evaluator(options, Wishes(housing=files.housing, replace_parts=replaced))
+    evaluator = _evaluator(options, Wishes(housing=files["housing"], replace_parts=replaced))
     tqdm.monitor_interval = 0  # a thread, and what has threads is not forked
     with tqdm(total=len(study.points), unit=" points", disable=None) as bar:
         found = sweep(
@@ -108,8 +108,7 @@ def run(options: argparse.Namespace) -> int:
             study=study,
             scene=options.scene,
             values=fixed,
-            gear=files.gear,
-            housing=files.housing,
+            **files,
             replace_parts=replaced,
             t_end=options.t_end,
             record_step=options.record_step,

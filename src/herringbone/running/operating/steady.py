@@ -70,10 +70,9 @@ def steady(
         check_tolerance(tolerance)
         return settled(system, scene, point, wishes, tolerance, longest)
     found = prepared_at(point, system, scene, wishes)
-    model = found.scene.model
-    solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
+    solver, notes = _solver_of(found, point, wishes, tolerance)
     state = solver.solve(point, near)
-    notes = (*found.notes, *lean_notes(model, wishes.values, speed, torque))
+    model = found.scene.model
     if model and state.converged and not certified(model, wishes.values, speed, torque):
         whole = SteadySolver(found.system, tolerance).solve(point, near)
         if whole.converged:
@@ -98,7 +97,13 @@ def prepared_solver(
     tolerance: float = TOLERANCE,
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """What solves for steady states near an operating point, and notes; see `steady`."""
-    found = prepared_at(point, system, scene, wishes)
+    return _solver_of(prepared_at(point, system, scene, wishes), point, wishes, tolerance)
+
+
+def _solver_of(
+    found: Prepared, point: Point, wishes: Wishes, tolerance: float
+) -> tuple[SteadySolver, tuple[str, ...]]:
+    """With the model that the scene leaves, and what is to be said of it."""
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
     said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
     return solver, (*found.notes, *said)

@@ -6,7 +6,14 @@ import pandas as pd
 
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict
 from herringbone.thesis.rig.runs import REAL, SENSORS, SPEEDS, TEETH
-from herringbone.thesis.rig.sampled import LITTLE, draw_levels, growth, samples, spread, statistics
+from herringbone.thesis.rig.sampled import (
+    LITTLE,
+    growth,
+    level_picture,
+    samples,
+    spread,
+    statistics,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -110,11 +117,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
             axes.set_xlabel("time [ms]")
         row[0].set_ylabel("velocity [mm/s]")
     panels[0, -1].legend(loc="upper right", ncols=3)
-    levels = new_figure("Level over speed by class of the teeth; shaded: rms of any 50 samples (A)",
-                        1, width=9.0)  # fmt: skip
-    draw_levels(levels.subplots(), tables["plateaus"], "speed", "r/min")
-    levels.subplots_adjust(right=0.78)
-    return {"positions": positions, "levels": levels}
+    return {"positions": positions, "levels": level_picture(tables["plateaus"], "speed", "r/min")}
 
 
 ENTRY = Entry(

@@ -6,7 +6,7 @@ import pandas as pd
 
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict
 from herringbone.thesis.rig.runs import REAL, TEETH, TORQUES
-from herringbone.thesis.rig.sampled import draw_levels, growth, samples, statistics
+from herringbone.thesis.rig.sampled import growth, level_picture, samples, statistics
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -74,11 +74,7 @@ def draw(tables: Tables) -> dict[str, "Figure"]:
         axes.set_ylabel("velocity [mm/s]")
         axes.margins(y=0.25)
     axes.legend(loc="upper right", ncols=3)
-    levels = new_figure("Level over torque by class of the teeth; shaded: any 50 samples of A",
-                        1, width=9.0)  # fmt: skip
-    draw_levels(levels.subplots(), tables["plateaus"], "torque", "N m")
-    levels.subplots_adjust(right=0.78)
-    return {"samples": traces, "levels": levels}
+    return {"samples": traces, "levels": level_picture(tables["plateaus"], "torque", "N m")}
 
 
 ENTRY = Entry(

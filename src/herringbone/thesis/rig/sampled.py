@@ -14,6 +14,7 @@ from herringbone.thesis.rig.runs import SENSORS, TEETH, cycle_run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _R_MIN, _MM = 30.0 / np.pi, 1e3
 _FIGURES = ("rms", "peak_to_peak", "rms_settled", "lowest", "highest")
@@ -91,8 +92,18 @@ def growth(stats: pd.DataFrame, teeth: str, along: str, figure: str = "rms_settl
     return min(steps)
 
 
-def draw_levels(axes: "Axes", stats: pd.DataFrame, along: str, unit: str) -> None:
+def level_picture(stats: pd.DataFrame, along: str, unit: str) -> "Figure":
     """Levels over speed or torque, by class and sensor, with the scatter of 50 samples."""
+    from herringbone.plotting.style import new_figure  # noqa: PLC0415 (matplotlib: lazy)
+
+    title = f"Level over {along} by class of the teeth; shaded: rms of any 50 samples (A)"
+    figure = new_figure(title, 1, width=9.0)
+    _draw_levels(figure.subplots(), stats, along, unit)
+    figure.subplots_adjust(right=0.78)
+    return figure
+
+
+def _draw_levels(axes: "Axes", stats: pd.DataFrame, along: str, unit: str) -> None:
     from herringbone.plotting.style import COLOURS, legend_beside  # noqa: PLC0415
 
     styles = dict(zip(SENSORS, ("-", "--", ":"), strict=True))
