@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _COLOURS = ("#E8A188", "#F5E3B5", "#9CCBB0")
 """Contradicts; not to be seen; holds."""
-_LARGE = 10.0
+_LARGE, _WIDTH = 10.0, 17.5
 _NOTHING = 5e-4
 """A margin this near to zero says that nothing changes."""
 
@@ -32,8 +32,8 @@ def over_assumptions(tables: Tables) -> "Figure":
     values = cases[list(sentences["sentence"])].to_numpy().T
     needed = sentences["needs"].to_numpy()[:, None]
     holds = np.where(values >= needed, 2, np.where(values > -_NOTHING, 1, 0))
-    figure = new_figure("", 1, width=15.0)
-    figure.set_size_inches(15.0, 10.5)
+    figure = new_figure("", 1, width=_WIDTH)
+    figure.set_size_inches(_WIDTH, 10.5)
     axes = figure.subplots()
     coloured_cells(axes, holds, _COLOURS)
     for row, column in np.ndindex(values.shape):
@@ -54,7 +54,7 @@ def over_assumptions(tables: Tables) -> "Figure":
         "Green: holds; yellow: too little to be seen; red: the other way",
         x=0.01, ha="left", fontsize=10, fontweight="bold",
     )  # fmt: skip
-    figure.subplots_adjust(left=0.36, right=0.95, top=0.79, bottom=0.03)
+    figure.subplots_adjust(left=0.31, right=0.95, top=0.79, bottom=0.03)
     return figure
 
 

@@ -86,5 +86,5 @@ ENTRY = Entry(
     "to 400 N m: it grows monotonically. Sampled here as over speed, at f_A 10 µm.",
     compute=compute,
     draw=draw,
-    seconds=8.0,
+    seconds=25.0,
 )
