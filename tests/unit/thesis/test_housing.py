@@ -11,7 +11,13 @@ from herringbone.housing import SEAT_DOFS, read_housing
 from herringbone.thesis import names
 from herringbone.thesis.entry import Verdict
 from herringbone.thesis.ground import settled
-from herringbone.thesis.housing.response import FORCES, SEATS, four_modes, seat_levels
+from herringbone.thesis.housing.response import (
+    ACROSS,
+    FORCES,
+    SEATS,
+    four_modes,
+    seat_levels,
+)
 from herringbone.thesis.pair.given import JOB
 
 
@@ -88,7 +94,7 @@ def test_seat_levels():
     """Radial is along the line of action; velocity is the derivative of displacement."""
     (state,) = settled(deviation=0.0)
     found = seat_levels(state)
-    assert set(found) == set(SEATS)
+    assert set(found) == {*SEATS, *ACROSS}
     angle = JOB.pair.transverse_pressure_angle  # no profile shift
     x, y = state.amplitudes("modal_housing.pinion_left.v_x", "modal_housing.pinion_left.v_y")
     own = math.sin(angle) * x + math.cos(angle) * y
