@@ -1,47 +1,30 @@
 """Running a system: from names and options to a result."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
-from herringbone.analysis.stability.diagnosis import diagnose
-from herringbone.analysis.twin.monolithic import refuse_foreign_parts
-from herringbone.core.activity import activity
-from herringbone.core.energy_report import Verdict
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import housing_of_strangers
-from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.fmi.kind import AUTO as AUTO_FMU
-from herringbone.fmi.kind import choose_kind
 from herringbone.result.result import Result
-from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.coupled import Asked
 from herringbone.running.fused.fused import (
     FusedAsked,
     check_coupling,
     check_kind,
     check_record,
-    fused,
-    verified_by_half,
 )
 from herringbone.running.operating.commanded import operated
-from herringbone.running.operating.lean import lean_notes, refuse_lean
+from herringbone.running.operating.lean import lean_notes
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
+from herringbone.running.prepared_runs import Heard, coupled_run, fused_run
 from herringbone.running.reporting.progress import Progress
-from herringbone.running.reporting.run_result import compared
-from herringbone.running.steps.for_tolerance import for_tolerance
-from herringbone.running.steps.step_search import searched, searched_tolerance
-from herringbone.running.steps.verification import (
-    can_be_verified,
-    check_fixed_step,
-    verified,
-    verified_by_longer_steps,
-)
 from herringbone.scenes import Scene
 
 
@@ -150,19 +133,12 @@ def run(
             operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
+        heard = Heard(progress, recorded, output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
             said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
             wanted = FusedAsked(step, tolerance, tuple(record), notes=said)
-            return _fused(structure, chosen, wanted, progress, recorded, output, reference, verify)
-        refuse_lean(chosen)
-        adapts = tolerance is not None or (coupling is not None and coupling.adaptive)
-        if verify and adapts and not structure.foreign_parts:
-            reference, verify = True, False
-        if reference:
-            refuse_foreign_parts(structure)
-        fmu, slower = choose_kind(fmu)
-        said = (*notes, *slower)
+            return fused_run(structure, chosen, wanted, heard, reference=reference, verify=verify)
         asked = Asked(
             fmu,
             coupling,
@@ -171,61 +147,11 @@ def run(
             slow=slow,
             probe=probe,
             record_step=record_step,
-            all_points=reference,
-            notes=said,
+            notes=notes,
             fuse=fuse,
             record=tuple(record),
         )
-        aim = searched_tolerance(structure, asked)
-        if verify and aim is None:
-            check_fixed_step(coupling, tolerance)
-        if output is not None:
-            output.claim(structure, chosen, replace(asked, notes=(), tolerance=aim or tolerance))
-        structure, asked = for_tolerance(structure, chosen, asked, searched=aim is not None)
-        if aim is not None:
-            found = searched(structure, chosen, asked, aim, progress, recorded)
-        else:
-            found = coupled(structure, chosen, asked, progress, recorded, output)
-        result = found.result
-        if reference:
-            result = compared(result, found.every, structure)
-        if verify and not found.recording.outcome.unstable:
-            result = verified(result, structure, chosen, found, asked, progress)
-        elif can_be_verified(structure, result, found, asked):
-            result = verified_by_longer_steps(result, structure, chosen, found, asked)
-        return _explained(result, structure, found)
-
-
-def _explained(result: Result, system: System, found: Coupled) -> Result:
-    """The result with what grows in it and what helps, if it is unstable."""
-    if not _unstable(found.recording) or found.recording.core is not None:
-        return result
-    with activity(f"looking for what grows in {system.name}, and for remedies"):
-        why_unstable = diagnose(system, found.algorithm, found.recording.step)
-    return replace(result, info=replace(result.info, why=why_unstable))
-
-
-def _fused(
-    system: System,
-    scene: Scene,
-    asked: FusedAsked,
-    progress: bool | Progress,
-    recorded: Callable[[Result], None] | None,
-    output: RunOutput | None,
-    reference: bool,
-    verify: bool,
-) -> Result:
-    """A fused run, and what is found out about it after that."""
-    if output is not None:
-        output.claim(system, scene, replace(asked, notes=()))
-    result = fused(system, scene, asked, progress, recorded, output)
-    if result.outcome.unstable:
-        return result
-    if reference:
-        result = compared(result, result, system)
-    if verify and result.info.core:
-        result = verified_by_half(result, system, scene, asked, progress)
-    return result
+        return coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
 
 
 def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
@@ -233,9 +159,3 @@ def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:
     if algorithm is None or algorithm == AUTO:
         return None
     return parse_algorithm(algorithm) if isinstance(algorithm, str) else algorithm
-
-
-def _unstable(recording: Recording) -> bool:
-    """True if a run diverged, or its coupling was seen to add energy without end."""
-    energy = recording.energy
-    return recording.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)

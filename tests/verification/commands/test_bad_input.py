@@ -322,7 +322,7 @@ def test_results_are_written_before_the_diagnosis(tmp_path, monkeypatch):
         del arguments
         there.extend(sorted(file.name for file in tmp_path.iterdir()))
 
-    monkeypatch.setattr("herringbone.running.api.diagnose", diagnose)
+    monkeypatch.setattr("herringbone.running.prepared_runs.diagnose", diagnose)
     main([*UNSTABLE, "--fmu=in-process", "-o", str(tmp_path)])
     assert {"overview.png", "results.csv", "summary.json", "summary.txt"} <= set(there)
 

@@ -1,0 +1,132 @@
+"""A prepared system is run, fused or coupled, and what is found out about it after that."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+from herringbone.analysis.stability.diagnosis import diagnose
+from herringbone.analysis.twin.monolithic import refuse_foreign_parts
+from herringbone.core.activity import activity
+from herringbone.core.energy_report import Verdict
+from herringbone.cosim.rows.recording import Recording
+from herringbone.cosim.structure.system import System
+from herringbone.fmi.kind import choose_kind
+from herringbone.result.result import Result
+from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.fused.fused import FusedAsked, fused, verified_by_half
+from herringbone.running.operating.lean import refuse_lean
+from herringbone.running.output.run_output import RunOutput
+from herringbone.running.reporting.progress import Progress
+from herringbone.running.reporting.run_result import compared
+from herringbone.running.steps.for_tolerance import for_tolerance
+from herringbone.running.steps.step_search import searched, searched_tolerance
+from herringbone.running.steps.verification import (
+    can_be_verified,
+    check_fixed_step,
+    verified,
+    verified_by_longer_steps,
+)
+from herringbone.scenes import Scene
+
+
+class Heard(NamedTuple):
+    """Who hears of a run while it goes on; see `running.api.run`."""
+
+    progress: bool | Progress
+    recorded: Callable[[Result], None] | None
+    output: RunOutput | None
+
+
+def fused_run(
+    system: System,
+    scene: Scene,
+    asked: FusedAsked,
+    heard: Heard,
+    *,
+    reference: bool,
+    verify: bool,
+) -> Result:
+    """A run of the condensed core alone.
+
+    Args:
+        system: as `prepared`.
+        scene: likewise.
+        asked: of the core.
+        heard: see there.
+        reference: tell the errors against the twin.
+        verify: run once more with half the step.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    progress, recorded, output = heard
+    if output is not None:
+        output.claim(system, scene, replace(asked, notes=()))
+    result = fused(system, scene, asked, progress, recorded, output)
+    if result.outcome.unstable:
+        return result
+    if reference:
+        result = compared(result, result, system)
+    if verify and result.info.core:
+        result = verified_by_half(result, system, scene, asked, progress)
+    return result
+
+
+def coupled_run(
+    system: System,
+    scene: Scene,
+    asked: Asked,
+    heard: Heard,
+    *,
+    reference: bool,
+    verify: bool,
+) -> Result:
+    """A run of parts that are coupled; arguments as of `fused_run`.
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    progress, recorded, output = heard
+    refuse_lean(scene)
+    adapts = asked.tolerance is not None or (
+        asked.algorithm is not None and asked.algorithm.adaptive
+    )
+    if verify and adapts and not system.foreign_parts:
+        reference, verify = True, False
+    if reference:
+        refuse_foreign_parts(system)
+    fmu, slower = choose_kind(asked.fmu)
+    asked = replace(asked, fmu=fmu, all_points=reference, notes=(*asked.notes, *slower))
+    aim = searched_tolerance(system, asked)
+    if verify and aim is None:
+        check_fixed_step(asked.algorithm, asked.tolerance)
+    if output is not None:
+        output.claim(system, scene, replace(asked, notes=(), tolerance=aim or asked.tolerance))
+    system, asked = for_tolerance(system, scene, asked, searched=aim is not None)
+    if aim is not None:
+        found = searched(system, scene, asked, aim, progress, recorded)
+    else:
+        found = coupled(system, scene, asked, progress, recorded, output)
+    result = found.result
+    if reference:
+        result = compared(result, found.every, system)
+    if verify and not found.recording.outcome.unstable:
+        result = verified(result, system, scene, found, asked, progress)
+    elif can_be_verified(system, result, found, asked):
+        result = verified_by_longer_steps(result, system, scene, found, asked)
+    return _explained(result, system, found)
+
+
+def _explained(result: Result, system: System, found: Coupled) -> Result:
+    """The result with what grows in it and what helps, if it is unstable."""
+    if not _unstable(found.recording) or found.recording.core is not None:
+        return result
+    with activity(f"looking for what grows in {system.name}, and for remedies"):
+        why_unstable = diagnose(system, found.algorithm, found.recording.step)
+    return replace(result, info=replace(result.info, why=why_unstable))
+
+
+def _unstable(recording: Recording) -> bool:
+    """True if a run diverged, or its coupling was seen to add energy without end."""
+    energy = recording.energy
+    return recording.outcome.unstable or (energy is not None and energy.verdict is Verdict.UNSTABLE)
