@@ -43,6 +43,8 @@ DIRECTION = {"x": "x (toward the wheel)", "y": "y", "z": "z (axial)"}
 _FORCE_DIRECTION = {"y": "y (line of action)", "z": "z (axial)"}
 _MM = 1e3
 _R_MIN = 30.0 / math.pi
+_SCALES = {"force": (1.0, "N"), "velocity": (_MM, "mm/s")}
+"""Factor of SI values and unit, of what is shown over time."""
 
 
 def _rows(result: Result, channel: str, axes: str, what: str) -> list[tuple[str, dict[str, str]]]:
@@ -53,6 +55,27 @@ def _rows(result: Result, channel: str, axes: str, what: str) -> list[tuple[str,
     return rows
 
 
+def _whole_and_last(
+    result: Result,
+    title: str,
+    rows: list[tuple[str, dict[str, str]]],
+    what: str,
+    directions: Mapping[str, str],
+    *,
+    mean: bool = False,
+) -> tuple[Figure, np.ndarray]:
+    """The whole run and the last mesh periods, a row of panels per axis; figure and panels."""
+    factor, unit = _SCALES[what]
+    figure = new_figure(headline(result, title), len(rows), 2)
+    panels = figure.subplots(len(rows), 2, squeeze=False, width_ratios=(1.0, 1.25))
+    for (whole, close), (axis, columns) in zip(panels, rows, strict=True):
+        shown = partial(time_panel, result=result, columns=columns, factor=factor, unit=unit)
+        shown(whole, label=f"{what} {axis}")
+        whole.set_title(directions[axis])
+        shown(close, label=f"{what} {axis}", rows=close_up(result), mean=mean)
+    return figure, panels
+
+
 @styled
 def bearing_forces(result: Result) -> Figure:
     """Forces of the bearings on the shaft [N]: whole run, and AC over the last mesh periods.
@@ -61,13 +84,9 @@ def bearing_forces(result: Result) -> Figure:
         ParameterError: the system records none.
     """
     rows = _rows(result, "bearing_force", "yz", "bearing forces")
-    figure = new_figure(headline(result, "Bearing forces on the shaft"), len(rows), 2)
-    panels = figure.subplots(len(rows), 2, squeeze=False, width_ratios=(1.0, 1.25))
-    for (whole, last), (axis, columns) in zip(panels, rows, strict=True):
-        label = f"force {axis}"
-        time_panel(whole, result, columns, label, unit="N")
-        whole.set_title(_FORCE_DIRECTION[axis])
-        time_panel(last, result, columns, label, unit="N", rows=close_up(result), mean=True)
+    title = "Bearing forces on the shaft"
+    figure, panels = _whole_and_last(result, title, rows, "force", _FORCE_DIRECTION, mean=True)
+    for last in panels[:, 1]:
         legend(last, 2)
     return figure
 
@@ -80,13 +99,8 @@ def seat_velocities(result: Result) -> Figure:
         ParameterError: the system records none.
     """
     rows = _rows(result, "seat_velocity", "xyz", "seat velocities")
-    figure = new_figure(headline(result, "Housing velocities at the seats"), len(rows), 2)
-    panels = figure.subplots(len(rows), 2, squeeze=False, width_ratios=(1.0, 1.25))
-    for (whole, last), (axis, columns) in zip(panels, rows, strict=True):
-        label = f"velocity {axis}"
-        time_panel(whole, result, columns, label, factor=_MM, unit="mm/s")
-        whole.set_title(DIRECTION[axis])
-        time_panel(last, result, columns, label, factor=_MM, unit="mm/s", rows=close_up(result))
+    title = "Housing velocities at the seats"
+    figure, panels = _whole_and_last(result, title, rows, "velocity", DIRECTION)
     figure_legend(figure, panels[0][1])
     return figure
 
