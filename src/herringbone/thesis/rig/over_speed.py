@@ -29,18 +29,20 @@ def compute() -> Outcome:
     stats = statistics(SPEEDS, tuple(TEETH))
     return Outcome(
         {"plateaus": stats, "samples": samples(SPEEDS, stats, (_PERFECT, REAL))},
-        tuple(_findings(stats)),
+        (*_of_positions(stats), _of_speed(stats), *_of_sampling(stats)),
     )
 
 
-def _findings(stats: pd.DataFrame) -> list[Finding]:
+def _at_high(stats: pd.DataFrame, teeth: str) -> pd.DataFrame:
+    """Statistics at the highest speed, by sensor."""
+    return stats[(stats["speed"] == _HIGH) & (stats["teeth"] == teeth)].set_index("sensor")
+
+
+def _of_positions(stats: pd.DataFrame) -> tuple[Finding, ...]:
+    """Of what the sensors differ by at the lower speeds, and at the highest one."""
     alike = {words: spread(stats, words, _LOW) for words in (_PERFECT, REAL)}
-    rising = {words: growth(stats, words, "speed") for words in (_PERFECT, REAL)}
-    high = stats[(stats["speed"] == _HIGH) & (stats["teeth"] == REAL)].set_index("sensor")
-    perfect = stats[(stats["speed"] == _HIGH) & (stats["teeth"] == _PERFECT)].set_index("sensor")
-    ratio = high["rms_settled"]["C"] / high["rms_settled"]["A"]
-    scatter = float((high["highest"] / high["lowest"]).max())
-    return [
+    real, perfect = (_at_high(stats, words)["rms_settled"] for words in (REAL, _PERFECT))
+    return (
         Finding(
             "At 800 and 1200 r/min the sensor's position does not matter (figure 5.3).",
             Verdict.needing(alike[_PERFECT] <= LITTLE, alike[REAL] <= LITTLE),
@@ -54,24 +56,34 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
         ),
         Finding(
             "At 1500 r/min the velocity grows from A over B to C (figure 5.3).",
-            Verdict.of(ratio > 1.0 + LITTLE),
-            ratio,
+            Verdict.of(real["C"] / real["A"] > 1.0 + LITTLE),
+            real["C"] / real["A"],
             "",
-            f"is C over A with teeth of {REAL}; "
-            f"{perfect['rms_settled']['C'] / perfect['rms_settled']['A']:.2f} with perfect ones",
+            f"is C over A with teeth of {REAL}; {perfect['C'] / perfect['A']:.2f} with perfect "
+            "ones",
             "It depends on the shape of the housing, of which no dimension is published.",
             0.02,
         ),
-        Finding(
-            "The velocity grows with speed (figure 5.4).",
-            Verdict.needing(rising[_PERFECT] > 0.0, rising[REAL] > 0.0),
-            100.0 * rising[_PERFECT],
-            "%",
-            f"is the least step with perfect teeth, {100.0 * rising[REAL]:+.0f} % with teeth of "
-            f"{REAL}",
-            "Three speeds say little: see the speed curve.",
-            2.0,
-        ),
+    )
+
+
+def _of_speed(stats: pd.DataFrame) -> Finding:
+    rising = {words: growth(stats, words, "speed") for words in (_PERFECT, REAL)}
+    return Finding(
+        "The velocity grows with speed (figure 5.4).",
+        Verdict.needing(rising[_PERFECT] > 0.0, rising[REAL] > 0.0),
+        100.0 * rising[_PERFECT],
+        "%",
+        f"is the least step with perfect teeth, {100.0 * rising[REAL]:+.0f} % with teeth of {REAL}",
+        "Three speeds say little: see the speed curve.",
+        2.0,
+    )
+
+
+def _of_sampling(stats: pd.DataFrame) -> tuple[Finding, ...]:
+    """Of the sensors' range, and of what 50 samples tell."""
+    high, perfect = (_at_high(stats, words) for words in (REAL, _PERFECT))
+    return (
         Finding(
             "Sensors have a range of 50 mm/s; no level is published.",
             Verdict.CANNOT_BE_TESTED,
@@ -85,14 +97,14 @@ def _findings(stats: pd.DataFrame) -> list[Finding]:
         Finding(
             "50 samples were recorded at each speed.",
             Verdict.NEEDS_AN_ASSUMPTION,
-            scatter,
+            float((high["highest"] / high["lowest"]).max()),
             "",
             f"times the least rms of 50 samples is the largest one at 1500 r/min (teeth of {REAL})",
             "They last 25 ms, less than a turn of either shaft at 1500 r/min: the number that is "
             "read depends on where they begin.",
             0.05,
         ),
-    ]
+    )
 
 
 def draw(tables: Tables) -> dict[str, "Figure"]:
