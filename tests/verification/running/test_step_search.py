@@ -74,4 +74,4 @@ def test_what_is_noise_ends_the_search(kinds, tmp_path, capsys):
     assert result.verification.missed
     given = ["--tolerance", "1e-6", "--t-end", "0.02", "--start", "rest"]
     assert cli.main(["run", str(system), *given, "-o", str(tmp_path / "o")]) == 1
-    assert "tolerance 1e-06 not met: error" in capsys.readouterr().err
+    assert "tolerance = 1e-06 is not met: error" in capsys.readouterr().err

@@ -19,7 +19,6 @@ from herringbone.running.reporting.progress import Bar
 
 if TYPE_CHECKING:
     from herringbone.result.result import Result
-    from herringbone.result.verification import Verification
     from herringbone.running.output.resumed import Resumed
     from herringbone.running.output.run_output import RunOutput
 
@@ -53,15 +52,14 @@ def run(options: argparse.Namespace) -> int:
     told = {OutcomeKind.INTERRUPTED, OutcomeKind.COMPLETED}
     if result.outcome.message and result.outcome.kind not in told:
         say(_ended(result.outcome))
-    return EXIT_CODES[result.outcome.kind] or _missed(result.verification)
+    return EXIT_CODES[result.outcome.kind] or _missed(result)
 
 
-def _missed(found: "Verification | None") -> int:
-    """1, with a line, if a tolerance that was asked for is not met; else 0."""
-    if found is None or not found.missed:
+def _missed(result: "Result") -> int:
+    """1, with the headline, if a tolerance that was asked for is not met; else 0."""
+    if result.verification is None or not result.verification.missed:
         return 0
-    say(f"herringbone: tolerance {found.asked:g} not met: error {found.error:.2g}; the results are "
-        "complete, and a note says what kept the run from it")  # fmt: skip
+    say(f"herringbone: {result.outcome.message}; the results are complete")
     return 1
 
 
