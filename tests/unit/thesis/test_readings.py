@@ -107,6 +107,19 @@ def test_exclusion_is_never_together():
     assert pairs == {(0, 2), (0, 3), (1, 3)}
 
 
+def test_damping_of_bearings():
+    """As shipped 2 % of each, 2 zeta sqrt(k m) with a half of its gear; a reading multiplies it."""
+    for factor in (1.0, 3.0):
+        found = AS_SHIPPED.but(bearing_damping=factor).values(0.0)
+        for name, stiffness, mass in (
+            ("pinion.radial", 6.34e8, 6.500),
+            ("wheel.radial", 6.34e8, 47.739),
+            ("wheel.axial", 2.03e8, 47.739),
+        ):
+            expected = factor * 0.04 * math.sqrt(stiffness * mass)
+            assert found[f"bearing_supports.{name}_damping"] == pytest.approx(expected, rel=1e-4)
+
+
 def test_relief_and_its_torque():
     """Both published numbers hold where the change is that of the tangent; 5 um never raise it."""
     cases = list(relief_cases())

@@ -43,6 +43,7 @@ SINGLE: dict[str, tuple[Choice, ...]] = {
     "phase": (Choice("wheel's run-out at 180°", math.pi),),
     "stagger": (Choice("stagger 1/2", 0.5),),
     "damping": (Choice("mesh damping 0.035", 0.035),),
+    "bearing_damping": (Choice("bearings damped three times as much", 3.0),),
     "wheel_thrust": (Choice("wheel's thrust bearing per shaft", 1.015e8),),
     "gear_ratio": (Choice("torque is the wheel's", 3.0),),
     "grade": tuple(Choice(f"teeth of class {c}", c) for c in (5, _CLASS, 7)),

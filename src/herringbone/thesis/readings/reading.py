@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Self
 
+from herringbone.analysis.anatomy import value_at
+from herringbone.core.declaring.roles import GEARS
 from herringbone.cosim.structure.system import System
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.job import GearJob
@@ -37,6 +39,7 @@ class Reading:
         wheel_thrust: axial bearing stiffness of the wheel, per half.
         gear_ratio: torque at the pinion is the stated one over it: 3 if the wheel's is stated.
         phase: of the wheel's run-out [rad].
+        bearing_damping: damping of the bearings over that which is shipped, 2 % of each.
         grade: ISO 1328-1 class of the teeth, 0 for perfect ones.
     """
 
@@ -50,6 +53,7 @@ class Reading:
     wheel_thrust: float = 2.03e8
     gear_ratio: float = 1.0
     phase: float = 1.0
+    bearing_damping: float = 1.0
     grade: int = 0
 
     def but(self, **changes: float | str) -> Self:
@@ -86,7 +90,16 @@ class Reading:
             f"{GEAR}.mesh_damping_ratio": self.damping,
             f"{BEARINGS}.pinion.axial_stiffness": self.thrust,
             f"{BEARINGS}.wheel.axial_stiffness": self.wheel_thrust,
+            **{name: self.bearing_damping * shipped for name, shipped in _dampings().items()},
         }
+
+
+@cache
+def _dampings() -> dict[str, float]:
+    """Of the bearings, as shipped."""
+    system, _ = load_system(GEARBOX)
+    names = (f"{BEARINGS}.{gear}.{way}_damping" for gear in GEARS for way in ("radial", "axial"))
+    return {name: value_at(system, name) for name in names}
 
 
 @cache
