@@ -93,11 +93,11 @@ class Certifier:
         return worst(self.questions, found)
 
     def costs(self, models: Sequence[Lean], rounds: int = _TIMES) -> list[float]:
-        """CPU time of an answer by each model [s]: means over the points, by turns.
+        """CPU time of an answer by each model [s]: geometric means over the points, by turns.
 
         Of several points each state is found from the one before; of a point that is asked for
         again, the least time counts. How many iterations a point takes goes up and down from
-        model to model, so that a median would tell of few points what is by chance.
+        model to model, so that a median of few points would be chance, and a mean the noise of one.
         """
         solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
         spent = np.full((rounds, len(models), len(self.points)), np.inf)
@@ -111,4 +111,4 @@ class Certifier:
                         spent[turn, m, k] = time.thread_time() - start
                         near[m] = found if found.converged else None
         first = 1 if len(self.points) > 1 else 0  # the first of several has no neighbour
-        return np.mean(spent.min(axis=0)[:, first:], axis=1).tolist()
+        return np.exp(np.log(spent.min(axis=0)[:, first:]).mean(axis=1)).tolist()
