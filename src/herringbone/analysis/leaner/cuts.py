@@ -34,6 +34,11 @@ def cuts_of(structure: Structure) -> list[Cut]:
         Cut("axial motion locked", Lean(tuple(_journals(structure, "z")))),
         Cut("torsion only", Lean(tuple(_journals(structure, "xyz")))),
     ]
+    if pairs := known.with_role(Role.GEAR_PAIR):
+        found += [
+            Cut("contact frozen, slopes over the angle", Lean(frozen=tuple(pairs))),
+            Cut("contact frozen, mean slopes", Lean(linear=tuple(pairs))),
+        ]
     if housings:
         found += [
             Cut("housing driven one way", Lean((), housings)),

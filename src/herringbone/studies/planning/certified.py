@@ -38,7 +38,8 @@ class Certifier:
         share: of the tolerance, for the solver.
 
     Attributes:
-        lines: of the whole model, by point and question.
+        states: of the whole model, by point.
+        lines: of these, by question.
         fine, tolerance: with which models are compared, and with which questions are answered.
 
     Raises:
@@ -56,15 +57,15 @@ class Certifier:
         self.fine = tolerance_for(questions, 1.0 / FINER)
         self.tolerance = tolerance_for(questions, share)
         self._solver = solver.leaner(WHOLE, self.fine)
-        self._whole = [found for found in self._solved(self._solver, ()) if found is not None]
-        if len(self._whole) < len(points):
+        self.states = [found for found in self._solved(self._solver, ()) if found is not None]
+        if len(self.states) < len(points):
             raise ParameterError(
                 "plan: the system has no steady state that was found at all of the operating "
                 "points; narrow the range, or ask for a transient"
             )
         self.lines = [
             {question.name: lines_of(state, question) for question in questions}
-            for state in self._whole
+            for state in self.states
         ]
 
     def _solved(
@@ -84,7 +85,7 @@ class Certifier:
 
     def error(self, lean: Lean) -> Worst | None:
         """The worst error of a leaner model; None if it has no steady state at a point."""
-        leaner = self._solved(self._solver.leaner(lean), self._whole)
+        leaner = self._solved(self._solver.leaner(lean), self.states)
         found: list[tuple[Point, dict[str, Apart]]] = []
         for ours, theirs in zip(leaner, self.lines, strict=True):
             if ours is None:
@@ -93,7 +94,9 @@ class Certifier:
             found.append((ours.point, by_name))
         return worst(self.questions, found)
 
-    def costs(self, models: Sequence[Lean], rounds: int = _TIMES) -> list[float]:
+    def costs(
+        self, models: Sequence[Lean], rounds: int = _TIMES, most: int = _PRICED
+    ) -> list[float]:
         """CPU time of an answer by each model [s]: geometric means over the points, by turns.
 
         Of several points each state is found from the one before; of a point that is asked for
@@ -101,7 +104,7 @@ class Certifier:
         model to model, so that a median of few points would be chance, and a mean the noise of one.
         """
         solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
-        points = self.points[:: -(-len(self.points) // _PRICED)]
+        points = self.points[:: -(-len(self.points) // most)]
         spent = np.full((rounds, len(models), len(points)), np.inf)
         with one_blas_thread():
             for turn in range(rounds):

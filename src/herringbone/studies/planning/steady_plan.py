@@ -15,7 +15,7 @@ from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
 from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.certified import Certifier
-from herringbone.studies.planning.estimated import Ladder
+from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
 from herringbone.studies.planning.marching import marched
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
@@ -73,7 +73,12 @@ def steady_rungs(
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
     hand = rungs[-1] if by_hand else None
-    tried = _cheapest(certifier, [rung for rung in rungs if ladder.allowed(rung)])
+    may = [
+        rung
+        for rung in rungs
+        if ladder.allowed(rung) and not frozen_where_they_bend(rung.lean, certifier.states)
+    ]
+    tried = _cheapest(certifier, may)
     certified = {
         id(rung): replace(rung, measured=certifier.error(rung.lean))
         for rung in (*tried, *([hand] if hand and hand not in tried else []))
@@ -93,7 +98,7 @@ def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
     """Those whose answers cost least, by one turn; of equal ones those that leave out most."""
     if len(rungs) <= _TRIED:
         return list(rungs)
-    costs = certifier.costs([rung.lean for rung in rungs], rounds=1)
+    costs = certifier.costs([rung.lean for rung in rungs], rounds=1, most=_TRIED)
     least = min(costs)
     order = sorted(
         range(len(rungs)), key=lambda k: (costs[k] > _ALIKE * least, -len(rungs[k].lean.held))
