@@ -43,7 +43,7 @@ from herringbone.studies.planning.steady_plan import questions_of
 _R_MIN = math.pi / 30.0
 _LEAST, _LARGE = 1e-4, 0.3
 _QUANTITIES = ("bearing force", "seat velocity", "mesh force", "transmission error")
-_FRESH = 5
+_FRESH, _TURNS = 5, 9
 
 
 class Drawn(NamedTuple):
@@ -156,7 +156,7 @@ def chosen(given: Drawn, chance: random.Random) -> str:
         for rung in rungs
         if not rung.lean or ((e := certifier.error(rung.lean)) and e.ratio <= 1.0)
     ]
-    costs = certifier.costs([rung.lean for rung in good])
+    costs = certifier.costs([rung.lean for rung in good], rounds=_TURNS)
     mine = next(c for rung, c in zip(good, costs, strict=True) if rung is found.choice)
     over, cost = worst / question.tolerance, mine / min(costs)
     return (

@@ -73,6 +73,8 @@ class Model:
         one_way: parts that are driven but not felt.
         error: of what was asked, certified; None: unknown.
         speed, torque: where that was certified.
+        frozen: parts whose laws are straight lines about their mean deflections.
+        linear: parts whose laws have mean slopes besides.
     """
 
     hold: tuple[str, ...] = ()
@@ -80,6 +82,13 @@ class Model:
     error: float | None = None
     speed: Range | None = None
     torque: Range | None = None
+    frozen: tuple[str, ...] = ()
+    linear: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.hold or self.one_way)
+        return bool(self.hold or self.parts)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts of which something is left out."""
+        return (*self.one_way, *self.frozen, *self.linear)

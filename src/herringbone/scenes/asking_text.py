@@ -11,6 +11,8 @@ from herringbone.scenes.asking import Ask, Model, Motion, Operating, Range
 
 ASKING = {"ask", "operating", "model"}
 """Keys of a scene that are read here."""
+_PARTS = ("one_way", "frozen", "linear")
+"""Of a model: what names parts."""
 _R_MIN = 30.0 / math.pi
 _ENDS = 2
 
@@ -83,7 +85,7 @@ def _operating(data: Any) -> Operating:  # noqa: ANN401
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401
-    _known(data, "model", {"hold", "one_way", "error", "speed", "torque"})
+    _known(data, "model", {"hold", *_PARTS, "error", "speed", "torque"})
     error = None if "error" not in data else _number(data["error"], "model: error")
     speed = _range(data, "model", "speed")
     return Model(
@@ -92,6 +94,7 @@ def _model(data: Any) -> Model:  # noqa: ANN401
         error,
         None if speed is None else (speed[0] / _R_MIN, speed[1] / _R_MIN),
         _range(data, "model", "torque"),
+        *(_texts(data.get(key, []), f"model: {key}") for key in ("frozen", "linear")),
     )
 
 
@@ -145,7 +148,7 @@ def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> It
             yield f"orders = [{', '.join(f'{k:g}' for k in ask.orders)}]"
     if model:
         yield from ("", "[model]", f"hold = {_listed(model.hold)}")
-        yield f"one_way = {_listed(model.one_way)}"
+        yield from (f"{key} = {_listed(own)}" for key in _PARTS if (own := getattr(model, key)))
         if model.error is not None:
             yield f"error = {model.error:.3g}"
         yield from _ranges({"speed": model.speed, "torque": model.torque})

@@ -77,7 +77,7 @@ class Scene(Facts):
             "housings": ", ".join(map(str, self.housings.values())),
             "start offset": ", ".join(f"{k} {v:+g}" for k, v in self.start_offset.items()),
             "asks": "; ".join(f"{ask.name}, {100 * ask.tolerance:g} %" for ask in self.asks),
-            "left out": ", ".join((*self.model.hold, *self.model.one_way)),
+            "left out": ", ".join((*self.model.hold, *self.model.parts)),
         }
 
 

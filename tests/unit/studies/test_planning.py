@@ -16,6 +16,7 @@ from herringbone.running.operating.lean import lean_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
+from herringbone.scenes.scene_text import scene_text
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
@@ -65,6 +66,24 @@ def test_the_whole_ladder_is_there_and_says_why():
     assert "<- choice" in text
     assert "Planning took" in text
     assert json.loads(json.dumps(plan_summary(found)))["choice"] == found.choice.name
+
+
+def test_laws_that_bend_are_not_frozen():
+    at = Operating(speed=(1000.0 * _R_MIN,) * 2, torque=(40.0, 40.0))
+    found = plan("test_rig", scene=_scene(Ask(("bearing force",), tolerance=0.3), operating=at))
+    frozen = [rung for rung in found.rungs if rung.lean.frozen or rung.lean.linear]
+    assert len(frozen) == 2
+    assert all("bend" in rung.why for rung in frozen)
+
+
+def test_frozen_laws_are_kept_in_a_scene_and_refused_in_a_run(tmp_path):
+    pair = ("gearbox.gear_mesh",)
+    scene = Scene("frozen", values=_STILL, model=Model(frozen=pair, linear=pair))
+    file = tmp_path / "frozen.toml"
+    file.write_text(scene_text(scene), encoding="utf-8")
+    assert read_scene(file).model == scene.model
+    with pytest.raises(ParameterError, match="drop frozen and linear"):
+        hb.run("test_rig", scene=file, fuse=True, t_end=1e-3)
 
 
 def test_what_is_written_runs_and_states_its_error(tmp_path):

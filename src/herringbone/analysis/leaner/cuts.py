@@ -29,9 +29,16 @@ def cuts_of(structure: Structure) -> list[Cut]:
     known = anatomy(structure.system)
     housings = known.with_role(Role.HOUSING)
     found = [
+        Cut("halves of the gears joined", Lean(tuple(_twists(structure)))),
+        Cut("ideal load", Lean(tuple(_controls(structure)))),
         Cut("axial motion locked", Lean(tuple(_journals(structure, "z")))),
         Cut("torsion only", Lean(tuple(_journals(structure, "xyz")))),
     ]
+    if pairs := known.with_role(Role.GEAR_PAIR):
+        found += [
+            Cut("contact frozen, slopes over the angle", Lean(frozen=tuple(pairs))),
+            Cut("contact frozen, mean slopes", Lean(linear=tuple(pairs))),
+        ]
     if housings:
         found += [
             Cut("housing driven one way", Lean((), housings)),
@@ -61,6 +68,33 @@ def _states(structure: Structure, parts: Iterable[str]) -> Iterator[str]:
     for p, instance in enumerate(twin.instances):
         if instance.name in own:
             yield from names[twin.layout.state_first[p] : twin.layout.state_first[p + 1]]
+
+
+def _twists(structure: Structure) -> Iterator[str]:
+    """Angles in gear pairs that do not grow, which are twists between halves, and their rates."""
+    twin, pairs = structure.core.twin, anatomy(structure.system).with_role(Role.GEAR_PAIR)
+    for instance in twin.instances:
+        if instance.name in pairs:
+            own = [s.name for s in instance.component.declaration.states if s.unit == "rad"
+                   and s.steady != "rotating"]  # fmt: skip
+            yield from (f"{instance.name}.{name}" for name in own)
+            yield from (f"{instance.name}.der({name})" for name in own)
+
+
+def _controls(structure: Structure) -> Iterator[str]:
+    """States of loads that neither turn nor are the rate of what turns: their torques stay."""
+    core, known = structure.core, anatomy(structure.system)
+    names, a = state_names(core.twin), core.condensed.equations.a
+    loads = set(known.with_role(Role.LOAD))
+    for p, instance in enumerate(core.twin.instances):
+        if instance.name in loads:
+            first = core.twin.layout.state_first[p]
+            states = instance.component.declaration.states
+            turning = [k for k, s in enumerate(states) if s.steady == "rotating"]
+            rates = np.flatnonzero(a[[first + k for k in turning]].any(axis=0)) - first
+            yield from (
+                names[first + k] for k in range(len(states)) if k not in {*turning, *rates.tolist()}
+            )
 
 
 def _journals(structure: Structure, axes: str) -> Iterator[str]:

@@ -6,7 +6,8 @@ left out:
     F_lean(r) = what the laws give and the motion lacks, with the leaner linear part
     r_lean = r - J^-1 F_lean(r),    y_lean = H_lean r_lean
 
-All of the linear part, reactions included, is exact; the laws are followed along their slopes.
+All of the linear part, reactions included, is exact; the laws are followed along their slopes, and
+evaluated once where these lead to: a contact that opens there says so.
 """
 
 from collections.abc import Sequence
@@ -24,6 +25,7 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
 )
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import coefficients_of, of_rows
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
@@ -65,7 +67,14 @@ class Estimates:
             self._still = np.zeros_like(orbit.channels)
             self._moving = self._reactions.moving(orbit.channels)
             self._moving[:, 0] -= self._reactions.start
+            self._were = self._laws()
             self._whole = coefficients_of(self._wanted, orbit)
+
+    def _laws(self) -> np.ndarray:
+        """The laws' values less mean tangents (values, harmonics) at the whole model's motion."""
+        orbit, problem = self._state.orbit, self._state.structure.problem
+        given = problem.laws(orbit.samples.z).f - orbit.samples.z @ problem.tangent.T
+        return in_frequency(np.ascontiguousarray(given.T), orbit.response.orders)
 
     def held(self, names: Sequence[str]) -> dict[str, Apart]:
         """Errors by question if these states are held."""
@@ -78,8 +87,24 @@ class Estimates:
             channels[self._found.unknown] = step
             moving = self._reactions.moving
             push = push + self._reactions.holding(own, moving(channels) - moving(self._still))
-            changed = self._changed(own, push, channels)
+            bent = self._still.copy()
+            bent[self._found.unknown] = self._inverse(self._lacking(own, push, channels))
+            push = push + self._reactions.holding(own, moving(bent) - moving(self._still))
+            changed = self._changed(own, push, channels + bent)
             return self._apart(self._whole + changed)
+
+    def _lacking(self, own: Sequence[int], push: np.ndarray, channels: np.ndarray) -> np.ndarray:
+        """What the laws give at the changed motion, beyond their slopes (unknowns, harmonics)."""
+        orbit, problem = self._state.orbit, self._state.structure.problem
+        response, unknown = orbit.response, self._found.unknown
+        rows = Rows(problem.arguments, problem.of_angle, problem.of_channels)
+        change = np.einsum("crh,rh->ch", self._reactions.arguments[:, list(own)], push)
+        change += response.outputs(rows, response.coordinates(channels), channels)
+        change -= response.outputs(rows, response.coordinates(self._still), self._still)
+        z = orbit.samples.z + in_time(change, response.orders, orbit.places).T
+        given = problem.laws(np.ascontiguousarray(z)).f - z @ problem.tangent.T
+        laws = in_frequency(np.ascontiguousarray(given[:, unknown].T), response.orders)
+        return laws - self._were[unknown] - channels[unknown]
 
     def influences(self, names: Sequence[str]) -> dict[str, float]:
         """What each state changes if it is held alone, for a ranking; those that can move.

@@ -36,6 +36,7 @@ class Reactions:
         places: where a state's reaction acts, among all of them.
         along: (tangents, reactions, harmonics) what the tangents are along.
         outputs: (rows, reactions, harmonics).
+        arguments: (arguments, reactions, harmonics) of the laws.
     """
 
     def __init__(self, state: SteadyState, names: Sequence[str], found: Bent, rows: Rows) -> None:
@@ -57,12 +58,12 @@ class Reactions:
         )
         answer = Response(extended, orbit.response.frequency, orders, orbit.response.speed)
         shapes = modes.shapes[own]
-        every = np.vstack([found.along, shapes, rows.modal])
+        every = np.vstack([found.along, shapes, rows.modal, problem.arguments])
         still = np.zeros(len(own))
-        angle = np.concatenate([found.along_angle, still, rows.of_angle])
+        angle = np.concatenate([found.along_angle, still, rows.of_angle, problem.of_angle])
         gains = answer.gain(every, angle, self._count + np.arange(len(own)), orders.size)
-        ends = np.cumsum([len(found.along), len(own)])
-        self.along, self._held, self.outputs = np.split(gains, ends)
+        ends = np.cumsum([len(found.along), len(own), len(rows.modal)])
+        self.along, self._held, self.outputs, self.arguments = np.split(gains, ends)
         self._shapes, self._positions = shapes, modes.shapes[places]
         chosen = self._count + np.arange(len(own))
         self._held[:, :, 0] = answer.gain(self._positions, still, chosen, 1)[:, :, 0]

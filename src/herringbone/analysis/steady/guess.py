@@ -86,8 +86,8 @@ def begun_shortly(
 
 
 def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:
-    """The last periods of a march from equilibrium; None if it fails."""
-    if not _can_be_marched(still):
+    """The last periods of a march from equilibrium; None if it fails, or of a long period."""
+    if structure.meshes >= LONG or not _can_be_marched(still):
         return None
     periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
     places = structure.meshes * per_mesh

@@ -7,8 +7,8 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
 from herringbone.analysis.steady.structure import Structure
 
-MOST_PLACES = 2048
-"""Points in time of a mesh period, at most."""
+_MOST_PLACES, _MOST_IN_ALL = 2048, 150_000
+"""Points in time of a mesh period, and of a long one, at most."""
 _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
@@ -37,6 +37,11 @@ class Resolution(NamedTuple):
         if times > 1 or meshes < LONG:
             return found
         return found.thinned_to_lines(structure.bases, self.sides) or found
+
+    def finest(self, period: Period) -> bool:
+        """True if a period that was looked at so is not to be looked at more finely."""
+        long = period.meshes >= LONG and period.places > _MOST_IN_ALL
+        return long or self.per_mesh >= _MOST_PLACES
 
     def finer(self, errors: Accuracy, tolerance: float) -> "Resolution":
         """What makes the largest part of the errors smaller."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
 from herringbone.analysis.steady.guess import (
+    LONG,
     SETTLING,
     Guess,
     begun,
@@ -21,7 +22,7 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accu
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.resolution import MOST_PLACES, first
+from herringbone.analysis.steady.resolution import first
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
@@ -142,7 +143,7 @@ class SteadySolver:
         still = standing(structure, motion)
         march = settling(structure, motion, still, _PLACES)
         if march is None:
-            return unstable or found, (*_grows(unstable), "a march from equilibrium fails, too")
+            return unstable or found, (*_grows(unstable), _not_marched(structure))
         for times in march.likely(_REPEATS)[:_TRIED]:
             values = march.harmonics(times)
             guess = Guess(values, np.arange(values.shape[1]), _PLACES)
@@ -179,7 +180,7 @@ class SteadySolver:
             if not orbit.converged:
                 return Found(motion, orbit, Accuracy({}, {}, {}, {}))
             errors = accuracy(structure, period, motion, orbit)
-            if errors.worst <= self.tolerance or resolution.per_mesh >= MOST_PLACES:
+            if errors.worst <= self.tolerance or resolution.finest(period):
                 return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
             resolution = resolution.finer(errors, self.tolerance)
@@ -188,6 +189,16 @@ class SteadySolver:
 def _grows(unstable: Found | None) -> tuple[str, ...]:
     """What is said of a motion that is not stable."""
     return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
+
+
+def _not_marched(structure: Structure) -> str:
+    """Why there is no march that could be followed to a motion."""
+    if structure.meshes < LONG:
+        return "a march from equilibrium fails, too"
+    return (
+        f"its period of {structure.meshes} meshes is too long for a march that settles; set the "
+        "run-outs to 0, or ask for a larger tolerance"
+    )
 
 
 def _told(times: int) -> tuple[str, ...]:

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from copy import copy
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.steady.frozen import FrozenLaws, tangents_of
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.of_system import problem_of, turns_of
@@ -58,7 +60,7 @@ class Structure:
         self.core: Core = Core(system, known, same_tangents=same_tangents, lean=lean)
         condensed, twin = self.core.condensed, self.core.twin
         self.late = twin.settled
-        self.problem: Problem = problem_of(condensed, self.late)
+        self.problem: Problem = self._problem()
         every = turns_of(condensed, self.problem.of_angle)
         turns = common_period(every)
         self.bases = tuple(sorted({int(turns / each) for each in every}))
@@ -83,8 +85,18 @@ class Structure:
         for name in ("groups", "signals", "indicators", "start", "_kept"):
             found.__dict__.pop(name, None)  # cached
         found.core = self.core.leaner(lean)
-        found.problem = problem_of(found.core.condensed, self.late)
+        found.problem = found._problem()
         return found
+
+    def _problem(self) -> Problem:
+        """Linear part and laws, frozen where the model wants it."""
+        condensed, lean = self.core.condensed, self.core.lean
+        found = problem_of(condensed, self.late)
+        if not (lean.frozen or lean.linear):
+            return found
+        chosen = tangents_of(condensed, {*lean.frozen, *lean.linear})
+        straight = np.isin(chosen, tangents_of(condensed, lean.linear))
+        return replace(found, laws=FrozenLaws(found, chosen, straight))
 
     def _pinion(self) -> str:
         """Column of the first pinion's angle."""

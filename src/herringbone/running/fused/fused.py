@@ -19,7 +19,7 @@ from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
-from herringbone.running.operating.lean import lean_of, with_model_row
+from herringbone.running.operating.lean import lean_of, refuse_frozen, with_model_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -86,6 +86,7 @@ def fused(
         ParameterError: no step reaches the tolerance, or what is to be recorded is not there.
         HerringboneError: rows cannot be written.
     """
+    refuse_frozen(scene)
     with same_folder(), one_blas_thread():
         with activity(f"fusing the parts of {system.name}"):
             core = Core(system, lean=lean_of(scene))

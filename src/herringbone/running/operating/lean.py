@@ -23,7 +23,8 @@ def lean_of(scene: Scene) -> "Lean":
     """What a scene's model leaves out."""
     from herringbone.analysis.twin.condensed.lean import Lean  # noqa: PLC0415 (numba)
 
-    return Lean(scene.model.hold, scene.model.one_way)
+    model = scene.model
+    return Lean(model.hold, model.one_way, model.frozen, model.linear)
 
 
 def refuse_lean(scene: Scene) -> None:
@@ -32,6 +33,15 @@ def refuse_lean(scene: Scene) -> None:
         raise ParameterError(
             f"scene {scene.name}: [model]: leaner models are of steady states, sweeps of them, and "
             "runs with fuse, without foreign parts; drop [model] for the whole one"
+        )
+
+
+def refuse_frozen(scene: Scene) -> None:
+    """Refuse frozen laws in a run; raises ParameterError."""
+    if scene.model.frozen or scene.model.linear:
+        raise ParameterError(
+            f"scene {scene.name}: [model]: laws are frozen in steady states and sweeps of them; "
+            "drop frozen and linear for a run"
         )
 
 
@@ -52,6 +62,7 @@ def lean_notes(
         return ()
     parts = [f"{len(model.hold)} states held"] if model.hold else []
     parts += [f"{', '.join(model.one_way)} driven one way"] if model.one_way else []
+    parts += [f"laws of {', '.join(own)} frozen" for own in (model.frozen, model.linear) if own]
     said = f"leaner model: {', '.join(parts)}; its error "
     if model.error is None:
         return (f"{said}is not certified: 'herringbone plan' does that",)

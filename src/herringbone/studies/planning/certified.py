@@ -18,7 +18,8 @@ FINER = 20.0
 """How much finer than the tolerance models are compared."""
 _LEAST, _LOOSEST = 1e-7, 0.05
 """Tolerances of a solver."""
-_TIMES = 3
+_TIMES, _PRICED = 3, 6
+"""Turns in which costs are measured, and at how many of the points."""
 
 
 def tolerance_for(questions: Sequence[Question], share: float) -> float:
@@ -37,7 +38,8 @@ class Certifier:
         share: of the tolerance, for the solver.
 
     Attributes:
-        lines: of the whole model, by point and question.
+        states: of the whole model, by point.
+        lines: of these, by question.
         fine, tolerance: with which models are compared, and with which questions are answered.
 
     Raises:
@@ -55,15 +57,15 @@ class Certifier:
         self.fine = tolerance_for(questions, 1.0 / FINER)
         self.tolerance = tolerance_for(questions, share)
         self._solver = solver.leaner(WHOLE, self.fine)
-        self._whole = [found for found in self._solved(self._solver, ()) if found is not None]
-        if len(self._whole) < len(points):
+        self.states = [found for found in self._solved(self._solver, ()) if found is not None]
+        if len(self.states) < len(points):
             raise ParameterError(
                 "plan: the system has no steady state that was found at all of the operating "
                 "points; narrow the range, or ask for a transient"
             )
         self.lines = [
             {question.name: lines_of(state, question) for question in questions}
-            for state in self._whole
+            for state in self.states
         ]
 
     def _solved(
@@ -83,7 +85,7 @@ class Certifier:
 
     def error(self, lean: Lean) -> Worst | None:
         """The worst error of a leaner model; None if it has no steady state at a point."""
-        leaner = self._solved(self._solver.leaner(lean), self._whole)
+        leaner = self._solved(self._solver.leaner(lean), self.states)
         found: list[tuple[Point, dict[str, Apart]]] = []
         for ours, theirs in zip(leaner, self.lines, strict=True):
             if ours is None:
@@ -92,23 +94,26 @@ class Certifier:
             found.append((ours.point, by_name))
         return worst(self.questions, found)
 
-    def costs(self, models: Sequence[Lean]) -> list[float]:
-        """CPU time of an answer by each model [s]: medians over the points, by turns.
+    def costs(
+        self, models: Sequence[Lean], rounds: int = _TIMES, most: int = _PRICED
+    ) -> list[float]:
+        """CPU time of an answer by each model [s]: geometric means over the points, by turns.
 
         Of several points each state is found from the one before; of a point that is asked for
-        again, the least time counts.
+        again, the least time counts. How many iterations a point takes goes up and down from
+        model to model, so that a median of few points would be chance, and a mean the noise of one.
         """
         solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
-        spent = np.full((_TIMES, len(models), len(self.points)), np.inf)
-        rounds = _TIMES if len(self.points) == 1 or self._whole[0].meshes == 1 else 1
+        points = self.points[:: -(-len(self.points) // most)]
+        spent = np.full((rounds, len(models), len(points)), np.inf)
         with one_blas_thread():
             for turn in range(rounds):
                 near: list[SteadyState | None] = [None] * len(models)
-                for k, point in enumerate(self.points):
+                for k, point in enumerate(points):
                     for m, solver in enumerate(solvers):
                         start = time.thread_time()
                         found = solver.solve(point, near[m])
                         spent[turn, m, k] = time.thread_time() - start
                         near[m] = found if found.converged else None
-        first = 1 if len(self.points) > 1 else 0  # the first of several has no neighbour
-        return np.median(spent.min(axis=0)[:, first:], axis=1).tolist()
+        first = 1 if len(points) > 1 else 0  # the first of several has no neighbour
+        return np.exp(np.log(spent.min(axis=0)[:, first:]).mean(axis=1)).tolist()

@@ -52,10 +52,10 @@ class Ladder:
         """The worst error of a leaner model at the probes."""
         found = []
         for state, estimates in zip(self._states, self._estimates, strict=True):
-            if lean.one_way:
-                by_name = estimates.of(state.structure.leaner(lean))
-            else:
+            if lean.only_held:
                 by_name = estimates.held(lean.held)
+            else:
+                by_name = estimates.of(state.structure.leaner(lean))
             found.append((state.point, by_name))
         return worst(self._questions, found)
 
@@ -74,7 +74,7 @@ class Ladder:
         for cut in self._cuts:
             rung = self._rung(cut.name, cut.lean)
             yield rung
-            if most and self.allowed(rung) and not cut.lean.one_way:
+            if most and self.allowed(rung) and cut.lean.only_held:
                 yield self._both(cut, most, total)
 
     def by_hand(self, lean: Lean) -> Rung:
@@ -86,8 +86,9 @@ class Ladder:
         return self._rung(name, cut.lean | self.without(most))
 
     def allowed(self, rung: Rung) -> bool:
-        """True if the estimate leaves the solver its share."""
-        return rung.estimate is not None and rung.estimate.ratio <= _SAFE * SHARE
+        """True if the estimate leaves the solver its share, and no law is frozen that bends."""
+        good = rung.estimate is not None and rung.estimate.ratio <= _SAFE * SHARE
+        return good and not frozen_where_they_bend(rung.lean, self._states)
 
     def _most(self) -> int:
         """How many modes can go, by halving the interval."""
@@ -102,6 +103,14 @@ class Ladder:
 
     def _rung(self, name: str, lean: Lean) -> Rung:
         rung = Rung(name, STEADY, lean, self.estimate(lean))
+        if frozen_where_they_bend(lean, self._states):
+            return replace(rung, why="its laws bend, as teeth that separate do")
         if not self.allowed(rung):
             return replace(rung, why="its estimate is above half of the tolerance")
         return rung
+
+
+def frozen_where_they_bend(lean: Lean, states: Sequence[SteadyState]) -> bool:
+    """True if a model freezes laws of a part that bend in one of the motions of the whole one."""
+    own = {*lean.frozen, *lean.linear}
+    return bool(own) and any(own & set(state.bends) for state in states)

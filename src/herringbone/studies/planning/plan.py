@@ -162,7 +162,8 @@ def _made(
     error = None if choice.measured is None else choice.measured.error
     model = Model()
     if choice.lean:
-        model = Model(choice.lean.held, choice.lean.one_way, error, at.speed, at.torque)
+        lean = choice.lean
+        model = Model(lean.held, lean.one_way, error, at.speed, at.torque, lean.frozen, lean.linear)
     return Plan(
         system.name, replace(scene, model=model), tuple(questions), tuple(rungs), tolerance,
         time.process_time() - begin, notes,

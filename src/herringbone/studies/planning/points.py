@@ -8,7 +8,7 @@ import numpy as np
 from herringbone.analysis.steady.set_points import Point
 from herringbone.scenes.asking import Operating, Range
 
-TESTS, _FEW = 12, 3
+TESTS, _FEW = 12, 6
 """Points of a range that are tested at; where the period has many meshes."""
 _PROBES = {"speed": (0.0, 0.5, 1.0), "torque": (0.0, 1.0)}
 _SPREAD = 0.754877666, 0.569840291

@@ -15,7 +15,7 @@ from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
 from herringbone.scenes import Ask, Scene
 from herringbone.studies.planning.certified import Certifier
-from herringbone.studies.planning.estimated import Ladder
+from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
 from herringbone.studies.planning.marching import marched
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY, Rung
@@ -24,6 +24,8 @@ _TRIED = 3
 """Rungs that are solved at most."""
 _TRIAL = 5e-3
 """Length of a run of which the cost is measured [s]."""
+_ALIKE = 1.1
+"""Cost over the least that is no difference, of one turn."""
 _WORTH = 0.95
 """Cost over that of the whole model below which leaving something out is worth it."""
 
@@ -70,10 +72,13 @@ def steady_rungs(
     certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
-    tried = sorted(
-        (rung for rung in rungs if ladder.allowed(rung)), key=lambda r: -len(r.lean.held)
-    )[:_TRIED]
     hand = rungs[-1] if by_hand else None
+    may = [
+        rung
+        for rung in rungs
+        if ladder.allowed(rung) and not frozen_where_they_bend(rung.lean, certifier.states)
+    ]
+    tried = _cheapest(certifier, may)
     certified = {
         id(rung): replace(rung, measured=certifier.error(rung.lean))
         for rung in (*tried, *([hand] if hand and hand not in tried else []))
@@ -87,6 +92,18 @@ def steady_rungs(
     every += [_run(solver, questions, scene)]
     every += [replace(rung, cost=cost_of.get(id(rung))) for rung in rungs]
     return _chosen(every), certifier, _remarks(questions, states)
+
+
+def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
+    """Those whose answers cost least, by one turn; of equal ones those that leave out most."""
+    if len(rungs) <= _TRIED:
+        return list(rungs)
+    costs = certifier.costs([rung.lean for rung in rungs], rounds=1, most=_TRIED)
+    least = min(costs)
+    order = sorted(
+        range(len(rungs)), key=lambda k: (costs[k] > _ALIKE * least, -len(rungs[k].lean.held))
+    )
+    return [rungs[k] for k in order[:_TRIED]]
 
 
 def _run(solver: SteadySolver, questions: Sequence[Question], scene: Scene) -> Rung:
@@ -118,7 +135,7 @@ def _why(rung: Rung, choice: Rung) -> str:
         return "no cheaper" if choice.whole else "dearer"
     if rung.measured is not None and rung.measured.ratio > SHARE:
         return "its measured error is above half of the tolerance"
-    return rung.why or "not tried: others leave out more"
+    return rung.why or "not tried: others cost less or leave out more"
 
 
 def _steady(solver: SteadySolver, point, near: SteadyState | None) -> SteadyState:  # noqa: ANN001

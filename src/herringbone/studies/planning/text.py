@@ -46,8 +46,9 @@ def _said(plan: Plan) -> Iterator[str]:
             f"output {at.worst}: {100.0 * at.worst_error:.2g} %"
         )
     if choice.lean:
-        held, one_way = choice.lean.held, choice.lean.one_way
-        yield f"  left out: {'; '.join((*_short(held), *one_way))}"
+        lean = choice.lean
+        parts = (*lean.one_way, *lean.frozen, *lean.linear)
+        yield f"  left out: {'; '.join((*_short(lean.held), *parts))}"
     yield f"Planning took {plan.seconds:.2g} s of CPU time. {_worth(plan)}"
     yield from (f"note: {note}" for note in plan.notes)
 
@@ -129,6 +130,8 @@ def _rung(rung: Rung) -> dict:
         "name": rung.name,
         "held": list(rung.lean.held),
         "one_way": list(rung.lean.one_way),
+        "frozen": list(rung.lean.frozen),
+        "linear": list(rung.lean.linear),
         "estimate": _figures(rung.estimate),
         "measured": _figures(rung.measured),
         "cost": rung.cost,

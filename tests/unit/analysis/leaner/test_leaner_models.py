@@ -61,15 +61,46 @@ def test_of_a_rigid_and_of_a_driven_housing_the_bearings_know_the_same() -> None
 def test_an_estimate_is_what_the_leaner_model_then_differs_by() -> None:
     solver, state, questions = _rig()
     modes, cuts = modes_of(solver.structure), cuts_of(solver.structure)
-    axial = next(cut.lean for cut in cuts if cut.name == "axial motion locked")
+    names = ("axial motion locked", "halves of the gears joined")
+    axial, joined = (next(cut.lean for cut in cuts if cut.name == name) for name in names)
     held = [name for pair in modes for name in pair]
-    estimates = Estimates(state, questions, [*held, *axial.held])
+    estimates = Estimates(state, questions, [*held, *axial.held, *joined.held])
     alone = estimates.influences([pair[1] for pair in modes])
     ranked = sorted((pair for pair in modes if pair[1] in alone), key=lambda pair: alone[pair[1]])
-    for names in (axial.held, *([n for p in ranked[:k] for n in p] for k in (20, 30, 40))):
+    assert len(joined.held) == 4  # two twists and their rates
+    for names in (
+        axial.held,
+        joined.held,
+        *([n for p in ranked[:k] for n in p] for k in (20, 30, 40)),
+    ):
         expected, measured = estimates.held(names), _measured(Lean(tuple(names)))
         for name, error in measured.items():
             assert expected[name].error == pytest.approx(error, rel=0.02)
+
+
+def test_frozen_laws_differ_by_what_is_estimated_and_are_straight() -> None:
+    """One step of Newton leaves what is of second order in the error: 3 % of 3 %, with room."""
+    solver, state, questions = _rig()
+    cuts = {cut.name: cut.lean for cut in cuts_of(solver.structure)}
+    estimates = Estimates(state, questions, [])
+    errors = []
+    for name in ("contact frozen, slopes over the angle", "contact frozen, mean slopes"):
+        lean = cuts[name]
+        expected, measured = estimates.of(state.structure.leaner(lean)), _measured(lean)
+        for question, error in measured.items():
+            assert expected[question].error == pytest.approx(error, rel=0.03)
+        errors.append(max(measured.values()))
+    assert errors[0] < 2e-3
+    assert 1e-2 < errors[1] < 0.1
+    laws = solver.structure.leaner(cuts[name]).problem.laws
+    z = state.orbit.samples.z
+    problem, moved = solver.structure.problem, np.linspace(-1e-6, 1e-6, len(z))
+    stiffest = problem.mean.argmax()
+    along = problem.directions[stiffest] / (problem.directions[stiffest] ** 2).sum()
+    value = problem.owner[stiffest]
+    off = [laws(z + share * np.outer(moved, along)).f[:, value] for share in (0.0, 1.0, 30.0)]
+    np.testing.assert_allclose(off[2] - off[0], 30.0 * (off[1] - off[0]), atol=1e-6)
+    assert np.abs(off[2] - off[0]).max() > 1e3  # 30 um against 1e8 N/m and more
 
 
 def test_modes_are_ranked_by_what_they_do_and_not_by_their_frequency() -> None:

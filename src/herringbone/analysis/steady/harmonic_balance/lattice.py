@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-_TRIES = 64
+_TRIES = 256
 """Numbers of places between a number of lines and twice that."""
 
 

@@ -10,7 +10,7 @@ from herringbone.analysis.steady.harmonic_balance.response import Coordinates, R
 
 _WIDER = 2
 """How much farther aside lines are looked for that are not there."""
-_SAVED = 4
+_SAVED = 2
 """Of the places of a whole period, over those of lines."""
 
 

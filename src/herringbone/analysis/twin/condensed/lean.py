@@ -7,7 +7,7 @@ steady states are found, as those of the whole one.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -27,18 +27,31 @@ class Lean:
     Attributes:
         held: states that keep their start values, `instance.state`.
         one_way: parts that are driven but not felt.
+        frozen: parts whose laws are straight lines about their mean deflections, of steady states.
+        linear: parts whose laws have mean slopes besides.
     """
 
     held: tuple[str, ...] = ()
     one_way: tuple[str, ...] = ()
+    frozen: tuple[str, ...] = ()
+    linear: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.held or self.one_way)
+        return bool(self.held) or not self.only_held
+
+    @property
+    def only_held(self) -> bool:
+        """True if all that is left out are motions."""
+        return not (self.one_way or self.frozen or self.linear)
 
     def __or__(self, other: "Lean") -> "Lean":
         """What either of both leaves out."""
-        held = dict.fromkeys((*self.held, *other.held))
-        return Lean(tuple(held), tuple(dict.fromkeys((*self.one_way, *other.one_way))))
+        return Lean(
+            *(
+                tuple(dict.fromkeys((*getattr(self, field.name), *getattr(other, field.name))))
+                for field in fields(self)
+            )
+        )
 
 
 WHOLE = Lean()
