@@ -12,15 +12,6 @@
 #endif
 #if defined _WIN32
 #include <windows.h>
-
-/* What compilers call of themselves comes from Windows: asked for here, before the linker looks into
-   the compiler's own library, which comes as a whole. */
-extern const char __imp_memcmp, __imp_memcpy, __imp_memmove, __imp_memset, __imp_strlen;
-__attribute__((used)) static const void *const of_windows[] = {
-    &__imp_memcmp, &__imp_memcpy, &__imp_memmove, &__imp_memset, &__imp_strlen};
-
-/* Start-up code of mingw for data of other libraries, of which nothing is used here. */
-void _pei386_runtime_relocator(void) {}
 #endif
 
 static bool is_utf8(const unsigned char *text, size_t length) {
