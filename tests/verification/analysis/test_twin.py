@@ -1,5 +1,6 @@
 """The monolithic twin: its tolerance, closed forms, restarts at kinks."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -48,6 +49,24 @@ def test_tolerance(name, t_end, limit):
     assert monolithic.TOLERANCE == 1e-10
     for columns in (slice(0, len(BEARING)), slice(len(BEARING), None)):
         assert relative_error(default[:, columns], fine[:, columns]) < limit
+
+
+def test_few_evaluations_are_calls_of_the_components_with_the_bits_of_compiled_code(monkeypatch):
+    """Twenty states of a loaded rig around its start, at which teeth touch and separate."""
+    system = rig("loaded")
+    states = Twin(system).state * np.random.default_rng(1).uniform(0.9, 1.1, (20, 1))
+    found = []
+    for few in (2 * len(states), 0):
+        monkeypatch.setattr(monolithic, "_FEW", few)
+        monkeypatch.setattr(monolithic, "_called", Counter())
+        twin = Twin(system)
+        rates = [twin.rhs(0.0, x) for x in states]
+        outputs = twin.observe(np.zeros(len(states)), states.T, BEARING + SEAT)
+        found.append((np.array(rates).tobytes(), outputs.tobytes()))
+        assert ("_compiled" in vars(twin)) == (not few)
+        twin.rhs(0.0, states[0])
+        assert "_compiled" in vars(twin)
+    assert found[0] == found[1]
 
 
 K, C, J1, J2, TAU = 1e4, 2.0, 0.1, 0.4, 5e-3

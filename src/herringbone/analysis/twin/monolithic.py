@@ -5,10 +5,14 @@ Equations I, 1993, section II.5) at a tolerance far below coupling errors, resta
 breakpoints that the components declare.
 """
 
+from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import cached_property
+from types import ModuleType
 
 import numpy as np
 
+from herringbone.analysis.twin.called import CalledTwin
 from herringbone.analysis.twin.source import TwinLayout, twin_layout, twin_source
 from herringbone.components.in_process import InProcessPart
 from herringbone.components.registry import component
@@ -23,6 +27,10 @@ TOLERANCE = 1e-10
 _SMALLEST = 1e-15
 _LATE = 1e9
 """Time [s] before which all breakpoints lie."""
+_FEW = 20_000
+"""Evaluations of a twin in one process for which it is not compiled: a second, or half of it."""
+_called: Counter[str] = Counter()
+"""Evaluations by calls, by source of the twin."""
 
 
 def refuse_foreign_parts(system: System) -> None:
@@ -71,9 +79,21 @@ class Twin:
         self.instances = make_instances(system)
         self.network = build_network(system, [InProcessPart(i) for i in self.instances])
         self.layout: TwinLayout = twin_layout(self.instances)
-        source = twin_source(self.network, self.instances, self.layout)
-        self._module = load_generated("twin", source)
+        self._source = twin_source(self.network, self.instances, self.layout)
+        self._by_calls = CalledTwin(self.network, self.instances, self.layout)
         self.block = np.concatenate([i.block for i in self.instances])
+
+    @cached_property
+    def _compiled(self) -> ModuleType:
+        return load_generated("twin", self._source)
+
+    def _equations(self, evaluations: int) -> CalledTwin | ModuleType:
+        """The equations, compiled from where on it pays; bits are equal."""
+        asked = _called[self._source] + evaluations
+        if asked > _FEW:
+            return self._compiled
+        _called[self._source] = asked
+        return self._by_calls
 
     @property
     def state(self) -> np.ndarray:
@@ -84,7 +104,7 @@ class Twin:
     def rhs(self, t: float, x: np.ndarray) -> np.ndarray:
         """Derivative of all states (n,) at time t [s]."""
         dx = np.zeros_like(x)
-        self._module.rhs(self.block, x, float(t), dx)
+        self._equations(1).rhs(self.block, x, float(t), dx)
         return dx
 
     def index(self, column: str) -> int:
@@ -100,7 +120,8 @@ class Twin:
         """Values (times, columns) of outputs at times and states (n, times)."""
         values = np.empty((times.size, len(columns)))
         indices = np.array([self.index(c) for c in columns], dtype=np.int64)
-        self._module.observe(self.block, times, np.ascontiguousarray(states), indices, values)
+        equations = self._equations(times.size)
+        equations.observe(self.block, times, np.ascontiguousarray(states), indices, values)
         return values
 
     def breakpoints(self, t_end: float) -> list[float]:
@@ -159,14 +180,7 @@ class Twin:
         """Solve between two breakpoints; fills the states at the wanted rows."""
         from scipy.integrate import DOP853  # noqa: PLC0415 (lazy)
 
-        dx = np.empty_like(x)
-        rhs, block = self._module.rhs, self.block
-
-        def function(t: float, x: np.ndarray) -> np.ndarray:
-            rhs(block, x, t, dx)
-            return dx.copy()
-
-        solver = DOP853(function, t0, x, t1, rtol=tolerance, atol=_SMALLEST)
+        solver = DOP853(self.rhs, t0, x, t1, rtol=tolerance, atol=_SMALLEST)
         wanted = times[rows]
         position = 0
         while solver.status == "running":

@@ -16,7 +16,7 @@ compiled code cached under its name.
 
 import hashlib
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -52,6 +52,7 @@ def kernels_key(*modules: str, without: str = "") -> str:
         without: package on which what is computed does not depend, such as that of the pictures.
     """
     found = sorted(_closure(modules, without))
+    _MODULES.keep()
     return digest_of(*(f"{m} {_MODULES[m].digest}" for m in found))
 
 
@@ -79,8 +80,11 @@ def sources_key() -> str:
 
     Golden results are left out: they follow from the sources.
     """
+    computing = [name for name in sorted(_MODULES) if name.split(".")[1] in _COMPUTING]
+    syntax = [f"{name} {_MODULES[name].digest}" for name in computing]
+    _MODULES.keep()
     return digest_of(
-        *(f"{n} {s.digest}" for n, s in sorted(_MODULES.items()) if n.split(".")[1] in _COMPUTING),
+        *syntax,
         *_contents(PACKAGE / "fmi", {".c", ".h"}),
         *_contents(components_folder(), _RESOURCES),
     )
@@ -134,35 +138,60 @@ def _known(imports: Iterable[str]) -> list[str]:
     return sorted(found & _MODULES.keys())
 
 
-def _read_modules() -> dict[str, Syntax]:
-    """All modules of the package; files that have not changed are not parsed again."""
-    memo = cache_root() / f"syntax-{sys.version_info[0]}.{sys.version_info[1]}.json"
-    known = kept(memo) or {}
-    modules, remembered = {}, {}
-    for file in sorted(PACKAGE.rglob("*.py")):
-        status = file.stat()
-        stamp = [str(file), status.st_mtime_ns, status.st_size]
-        parts = file.relative_to(PACKAGE).with_suffix("").parts
-        name = ".".join((_NAME, *parts)).removesuffix(".__init__")
-        if name == _NAME:  # it only says where names are
-            continue
-        old = known.get(name)
-        if old and old[:3] == stamp:
-            modules[name] = Syntax(old[3], tuple(old[4]))
-        else:
-            modules[name] = _syntax_of(file)
-        remembered[name] = [*stamp, modules[name].digest, list(modules[name].imports)]
-    if remembered != known:
-        keep(memo, remembered)
-    return modules
+class _Modules(Mapping[str, Syntax]):
+    """All modules of the package by name; files that have not changed are not parsed again.
+
+    All are read now; what nobody asks for is not parsed.
+    """
+
+    def __init__(self) -> None:
+        self._memo = cache_root() / f"syntax-{sys.version_info[0]}.{sys.version_info[1]}.json"
+        known = kept(self._memo) or {}
+        self._stamps: dict[str, list] = {}
+        self._found: dict[str, Syntax] = {}
+        self._sources: dict[str, bytes] = {}
+        for file in sorted(PACKAGE.rglob("*.py")):
+            status = file.stat()
+            stamp = [str(file), status.st_mtime_ns, status.st_size]
+            parts = file.relative_to(PACKAGE).with_suffix("").parts
+            name = ".".join((_NAME, *parts)).removesuffix(".__init__")
+            if name == _NAME:  # it only says where names are
+                continue
+            self._stamps[name] = stamp
+            old = known.get(name)
+            if old and old[:3] == stamp:
+                self._found[name] = Syntax(old[3], tuple(old[4]))
+            else:
+                self._sources[name] = file.read_bytes()
+        self._kept = set(self._found) if self._found.keys() == known.keys() else set()
+
+    def __getitem__(self, name: str) -> Syntax:
+        if name not in self._found:
+            self._found[name] = _syntax_of(self._sources.pop(name))
+        return self._found[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._stamps
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stamps)
+
+    def __len__(self) -> int:
+        return len(self._stamps)
+
+    def keep(self) -> None:
+        """Keep what is known now for other processes."""
+        if self._kept != self._found.keys():
+            self._kept = set(self._found)
+            found = sorted(self._found.items())
+            keep(self._memo, {m: [*self._stamps[m], s.digest, list(s.imports)] for m, s in found})
 
 
-def _syntax_of(file: Path) -> Syntax:
-    source = file.read_bytes()
+def _syntax_of(source: bytes) -> Syntax:
     try:
         return syntax_of(source.decode())
     except SyntaxError:  # whoever imports it gets the message
         return Syntax(digest_of(source), ())
 
 
-_MODULES = _read_modules()
+_MODULES = _Modules()

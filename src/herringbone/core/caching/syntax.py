@@ -2,10 +2,11 @@
 
 import ast
 import hashlib
+from collections.abc import Iterator
 from typing import NamedTuple
 
-_INSIDE = (ast.expr, ast.expr_context, ast.operator)
-"""Most nodes: what holds neither imports nor statements."""
+_BODIES = "body", "orelse", "finalbody"
+_BRANCHES = "handlers", "cases"
 
 
 class Syntax(NamedTuple):
@@ -23,14 +24,25 @@ class Syntax(NamedTuple):
 def syntax_of(source: str) -> Syntax:
     """The syntax of a Python source; raises SyntaxError."""
     tree = ast.parse(source)
-    nodes = [node for node in ast.walk(tree) if not isinstance(node, _INSIDE)]
+    nodes = list(_statements(tree))
     imports = {name for node in nodes for name in _imported(node)}
     for node in nodes:
-        for field in ("body", "orelse", "finalbody"):
+        for field in _BODIES:
             if isinstance(statements := getattr(node, field, None), list):
                 setattr(node, field, [s for s in statements if not _is_text(s)])
     digest = hashlib.sha256(ast.dump(tree).encode()).hexdigest()
     return Syntax(digest, tuple(sorted(imports)))
+
+
+def _statements(tree: ast.Module) -> Iterator[ast.AST]:
+    """What holds statements and imports, expressions left out: most nodes."""
+    todo: list[ast.AST] = [tree]
+    while todo:
+        node = todo.pop()
+        yield node
+        for field in _BODIES + _BRANCHES:
+            if isinstance(inside := getattr(node, field, None), list):
+                todo += inside
 
 
 def _is_text(statement: ast.stmt) -> bool:

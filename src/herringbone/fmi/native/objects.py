@@ -20,7 +20,7 @@ from herringbone.core import Component
 from herringbone.core.declaring.component import unbounded, unchanged
 from herringbone.fmi.native.platforms import Platform
 from herringbone.kernels.compiling.jit import c_code
-from herringbone.kernels.compiling.linking import CFunction
+from herringbone.kernels.compiling.linking import CFunction, quickly
 
 _OPTIMISATION = 3
 _PLAIN = 1
@@ -189,5 +189,6 @@ def object_code(component: Component, platforms: Iterable[Platform]) -> dict[Pla
     """Object code of a component's kernels by platform."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    kernels = entry_points(component)
+    with quickly():
+        kernels = entry_points(component)
     return {platform: _of_platform(kernels, platform) for platform in platforms}

@@ -35,6 +35,7 @@ from numba.core.untyped_passes import (
 )
 
 from herringbone.core.activity import COMPILING
+from herringbone.kernels.compiling.quiet import quiet
 from herringbone.kernels.compiling.typed_calls import remembered_calls
 
 _NEEDLESS = {
@@ -51,15 +52,16 @@ _SHARED = llvm.Linkage.linkonce_odr
 
 
 @contextmanager
-def _quickly() -> Iterator[None]:
+def quickly() -> Iterator[None]:
     """Without the search for cycles among millions of objects, a sixth of the time.
 
-    Only the outermost compilation turns it on again.
+    Only the outermost one turns it on again, after which all that it made is searched: who compiles
+    much at once does so inside of one.
     """
     collects = gc.isenabled()
     gc.disable()
     try:
-        with remembered_calls():
+        with remembered_calls(), quiet():
             yield
     finally:
         if collects:
@@ -226,7 +228,7 @@ class KernelDispatcher(CPUDispatcher):
 
     def compile(self, sig: Signature | tuple) -> Callable:
         """Compile for a signature, unless it is compiled or cached."""
-        with _quickly():
+        with quickly():
             return super().compile(sig)
 
     def get_call_template(self, args: tuple, kws: dict) -> tuple:
@@ -247,7 +249,7 @@ class CFunction(CFunc):
 
     def compile(self) -> None:
         """Compile it, unless it is cached."""
-        with _quickly():
+        with quickly():
             super().compile()
 
     def _compile_uncached(self) -> CompileResult:
