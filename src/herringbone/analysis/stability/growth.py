@@ -52,10 +52,17 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
         found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
-        if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less
+        # Errors can only make it less; and they bring nothing here from 1 that is so far away.
+        if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
         eigenvalues, known = _with_errors(matrix, noise)
     return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
+
+
+def _is_far(found: Growth, step: float) -> bool:
+    """True if the fastest motion's eigenvalue is not close to 1."""
+    turned = np.exp(2j * np.pi * found.frequency * step)
+    return bool(abs(found.radius * turned - 1.0) > _SLOW)
 
 
 def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
