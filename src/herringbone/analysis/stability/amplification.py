@@ -11,6 +11,7 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -62,7 +63,8 @@ class Amplification:
         self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
-        layout = algorithm.prepare(self.network).layout
+        self._laid_out = algorithm.prepare(self.network)  # the same for all steps
+        layout = self._laid_out.layout
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
@@ -168,7 +170,7 @@ class Amplification:
     @contextmanager
     def _prepared(self, step: float) -> Iterator[PreparedRun]:
         """A run of the algorithm; afterwards the parts are as they were."""
-        prepared = self.algorithm.prepare(self.network)
+        prepared = copy(self._laid_out)
         try:
             for part, degree in zip(self._parts, prepared.degree, strict=True):
                 part.prepare(step, degree)
