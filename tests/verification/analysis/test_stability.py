@@ -115,8 +115,8 @@ def test_map_is_affine():
     """Differences twenty times larger give the same matrix, in units of the differences."""
     amplification = Amplification(*linear_network(rig()), Jacobi(2))
     small = amplification.matrix(2e-5)
-    scale = amplification._change[amplification._used]
-    amplification._change = 20.0 * amplification._change
+    scale = amplification._z_changes[amplification._used]
+    amplification._changes = 20.0 * amplification._changes
     deviation = (amplification.matrix(2e-5) - small) * scale[None, :] / scale[:, None]
     assert np.abs(deviation).max() < 1e-7
 

@@ -15,7 +15,7 @@ A step is stable if no motion grows faster than with a coupling that is exact: w
 itself, or what its model misses of the free rotation, is no instability of the coupling.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -95,7 +95,7 @@ def _bands(
     def growth(h: float) -> Growth:
         found = growth_of(make(flange, host, h, order, parallel), h)
         less = np.exp(-own * h)
-        return Growth(found.radius * less, found.frequency, found.fast_radius, found.mirror_radius)
+        return replace(found, radius=found.radius * less)
 
     return unstable_bands(growth, SMALLEST, LARGEST, _SCAN)
 

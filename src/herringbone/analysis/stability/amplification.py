@@ -11,6 +11,7 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -62,17 +63,23 @@ class Amplification:
         self.network = replace(network, parts=tuple(part.part for part in self._parts))
         self.algorithm = algorithm
         self._start = [part.values.copy() for part in self._parts]
-        layout = algorithm.prepare(self.network).layout
+        self._laid_out = algorithm.prepare(self.network)  # the same for all steps
+        layout = self._laid_out.layout
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
         self._base = np.zeros((HISTORY, self._outputs))
         get_all(layout, self._base, self._records, 0)
         self._base[1:] = self._base[0]
+        self._history = self._base.copy()
         signals = self._signal_changes(layout.output_first, layout.output_reference)
         self._coordinates = Coordinates(self._parts, signals.size)
         self._changes = np.concatenate([self._coordinates.changes, signals])
         self._z_changes = np.concatenate([self._coordinates.z_changes, signals])
+        counts = zip(self._parts, self._coordinates.counts, strict=True)
+        seen = [part.values[:count] for part, count in counts if count]
+        self._seen = [*seen, self._history[:_ROWS].ravel()]  # views: whatever is in there later
+        self._places = [(values, k) for values in self._seen for k in range(values.size)]
         self._used: np.ndarray | None = None
 
     def _signal_changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
@@ -143,34 +150,33 @@ class Amplification:
         vector = vectors[:, int(np.argmax(sizes))]
         used = np.empty(0, int) if self._used is None else self._used
         vector = vector / np.abs(vector / self._z_changes[used]).max()
-        history = self._base.copy()
         offset = self._changes.size - self._z_changes.size
         with self._prepared(step) as prepared:
-            self._advance(prepared, step, history)
-            self._advance(prepared, step, history)
-            base, steps = history[0].copy(), self._coordinates.steps()
+            self._advance(prepared, step)
+            self._advance(prepared, step)
+            base, steps = self._history[0].copy(), self._coordinates.steps()
             found = []
             for changes in (vector.real, vector.imag):
 
                 def disturbed(changes: np.ndarray = changes) -> None:
                     for entry, change in zip(used, changes, strict=True):
                         if not self._coordinates.move(int(entry), change, steps):
-                            self._perturb(history, int(entry) + offset, change)
+                            self._perturb(int(entry) + offset, change)
 
-                self._advance(prepared, step, history, disturbed)
-                found.append(history[0] - base)
+                self._advance(prepared, step, disturbed)
+                found.append(self._history[0] - base)
         return np.split(found[0] + 1j * found[1], self._first[1:-1])
 
     @contextmanager
     def _prepared(self, step: float) -> Iterator[PreparedRun]:
         """A run of the algorithm; afterwards the parts are as they were."""
-        prepared = self.algorithm.prepare(self.network)
+        prepared = copy(self._laid_out)
         try:
             for part, degree in zip(self._parts, prepared.degree, strict=True):
                 part.prepare(step, degree)
             yield prepared
         finally:
-            self._restore(self._base.copy())
+            self._restore()
             for part in self._parts:
                 part.release()
 
@@ -178,36 +184,31 @@ class Amplification:
         self,
         prepared: PreparedRun,
         step: float,
-        history: np.ndarray,
         disturbed: Callable[[], None] = lambda: None,
     ) -> np.ndarray:
         """Entries after one macro step from the operating point, which is disturbed before."""
         chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
         while True:
-            self._restore(history)
+            self._restore()
             disturbed()
-            status, _, culprit = prepared.run(history, chunk)
+            status, _, culprit = prepared.run(self._history, chunk)
             if status == DONE or not any([part.learn() for part in self._parts]):
                 break
         if status != DONE:
             name = self._parts[culprit].name if culprit >= 0 else "the coupling"
             raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
-        return self._vector(history)
+        return np.concatenate(self._seen)
 
     def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
-        history = self._base.copy()
         with self._prepared(step) as prepared:
             # An algorithm may build its correction in the first call.
-            self._advance(prepared, step, history)
-            base = self._advance(prepared, step, history)
+            self._advance(prepared, step)
+            base = self._advance(prepared, step)
             steps = self._coordinates.steps()
             entries = self._coordinates.entries(used, steps)
 
             def moved(entry: int, change: float) -> np.ndarray:
-                def disturbed() -> None:
-                    self._perturb(history, entry, change)
-
-                return self._advance(prepared, step, history, disturbed) - base
+                return self._advance(prepared, step, lambda: self._perturb(entry, change)) - base
 
             found = np.empty((base.size, entries.size))
             uneven = self._noise > 0.0 and _is_uneven(moved, entries, self._changes)
@@ -219,24 +220,14 @@ class Amplification:
                     found[:, column] *= 0.5
         return self._coordinates.matrix(found, entries, used, steps)
 
-    def _restore(self, history: np.ndarray) -> None:
-        history[:] = self._base
+    def _restore(self) -> None:
+        self._history[:] = self._base
         for part, start in zip(self._parts, self._start, strict=True):
             part.values[:] = start
 
-    def _perturb(self, history: np.ndarray, entry: int, change: float) -> None:
-        rest = entry
-        for part, count in zip(self._parts, self._coordinates.counts, strict=True):
-            if rest < count:
-                part.values[rest] += change
-                return
-            rest -= count
-        history[rest // self._outputs, rest % self._outputs] += change
-
-    def _vector(self, history: np.ndarray) -> np.ndarray:
-        counts = self._coordinates.counts
-        entries = [p.values[:count] for p, count in zip(self._parts, counts, strict=True)]
-        return np.concatenate([*entries, history[:_ROWS].ravel()])
+    def _perturb(self, entry: int, change: float) -> None:
+        values, place = self._places[entry]
+        values[place] += change
 
 
 def _is_uneven(

@@ -30,12 +30,18 @@ class Growth:
             next to nothing in a step at any step; these tell when an unstable band is near.
         mirror_radius: the same of motions at half the rate of communication points: there a motion
             meets its own mirror image, and one of the two grows at the expense of the other.
+        fast_change: of the motion of `fast_radius` in a step, distance of its eigenvalue from 1.
     """
 
     radius: float
     frequency: float
     fast_radius: float
     mirror_radius: float = 0.0
+    fast_change: float = np.inf
+
+    def was_slow(self, share: float) -> bool:
+        """True if the motion of `fast_radius` is a slow one in this share of the step."""
+        return share * self.fast_change < _SLOW
 
 
 def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
@@ -52,10 +58,17 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
         found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
-        if noise == 0.0 or found.radius <= 1.0 + GROWTH:  # errors can only make it less
+        # Errors can only make it less; and they bring nothing here from 1 that is so far away.
+        if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
         eigenvalues, known = _with_errors(matrix, noise)
     return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
+
+
+def _is_far(found: Growth, step: float) -> bool:
+    """True if the fastest motion's eigenvalue is not close to 1."""
+    turned = np.exp(2j * np.pi * found.frequency * step)
+    return bool(abs(found.radius * turned - 1.0) > _SLOW)
 
 
 def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
@@ -65,9 +78,17 @@ def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
     angles = np.abs(np.angle(eigenvalues))
     largest = int(np.argmax(sizes))
     frequency = float(angles[largest] / (2.0 * np.pi * step))
-    fast = float(sizes[np.abs(eigenvalues - 1.0) > _SLOW].max(initial=0.0))
+    changes = np.abs(eigenvalues - 1.0)
+    fast = int(np.argmax(np.where(changes > _SLOW, sizes, 0.0)))
+    is_fast = bool(changes[fast] > _SLOW)
     mirror = float(sizes[angles == np.pi].max(initial=0.0))
-    return Growth(float(sizes[largest]), frequency, fast, mirror)
+    return Growth(
+        float(sizes[largest]),
+        frequency,
+        float(sizes[fast]) if is_fast else 0.0,
+        mirror,
+        float(changes[fast]) if is_fast else np.inf,
+    )
 
 
 def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:

@@ -150,12 +150,19 @@ def _step(sample: tuple[float, Growth]) -> float:
 def _with_maxima(
     growth: GrowthOf, samples: list[tuple[float, Growth]]
 ) -> list[tuple[float, Growth]]:
-    """The samples, and the steps tried for a maximum wherever a radius comes close to 1."""
+    """The samples, and the steps tried for a maximum wherever a radius comes close to 1.
+
+    Not where the radius of fast motions rises because a slow one has become one of them.
+    """
     found = list(samples)
-    for (low, one), (_, top), (high, other) in zip(samples, samples[1:], samples[2:], strict=False):
+    for (low, one), (middle, top), (high, other) in zip(
+        samples, samples[1:], samples[2:], strict=False
+    ):
         for radius, close in _CLOSE_TO_ONE.items():
             before, here, after = (getattr(value, radius) for value in (one, top, other))
-            if close < here > max(before, after) and not any(map(_grows, (one, top, other))):
+            joined = radius == "fast_radius" and top.was_slow(low / middle)
+            is_top = close < here > max(before, after) and not joined
+            if is_top and not any(map(_grows, (one, top, other))):
                 found += _tries(growth, low, high, radius)
     return sorted(found, key=_step)
 
