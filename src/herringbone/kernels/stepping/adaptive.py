@@ -74,13 +74,18 @@ def stay(
     return begin
 
 
+@kernel
+def idle(b: np.ndarray, w: np.ndarray, t: float) -> None:
+    """What such a component does to be ready."""
+
+
 def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     rhs: Rhs,
     out: Out,
     declaration: Declaration,
     next_step: str,
     longest_step: str,
-    core: Callable[[Callable], Callable] | None = None,
+    core: Callable[[Callable], tuple[Callable, Callable]] | None = None,
     shortest: float = np.inf,
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
@@ -190,7 +195,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                     return TOO_SMALL
         return 0
 
-    leap = core(set_inputs) if core else stay
+    leap, ready = core(set_inputs) if core else (stay, idle)
 
     @inner(declaration.name)
     def interval(
@@ -218,6 +223,8 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
+        if h == 0.0:
+            ready(b, w, t)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
 
@@ -27,7 +27,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
     stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
     of = taken_places(form, at.rungs)
 
-    @inner(owner)
+    @outside(owner)
     def answer(b: np.ndarray, w: np.ndarray) -> float:
         """Rates and arguments at the states and channels; returns the size of the arguments."""
         z, size = w[at.z : at.z + arguments], 0.0
@@ -36,7 +36,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             size += abs(z[k])
         return size
 
-    @inner(owner)
+    @outside(owner)
     def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
         """Write matrices of the rest; False if it is none that the core can take."""
         dx, still = w[of.rates : of.rates + n], w[of.rates + n : of.rates + 2 * n]
@@ -68,7 +68,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             not_linear += abs(w[of.whole + i * n + turning])
         return not_linear == 0.0
 
-    @inner(owner)
+    @outside(owner)
     def add_tangents(w: np.ndarray) -> None:
         """Add what the laws do by their mean tangents."""
         for s in range(unknowns):
@@ -80,7 +80,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                         for j in range(n):
                             w[of.whole + i * n + j] += by * w[of.of_states + k * n + j]
 
-    @inner(owner)
+    @outside(owner)
     def find_moving(w: np.ndarray) -> None:
         """Find the states that can change: others give them a rate, or inputs do."""
         can, again = w[of.rates : of.rates + n], True
@@ -97,7 +97,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                 if can[i] != 0.0 and size == 0.0:
                     can[i], again = 0.0, True
 
-    @inner(owner)
+    @outside(owner)
     def moving(w: np.ndarray) -> bool:
         """List the states that move; False if one that never does is felt by others."""
         can, count, felt = w[of.rates : of.rates + n], 0, 0.0
@@ -115,7 +115,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                     felt += abs(w[of.whole + int(w[at.states + i]) * n + j])
         return felt == 0.0
 
-    @inner(owner)
+    @outside(owner)
     def apart(b: np.ndarray, w: np.ndarray) -> bool:
         if not take_apart(b, w):
             return False

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
 
@@ -42,7 +42,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
     )  # fmt: skip
     capacity, input_count = at.capacity, form.inputs
 
-    @inner(owner)
+    @outside(owner)
     def channels_at(b: np.ndarray, w: np.ndarray) -> None:
         """Write the channels in the state of `at.x`, laws' values less their mean tangents."""
         x, u, z = w[at.x : at.x + n], w[at.u :], w[at.z : at.z + arguments]
@@ -55,7 +55,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
             u[values + k] = b[inputs[k]]
         u[channels - 1] = 1.0
 
-    @inner(owner)
+    @outside(owner)
     def agrees(b: np.ndarray, w: np.ndarray, t: float) -> bool:
         """True if the rates in the block's state are those of the form."""
         count, u = int(w[at.inside]), w[at.u :]
@@ -96,7 +96,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
                 return False
         return abs(dx[turning] - angle) <= _LINEAR * (abs(angle) + sizes[turning])
 
-    @inner(owner)
+    @outside(owner)
     def holds(b: np.ndarray, w: np.ndarray, t: float) -> bool:
         """True if it does here, and where all states are larger."""
         kept = w[of.room : of.room + n]

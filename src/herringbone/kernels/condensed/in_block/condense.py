@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.apart import apart_taker
 from herringbone.kernels.condensed.in_block.check import checker
 from herringbone.kernels.condensed.in_block.form import Equations, Form
@@ -30,7 +30,7 @@ def condenser(
     apart, holds = apart_taker(form, at, equations), checker(form, at, equations)
     (find, arrange), make = mode_finder(form, at, equations), rung_maker(form, at, owner)
 
-    @inner(owner)
+    @outside(owner)
     def condense(b: np.ndarray, w: np.ndarray, t: float) -> None:
         w[at.status] = NONE
         if not apart(b, w) or not find(w) or not holds(b, w, t):

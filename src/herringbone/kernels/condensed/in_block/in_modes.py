@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
 from herringbone.kernels.eigen.vectors import modes as find_modes
@@ -28,7 +28,7 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
         taken_places(form, at.rungs),
     )
 
-    @inner(owner)
+    @outside(owner)
     def eigenvalues(w: np.ndarray) -> bool:
         """Find the modes; False if there are none."""
         count = int(w[at.inside])
@@ -52,7 +52,7 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
             w[at.rates + capacity + mode] = w[of.rates + mode]
         return True
 
-    @inner(owner)
+    @outside(owner)
     def in_modes(w: np.ndarray) -> None:
         """Write what acts on the modes, and what is wanted of them."""
         count, k = int(w[at.inside]), 0
@@ -84,14 +84,14 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
         for row in range(arguments):
             w[at.of_angle + row] = w[of.of_states + row * n + turning]
 
-    @inner(owner)
+    @outside(owner)
     def find(w: np.ndarray) -> bool:
         if not eigenvalues(w):
             return False
         in_modes(w)
         return True
 
-    @inner(owner)
+    @outside(owner)
     def arrange(w: np.ndarray) -> None:
         """Write back and shapes by columns, over the coordinates as a step has them."""
         count, modes, k = int(w[at.inside]), int(w[at.modes]), 0

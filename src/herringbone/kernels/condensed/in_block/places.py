@@ -125,8 +125,8 @@ def work_places(form: Form, first: int) -> WorkPlaces:
     arrays = (
         1, 1, 1, n, 2 * capacity, 2 * capacity, arguments, 2 * arguments * capacity,
         2 * channels * capacity, n * q_size, n * q_size, _SCRATCH, n, arguments, q_size + 1,
-        given, given, given, rows, rows, degree * form.values, degree * tangents, (degree + 1) * form.kinks,
-        unknowns * unknowns, unknowns,
+        given, given, given, rows, rows, degree * form.values, degree * tangents,
+        (degree + 1) * form.kinks, unknowns * unknowns, unknowns,
     )  # fmt: skip
     rung, own = list(accumulate(matrices, initial=0)), list(accumulate(arrays, initial=first))
     end = max(own[-1] + len(form.lengths) * rung[-1], taken_places(form, own[-1]).end)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner, rare
+from herringbone.kernels.compiling.jit import outside, rare
 from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.elementary import exponential, sine_and_cosine
@@ -57,7 +57,7 @@ def rung_maker(  # noqa: PLR0915 (kernels that share their layout)
     directions, stiff = form.directions.ravel(), np.array(form.stiff)
     tangents, unknowns = len(form.directions), len(form.stiff)
 
-    @inner(owner)
+    @outside(owner)
     def weights(w: np.ndarray, mode: int, c: float, h: float) -> None:
         """Write, for every node, integrals of what acts there, once and twice."""
         re, im, weight = w[room : room + 16], w[room + 16 : room + 32], w[room + 32 : room + 64]
@@ -75,7 +75,7 @@ def rung_maker(  # noqa: PLR0915 (kernels that share their layout)
                 weight[4 * n + 3] += by * im[j + 1] * t / (j + 1)
                 share *= c
 
-    @inner(owner)
+    @outside(owner)
     def of_mode(w: np.ndarray, begin: int, mode: int, i: int) -> None:
         """Add what a mode does at the node i, counted from 0 after the start."""
         re, im, weight = w[room : room + 16], w[room + 16 : room + 32], w[room + 32 : room + 64]
@@ -117,7 +117,7 @@ def rung_maker(  # noqa: PLR0915 (kernels that share their layout)
                     w[push + mode], w[push + modes + mode] = p, q
                     w[push + 2 * modes] += angle
 
-    @inner(owner)
+    @outside(owner)
     def differences(w: np.ndarray, first: int, size: int) -> None:
         """Let the first node of each channel stand for the same value at all nodes."""
         for channel in range(channels):
@@ -126,7 +126,7 @@ def rung_maker(  # noqa: PLR0915 (kernels that share their layout)
                 for k in range(size):
                     w[to + k] += w[to + n * size + k]
 
-    @inner(owner)
+    @outside(owner)
     def slopes(w: np.ndarray, begin: int) -> None:
         """Write directions of the tangents over the unknowns."""
         for i in range(degree):
@@ -141,7 +141,7 @@ def rung_maker(  # noqa: PLR0915 (kernels that share their layout)
                         to = (i * tangents + tangent) * unknowns * degree + s * degree + n
                         w[begin + at.along + to] = total
 
-    @inner(owner)
+    @outside(owner)
     def make(w: np.ndarray, rung: int, h: float) -> None:
         begin = at.rungs + rung * rung_size
         for k in range(rung_size):
