@@ -1,11 +1,19 @@
 """A gearbox as one component for any host."""
 
 from collections.abc import Callable
+from functools import partial
 from types import ModuleType
 
 import numpy as np
 
 from herringbone.analysis.hosted.boundary import Boundary, make_boundary
+from herringbone.analysis.hosted.core_form import (
+    LENGTHS,
+    can_be_condensed,
+    core_equations,
+    core_form,
+)
+from herringbone.analysis.hosted.core_source import core_source
 from herringbone.analysis.hosted.declaration import (
     INNER_STEP,
     NEXT_STEP,
@@ -47,9 +55,11 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.condensed.in_block.leaps import leaper
+from herringbone.kernels.condensed.in_block.places import work_places
 from herringbone.kernels.periodic.motion import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
-from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper
+from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper, adaptive_work
 from herringbone.kernels.stepping.newton import newton_scratch
 
 _TOLERANCE = 1e-3
@@ -83,7 +93,10 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     scratch = count + max(
         newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
     )
-    declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses)
+    first = adaptive_work(count, _inputs(boundary))
+    form = core_form(parts, _inputs(boundary)) if can_be_condensed(boundary, parts) else None
+    work = work_places(form, first).end if form else first
+    declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses, work)
     places = Places(boundary, parts, declaration)
     source = composite_source(
         twin_source(parts.network, parts.instances, parts.layout),
@@ -93,11 +106,20 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         places.block_map(),
         own_lines(places.flanges(), places.start(guesses), places.starts()),
     )
+    core = None
+    if form:
+        inputs = tuple(inside for _, inside in places.block_map().inputs)
+        source += core_source(parts, places.start(guesses), inputs)
     module = load_generated("composite", source)
+    if form:
+        equations = core_equations(boundary, parts, places, module)
+        core = partial(leaper, form, work_places(form, first), equations)
     loader = loader_of(declaration, parts.instances, module)
     component = Component(
         declaration,
-        Kernels(_step_kernel(boundary, declaration, module), module.system_rhs, module.system_out),
+        Kernels(
+            _step_kernel(boundary, declaration, module, core), module.system_rhs, module.system_out
+        ),
         _equations(boundary, parts),
         load=loader,
         verify=loader.verify,
@@ -136,9 +158,22 @@ def _longest_step(declaration: Declaration) -> Callable[[np.ndarray], float]:
     return longest
 
 
-def _step_kernel(boundary: Boundary, declaration: Declaration, module: ModuleType) -> Callable:
+def _inputs(boundary: Boundary) -> int:
+    """How many inputs a host gives."""
+    return sum(2 if f.given is Given.MOTION else 1 for f in boundary.flanges)
+
+
+def _step_kernel(
+    boundary: Boundary, declaration: Declaration, module: ModuleType, core: Callable | None
+) -> Callable:
     advance = adaptive_stepper(
-        module.system_rhs, module.system_out, declaration, NEXT_STEP, INNER_STEP
+        module.system_rhs,
+        module.system_out,
+        declaration,
+        NEXT_STEP,
+        INNER_STEP,
+        core,
+        LENGTHS[-1],
     )
     refresh, index = module.refresh, declaration.index
     tolerance, start, degree = declaration.indices(TOLERANCE, STEP_START, INTERFACE_DEGREE)

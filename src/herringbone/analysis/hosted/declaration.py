@@ -25,7 +25,7 @@ from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.declaring.hosting import Given
 from herringbone.core.declaring.roles import Port, PortKind, Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
-from herringbone.kernels.stepping.adaptive import FIRST, LARGEST, adaptive_work
+from herringbone.kernels.stepping.adaptive import FIRST, LARGEST
 
 START_MODES = ("as_set", "equilibrium", "periodic")
 AS_SET, EQUILIBRIUM, PERIODIC = range(len(START_MODES))
@@ -68,9 +68,18 @@ def lead(flange: HostFlange) -> str:
 
 
 def host_declaration(
-    boundary: Boundary, parts: Parts, tolerance: float, scratch: int, further: list[Variable]
-) -> Declaration:
-    """The declaration; `further` are hidden parameters, `scratch` is room behind the parts."""
+    boundary: Boundary, parts: Parts, tolerance: float, scratch: int, further: list[Variable],
+    work: int,
+) -> Declaration:  # fmt: skip
+    """The declaration.
+
+    Args:
+        boundary, parts: what lies inside.
+        tolerance: of the default experiment.
+        scratch: room behind the parts.
+        further: hidden parameters.
+        work: length of the work space.
+    """
     variables = [*_own_states(boundary), *_of_parts(boundary, parts)]
     variables += [*_outputs(boundary), *_locals(boundary, tolerance)]
     variables += [*_parameters(boundary, parts), *further]
@@ -83,8 +92,6 @@ def host_declaration(
         for node in range(1, NODES + 1)
         if v.nodes and not (boundary.wanted.nodes and v.name in shown)
     }
-    inputs = sum(v.causality is Causality.INPUT for v in variables)
-    own = sum(len(own_states(f)) for f in boundary.flanges)
     return Declaration(
         system.name,
         system.description,
@@ -92,7 +99,7 @@ def host_declaration(
         texts=texts_with_gear_data(parts.instances, boundary.pair),
         vectors=vectors_of(parts.instances, parts.layout.block_first),
         tables=sum(i.component.declaration.size for i in parts.instances) + scratch,
-        work=adaptive_work(own + parts.layout.state_first[-1], inputs),
+        work=work,
         ports=_ports(boundary, variables),
         hidden=hidden,
     )

@@ -167,7 +167,7 @@ class Places:
             unknowns=(*(own + c.x for c in elastic), *offsets),
             sizes=(*(_SIZES[c.unit] for c in elastic), *(_SIZES["rad"] for _ in offsets)),
             rows=tuple(own + c.rate for c in elastic),
-            state_sizes=(*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states),
+            state_sizes=self.state_sizes,
             coordinates=tuple((own + c.x, own + c.rate) for c in found),
             coordinate_sizes=tuple(_SIZES[c.unit] for c in found),
             turning=(*self._turning_flanges(), own + found[angle].x),
@@ -192,6 +192,12 @@ class Places:
             scratch=d.size - d.tables + sum(i.block.size for i in self.parts.instances),
             owner=d.name,
         )
+
+    @property
+    def state_sizes(self) -> tuple[float, ...]:
+        """Usual sizes of all states."""
+        d = self.declaration
+        return (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
 
     def _turning_flanges(self) -> Iterator[int]:
         """States of flanges that are angles."""

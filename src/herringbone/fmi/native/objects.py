@@ -5,7 +5,8 @@ of this computer; it is optimised for its target with every function but the ent
 LLVM then sees that no kernel ever reports an error, and drops all of numba's error path: nothing of
 Python remains. That is checked, see `symbols`.
 
-The entry points that a simulation calls all the time are made fast, the others small.
+The entry points that a simulation calls all the time are made fast, the others small, as is what
+seldom happens.
 """
 
 from collections.abc import Callable, Iterable
@@ -139,8 +140,13 @@ def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:
             item.linkage, item.name = "internal", _ANY_NAME
 
 
-def _make_small(module: llvm.ModuleRef) -> None:
-    for function in module.functions:
+def _is_rare(function: llvm.ValueRef) -> bool:
+    """True if a function stays outside of those that call it."""
+    return any(b"cold" in attribute for attribute in function.attributes)
+
+
+def _make_small(functions: Iterable[llvm.ValueRef]) -> None:
+    for function in functions:
         if not function.is_declaration:
             function.add_function_attribute("optsize")
             function.add_function_attribute("minsize")
@@ -169,7 +175,7 @@ def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool)
     module.verify()
     if not fast:
         _optimise(module, target, _PLAIN, fast=False)
-        _make_small(module)
+    _make_small(f for f in module.functions if not fast or _is_rare(f))
     for _ in range(_PASSES):
         _optimise(module, target, fast=fast)
     return module

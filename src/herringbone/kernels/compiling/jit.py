@@ -81,6 +81,16 @@ def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     return decorate
 
 
+def outside(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """As `inner`, for what seldom happens, see `rare`."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        function.__qualname__ = f"{owner}.{function.__qualname__}"
+        return KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, piece_class=RARE)
+
+    return decorate
+
+
 @intrinsic
 def reals_at(typing_context, addresses, index):  # noqa: ANN001, ANN201
     """Pointer to reals whose address stands at `addresses[index]`."""

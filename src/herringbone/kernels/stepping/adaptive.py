@@ -65,8 +65,28 @@ def _kind(v: Variable) -> tuple[str, float, bool]:
     return v.unit, v.nominal, v.steady == "rotating"
 
 
+@kernel
+def stay(
+    b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
+    tolerance: float, degree: int,
+) -> float:  # fmt: skip
+    """The leap of a component that takes none."""
+    return begin
+
+
+@kernel
+def idle(b: np.ndarray, w: np.ndarray, t: float) -> None:
+    """What such a component does to be ready."""
+
+
 def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
-    rhs: Rhs, out: Out, declaration: Declaration, next_step: str, longest_step: str
+    rhs: Rhs,
+    out: Out,
+    declaration: Declaration,
+    next_step: str,
+    longest_step: str,
+    core: Callable[[Callable], tuple[Callable, Callable]] | None = None,
+    shortest: float = np.inf,
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
 
@@ -75,6 +95,8 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         declaration: of the component.
         next_step: name of the local that keeps the length of the next inner step [s].
         longest_step: name of the local that no inner step is longer than [s].
+        core: makes, of the kernel that sets inputs, one that leaps ahead: `condensed.in_block`.
+        shortest: length of its steps that ends where it stops [s].
 
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
@@ -146,7 +168,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         rhs(b, ts + hs, dx)
 
     @inner(declaration.name)
-    def interval(
+    def explicit(
         b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
         tolerance: float, degree: int,
     ) -> int:  # fmt: skip
@@ -173,12 +195,36 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                     return TOO_SMALL
         return 0
 
+    leap, ready = core(set_inputs) if core else (stay, idle)
+
+    @inner(declaration.name)
+    def interval(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
+        tolerance: float, degree: int,
+    ) -> int:  # fmt: skip
+        """As `explicit`, with leaps where they can be taken."""
+        done = begin
+        while done < end:
+            reached = leap(b, w, t, h, done, end, tolerance, degree)
+            if reached > done:
+                set_inputs(b, w, degree, reached / h)
+                rhs(b, t + reached, w[:n])
+                for i in range(n):
+                    w[first + i] = w[i]
+            done = min(end, reached + shortest)
+            status = explicit(b, w, t, h, reached, done, tolerance, degree)
+            if status != 0:
+                return status
+        return 0
+
     @inner(declaration.name)
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, tolerance: float, degree: int
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
+        if h == 0.0:
+            ready(b, w, t)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0

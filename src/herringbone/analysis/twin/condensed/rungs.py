@@ -136,6 +136,21 @@ def coefficients(degree: int) -> np.ndarray:
     return np.linalg.inv(np.vander(np.array(LOBATTO[degree]), increasing=True))
 
 
+def continued(degree: int, of: int, share: float) -> np.ndarray:
+    """(nodes, nodes): values of a step, continued over the next one, whose length is a share of it.
+
+    Along the polynomial of the degree `of` that goes through the end and fits the others best.
+    """
+    nodes = np.array(LOBATTO[degree])
+    since_end = np.vander(nodes - 1.0, of + 1, increasing=True)[:, 1:]
+    from_end = np.eye(degree + 1)
+    from_end[:, -1] -= 1.0
+    on = np.vander(share * nodes, of + 1, increasing=True)[:, 1:]
+    found: np.ndarray = on @ (np.linalg.pinv(since_end) @ from_end)
+    found[:, -1] += 1.0
+    return found.T
+
+
 def parts(values: np.ndarray) -> np.ndarray:
     """Rows (2 modes, ...) over real and imaginary parts, of complex rows (modes, ...)."""
     return np.concatenate([values.real, -values.imag])

@@ -20,6 +20,7 @@ from herringbone.analysis.twin.condensed.rungs import (
     Shape,
     aligned,
     coefficients,
+    continued,
     empty_rungs,
     make_rung,
     padded,
@@ -296,14 +297,5 @@ def _ahead(degree: int, of: int) -> np.ndarray:
 
     Along the polynomial of a degree that goes through the end and fits the other nodes best.
     """
-    nodes = np.array(LOBATTO[degree])
-    since_end = np.vander(nodes - 1.0, of + 1, increasing=True)[:, 1:]
-    from_end = np.eye(degree + 1)
-    from_end[:, -1] -= 1.0
-    fit = np.linalg.pinv(since_end) @ from_end
-    found = []
-    for share in 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1):
-        on = np.vander(share * nodes, of + 1, increasing=True)[:, 1:] @ fit
-        on[:, -1] += 1.0
-        found.append(on.T)
-    return np.array(found)
+    shares = 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1)
+    return np.array([continued(degree, of, share) for share in shares])

@@ -1,0 +1,43 @@
+"""The condensed form of a component in its block, found when its parameters are known."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.kernels.compiling.jit import outside
+from herringbone.kernels.condensed.in_block.apart import apart_taker
+from herringbone.kernels.condensed.in_block.check import checker
+from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.kernels.condensed.in_block.in_modes import mode_finder
+from herringbone.kernels.condensed.in_block.places import WorkPlaces
+from herringbone.kernels.condensed.in_block.rung import rung_maker
+
+FOUND, NONE = 1, -1
+"""Status: there is a condensed form, or none."""
+
+
+def condenser(
+    form: Form, at: WorkPlaces, equations: Equations
+) -> Callable[[np.ndarray, np.ndarray, float], None]:
+    """Compile condense(b, w, t): writes the form and the matrices of steps, or that there is none.
+
+    Args:
+        form: of the component.
+        at: places in the work space.
+        equations: of the component.
+    """
+    owner, lengths, rungs = equations.owner, np.array(form.lengths), len(form.lengths)
+    apart, holds = apart_taker(form, at, equations), checker(form, at, equations)
+    (find, arrange), make = mode_finder(form, at, equations), rung_maker(form, at, owner)
+
+    @outside(owner)
+    def condense(b: np.ndarray, w: np.ndarray, t: float) -> None:
+        w[at.status] = NONE
+        if not apart(b, w) or not find(w) or not holds(b, w, t):
+            return
+        arrange(w)
+        for rung in range(rungs):
+            make(w, rung, lengths[rung])
+        w[at.status] = FOUND
+
+    return condense

@@ -1,0 +1,112 @@
+"""Modal coordinates of what was taken apart, in the work space."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from herringbone.kernels.compiling.jit import outside
+from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
+from herringbone.kernels.eigen.vectors import modes as find_modes
+
+
+def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
+    form: Form, at: WorkPlaces, equations: Equations
+) -> tuple[Callable[[np.ndarray], bool], Callable[[np.ndarray], None]]:
+    """Compile find(w) -> bool, which writes the modes, and arrange(w), when they are checked.
+
+    Args:
+        form: of the component.
+        at: places in the work space.
+        equations: of the component.
+    """
+    owner, turning, capacity = equations.owner, equations.turning, at.capacity
+    n, channels, arguments, of = (
+        form.states,
+        form.channels,
+        form.arguments,
+        taken_places(form, at.rungs),
+    )
+
+    @outside(owner)
+    def eigenvalues(w: np.ndarray) -> bool:
+        """Find the modes; False if there are none."""
+        count = int(w[at.inside])
+        states, a = w[at.states : at.states + count], w[of.matrix : of.matrix + count * count]
+        for i in range(count):
+            for j in range(count):
+                a[i * count + j] = w[of.whole + int(states[i]) * n + int(states[j])]
+        found = find_modes(
+            a,
+            w[at.rates : at.rates + count],
+            w[of.rates : of.rates + count],
+            w[at.shapes : at.shapes + count * count],
+            w[at.back : at.back + count * count],
+            w[of.room : of.end],
+            count,
+        )
+        if found < 0 or 2 * found >= at.q_size:
+            return False
+        w[at.modes] = found
+        for mode in range(found):
+            w[at.rates + capacity + mode] = w[of.rates + mode]
+        return True
+
+    @outside(owner)
+    def in_modes(w: np.ndarray) -> None:
+        """Write what acts on the modes, and what is wanted of them."""
+        count, k = int(w[at.inside]), 0
+        for mode in range(int(w[at.modes])):
+            pair = w[at.rates + capacity + mode] != 0.0
+            for row in range(arguments + 1):
+                first = of.of_states + row * n if row < arguments else of.whole + turning * n
+                g, h = 0.0, 0.0
+                for i in range(count):
+                    value = w[first + int(w[at.states + i])]
+                    g += value * w[at.shapes + i * count + k]
+                    if pair:
+                        h += value * w[at.shapes + i * count + k + 1]
+                if row < arguments:
+                    w[at.carg + row * capacity + mode] = g
+                    w[at.carg + (arguments + row) * capacity + mode] = h
+                else:
+                    w[at.turns + mode], w[at.turns + capacity + mode] = g, h
+            for c in range(channels):
+                g, h = 0.0, 0.0
+                for i in range(count):
+                    value = w[of.of_inputs + int(w[at.states + i]) * channels + c]
+                    g += value * w[at.back + k * count + i]
+                    if pair:
+                        h -= value * w[at.back + (k + 1) * count + i]
+                w[at.bq + c * capacity + mode] = g
+                w[at.bq + (channels + c) * capacity + mode] = h
+            k += 2 if pair else 1
+        for row in range(arguments):
+            w[at.of_angle + row] = w[of.of_states + row * n + turning]
+
+    @outside(owner)
+    def find(w: np.ndarray) -> bool:
+        if not eigenvalues(w):
+            return False
+        in_modes(w)
+        return True
+
+    @outside(owner)
+    def arrange(w: np.ndarray) -> None:
+        """Write back and shapes by columns, over the coordinates as a step has them."""
+        count, modes, k = int(w[at.inside]), int(w[at.modes]), 0
+        to, size = w[at.rungs :], 2 * modes * count
+        for mode in range(modes):
+            pair = w[at.rates + capacity + mode] != 0.0
+            for i in range(count):
+                back, shape = to[i * 2 * modes + mode :], to[size + mode * count + i :]
+                back[0], back[modes] = w[at.back + k * count + i], 0.0
+                shape[0], shape[modes * count] = w[at.shapes + i * count + k], 0.0
+                if pair:
+                    back[modes] = -w[at.back + (k + 1) * count + i]
+                    shape[modes * count] = -w[at.shapes + i * count + k + 1]
+            k += 2 if pair else 1
+        for i in range(size):
+            w[at.back + i], w[at.shapes + i] = to[i], to[size + i]
+
+    return find, arrange

@@ -1,0 +1,1 @@
+"""Eigenvalues and eigenvectors of real matrices, in the kernel language."""
