@@ -47,8 +47,8 @@ def several(motion: Motion, times: int) -> Motion:
 
 
 def standing(structure: Structure, motion: Motion) -> Orbit:
-    """Equilibrium at the angle of the start, without what deviates: that may open a mesh there."""
-    still = Balance(structure.ideal, Period(0, 1), motion)
+    """Equilibrium at the angle of the start."""
+    still = Balance(structure.problem, Period(0, 1), motion)
     return still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
 
 

@@ -23,20 +23,16 @@ class SystemLaws:
     Args:
         system: whose laws.
         late: time [s] after which no signal changes.
-        ideal: without what comes in over a ramp of angles.
     """
 
-    def __init__(self, system: Condensed, late: float, *, ideal: bool = False) -> None:
+    def __init__(self, system: Condensed, late: float) -> None:
         self._calls, self._late = system.calls(), late
         twin = system.twin
         first = twin.layout.block_first
         for p in system.equations.laws:
             laws = laws_of(twin.instances[p])
             assert laws is not None
-            block = self._calls.blocks[first[p] : first[p + 1]]
-            laws.settle(block)
-            if ideal:
-                laws.withhold(block)
+            laws.settle(self._calls.blocks[first[p] : first[p + 1]])
         self._room: dict[int, Samples] = {}
 
     def __call__(self, z: np.ndarray) -> Samples:

@@ -30,11 +30,6 @@ def settle(block: np.ndarray) -> None:
     block[at.RAMP_TURNS] = 0.0
 
 
-def withhold(block: np.ndarray) -> None:
-    """Keep out what comes in over that ramp."""
-    block[at.RAMP_TURNS] = np.inf
-
-
 def _run_outs(block: np.ndarray) -> Iterator[tuple[int, int]]:
     """Gear and order of moving apexes of the chevrons."""
     if block[at.F_A] != 0.0:

@@ -68,7 +68,6 @@ class Laws:
         periods: arguments that are angles, and the turn after which the values repeat, in whole
             turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
         settle: ends in a block what comes in over a time or an angle, as ramps do.
-        withhold: keeps out of a block what comes in over an angle, after `settle`.
     """
 
     arguments: tuple[str, ...]
@@ -87,4 +86,3 @@ class Laws:
     refusal: Callable[[np.ndarray], str] = _nothing
     periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly
     settle: Callable[[np.ndarray], None] = unchanged
-    withhold: Callable[[np.ndarray], None] = unchanged

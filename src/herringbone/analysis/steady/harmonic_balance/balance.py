@@ -262,11 +262,7 @@ class Balance:
     def _size(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
         """How far stiff values are off, over their sizes."""
         stiff = self.problem.stiff
-        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0)
-        if not size.all():  # contacts that are open all the time
-            rest = samples.f[:, stiff] - samples.z @ self.problem.tangent[stiff].T
-            size = np.where(size > 0.0, size, np.abs(rest).max(axis=0, initial=0.0))
-        size += np.finfo(float).tiny
+        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0) + np.finfo(float).tiny
         low = orders <= self.period.order * self.period.meshes
         return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
 
