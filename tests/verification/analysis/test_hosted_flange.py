@@ -1,6 +1,7 @@
 """The largest communication step of one FMU at a host: closed forms, and runs of the FMU."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from herringbone.analysis.flange.hosted_flange import Host
 from herringbone.commands import main as cli
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature.trial import Trial
+from herringbone.running.foreign import hosted_flange as module
 from herringbone.running.foreign.hosted_flange import hosted_flange
 
 MASS = "tau=f,phi=x,w=v"
@@ -96,6 +98,22 @@ def test_command(kinds, capsys):
     assert found["promised"]
     assert cli.main(["stability", drive, "--flange", "flange", "--inertia", "0.5"]) == 0
     assert "inertia at the flange" in capsys.readouterr().out
+
+
+def test_a_model_that_misses_by_as_much_as_there_is_gives_no_limits(kinds, capsys, monkeypatch):
+    """Its limits would be those of another system: an exported gearbox in trials of 1 ms."""
+    model_of = module._hosted
+    tried = []
+
+    def misses(*of):
+        tried.append(of)
+        return replace(model_of(*of), residual=5.0)
+
+    monkeypatch.setattr(module, "_hosted", misses)
+    drive = str(kinds / "c_e_drive.fmu")
+    assert cli.main(["stability", drive, "--flange", "flange", "--inertia", "0.5"]) == 2
+    assert "misses trials" in capsys.readouterr().err
+    assert len(tried) > 1  # shorter and longer steps were tried before
 
 
 @pytest.mark.parametrize(

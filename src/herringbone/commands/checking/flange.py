@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from herringbone.running.foreign.hosted_flange import HostedFlange
 
 _WIDTH = 100
+_ROUGH = 0.1
+"""Residual of the FMU's model above which its limits are orders of magnitude."""
 _NAMES = {
     False: "shaft evaluated at the communication points",
     True: "shaft stepped in parallel, one step late",
@@ -106,6 +108,11 @@ def _text(found: "HostedFlange") -> str:
         said.append(
             "nothing is promised: the limits are estimates, because that is above 1 %; the FMU "
             "changes with time, is not linear, or has motions that these steps do not resolve"
+        )
+    if found.residual > _ROUGH:
+        said.append(
+            "they tell no more than the order of magnitude: try the step at your host; a gearbox "
+            "that was exported here has limits of its equations in its documentation"
         )
     return "\n".join([*lines, "", *(piece for line in said for piece in wrap(line, _WIDTH))])
 
