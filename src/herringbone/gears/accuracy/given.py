@@ -45,7 +45,10 @@ class GivenDeviations:
         return [read_deviations(Path(file), pair) for file in (self.left, self.right) if file]
 
     def __str__(self) -> str:
-        """What they are, for people."""
+        """What they are, for people; the flanks that carry at negative torque have none."""
+        return f"{self._source()}; drive flanks only: at negative torque the teeth are perfect"
+
+    def _source(self) -> str:
         if self.grade is None:
             return f"teeth deviate as in {self.left} and {self.right}"
         grades = self.grade if isinstance(self.grade, tuple) else (self.grade, self.grade)
