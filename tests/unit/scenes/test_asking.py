@@ -67,7 +67,10 @@ def test_what_is_written_is_read_again(tmp_path):
         ('[[ask]]\nwhat = "x"\nas = "level"\nband = 5', "ask: band = 5 Hz: it must be positive"),
         ("[operating]\nspeed = [3, 1]", "operating: speed = [3, 1]: the lower one first"),
         ('[operating]\nmotion = "transient"\nspeed = 9', "a transient has those of its cycle"),
-        ("[model]\nholds = []", "model: unknown key holds; known: error, frozen, hold, linear, one_way, speed"),
+        (
+            "[model]\nholds = []",
+            "model: unknown key holds; known: error, frozen, hold, linear, one_way, speed",
+        ),
     ],
 )
 def test_refused_in_one_line(tmp_path, text, message):
