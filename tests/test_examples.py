@@ -4,13 +4,10 @@ import importlib.util
 from pathlib import Path
 
 import pytest
+from support.compiler import needs_compiler
 
 import herringbone as hb
-from herringbone.fmi.native import find_compiler, own_platform
 
-needs_compiler = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
-)
 FOLDER = Path(__file__).parents[1] / "examples"
 FILES = {file.stem: file for file in sorted(FOLDER.glob("*.py"))}
 

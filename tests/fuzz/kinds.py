@@ -40,7 +40,7 @@ from herringbone.cosim.structure.system_file import read_system
 from herringbone.gears.accuracy.deviation_file import read_deviations, write_deviations
 from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.files.gear_file import read_gear_file
-from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.files.rexs import read_rexs_job
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, digest
 from herringbone.housing.importers import import_housing
@@ -162,7 +162,7 @@ def _gears() -> list[Kind]:
         Kind("scene", (systems_folder() / "test_rig/scenes/loaded.toml").read_bytes(),
              _file("scene.toml", read_scene)),
         Kind("gear_file", _GEAR_FILE.read_bytes(), _file("x.toml", read_gear_file)),
-        Kind("rexs", _STAGE.read_bytes(), _file("x.rexs", read_rexs)),
+        Kind("rexs", _STAGE.read_bytes(), _file("x.rexs", read_rexs_job)),
         Kind("deviations", teeth, _file("x.csv", lambda file: read_deviations(file, pair)), 1),
         Kind("dimensions", (component_folder("modal_housing") / "welded_housing.toml").read_bytes(),
              _file("x.toml", read_design)),

@@ -14,7 +14,7 @@ from herringbone.gears.accuracy.deviation_file import write_deviations
 from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.gears.files.read_job import read_job, read_mounted_job
-from herringbone.gears.files.rexs import read_rexs
+from herringbone.gears.files.rexs import read_rexs_job
 from herringbone.gears.job import GearJob
 from herringbone.gears.pair_values import backlash_notes, pair_values
 
@@ -217,7 +217,7 @@ def test_tables_without_zero_or_large_loads(changes, expected):
 
 def test_rexs_stage():
     """Its centre distance is that of its profile shifts without backlash, to the digits given."""
-    pair = read_rexs(STAGE)
+    pair = read_rexs_job(STAGE).pair
     assert pair.number_of_teeth == (27, 51)
     assert pair.helix_angle == math.radians(21.0)
     assert pair.center_distance == 0.190
@@ -254,7 +254,7 @@ def test_bad_rexs(tmp_path, old, new, expected):
     file = tmp_path / "bad.rexs"
     file.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(HerringboneError, match=re.escape(expected)) as caught:
-        read_rexs(file)
+        read_rexs_job(file)
     assert "\n" not in str(caught.value)
 
 
@@ -279,7 +279,7 @@ def test_flanks_that_differ(tmp_path):
     file = tmp_path / "unequal.rexs"
     file.write_text(text, encoding="utf-8")
     with pytest.raises(HerringboneError, match="'Pinion' has several values of addendum_mod"):
-        read_rexs(file)
+        read_rexs_job(file)
 
 
 def test_stage_is_chosen(tmp_path):
@@ -289,12 +289,12 @@ def test_stage_is_chosen(tmp_path):
     file.write_text(text.replace("</components>", second), encoding="utf-8")
     names = r"10 \(First stage\), 20 \(Second stage\)"
     with pytest.raises(HerringboneError, match=rf"{names}; choose one .*{file.name}#10 "):
-        read_rexs(file)
-    assert read_rexs(file, stage="First stage") == read_rexs(file, stage="10")
+        read_rexs_job(file)
+    assert read_rexs_job(file, stage="First stage").pair == read_rexs_job(file, stage="10").pair
     with pytest.raises(HerringboneError, match="stage 'Third' is none of"):
-        read_rexs(file, stage="Third")
+        read_rexs_job(file, stage="Third")
     chosen = read_mounted_job(file.with_name(f"{file.name}#10"))
-    assert chosen.pair == read_rexs(file, stage="10", halves=2)
+    assert chosen.pair == read_rexs_job(file, stage="10", halves=2).pair
     with pytest.raises(HerringboneError, match="--stage is of REXS files only"):
         read_mounted_job(tmp_path / "own.toml#10")
 
@@ -303,4 +303,4 @@ def test_other_xml(tmp_path):
     file = tmp_path / "page.xml"
     file.write_text("<html/>", encoding="utf-8")
     with pytest.raises(HerringboneError, match="root element 'html' is not the 'model'"):
-        read_rexs(file)
+        read_rexs_job(file)

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.compiler import needs_compiler
 
 import herringbone as hb
 from herringbone.analysis.accuracy.error import relative_error
@@ -18,7 +19,6 @@ from herringbone.core.declaring.roles import Role
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.fmi.check import check_fmu
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.plotting import PICTURES
 from herringbone.running.loading import load_system
 from herringbone.running.reporting.report import write_report
@@ -52,9 +52,6 @@ PROMISE = 1e-3
 AMBIGUOUS = (
     "herringbone: system 'two_stages': 'gear_mesh' may mean first.gear_mesh or second.gear_mesh; "
     "write more of the path\n"
-)
-needs_compiler = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
 )
 
 

@@ -7,19 +7,18 @@ from functools import partial
 
 import pytest
 from fuzz.campaign import last_commit
+from support.compiler import needs_compiler
 
 from herringbone.benchmarks import fmus, macro_step, steady
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
+from herringbone.fmi.native import build_native_fmus
 from herringbone.running.exporting.parallel_step import PARALLEL
 from herringbone.running.loading import load_scene, load_system, open_parts
 from herringbone.running.start import started
 
-pytestmark = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
-)
+pytestmark = needs_compiler
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""

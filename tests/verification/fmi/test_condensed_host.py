@@ -6,10 +6,10 @@ from itertools import cycle
 import numpy as np
 import pytest
 from fuzz.campaign import last_commit
+from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
 
 from herringbone.core.declaring.hosting import Wanted
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.exporting.system_fmu import export_fmu
 
 RATIO, SPEED, TOLERANCE = 3.0, 1000.0 * np.pi / 30.0, 1e-3
@@ -19,13 +19,7 @@ DRAWN = [(CHANCE.uniform(0.1, 3.5), CHANCE.uniform(-900.0, 900.0)) for _ in rang
 BEARING = "bearing_supports.pinion.radial_stiffness"
 STEPS = (1e-3, 3.7e-4, 4.1e-5, 1e-6, 2.5e-3)
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        own_platform() is None or find_compiler(own_platform()) is None,
-        reason="there is no C compiler",
-    ),
-]
+pytestmark = [pytest.mark.slow, needs_compiler]
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
+from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
 
 from herringbone.analysis.hosted.component import make_hosted
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.core import Instance, ResourceError
 from herringbone.core.declaring.hosting import Wanted
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.exporting.export import ready
 from herringbone.running.exporting.system_fmu import export_fmu
 
@@ -71,10 +71,7 @@ SPOILT = {
 
 
 @pytest.mark.parametrize("case", SPOILT)
-@pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None,
-    reason="there is no C compiler",
-)
+@needs_compiler
 def test_refused_by_both_readers_with_the_same_words(case, composite, tmp_path):
     before, after, part = SPOILT[case]
     file = spoilt(composite, tmp_path, before, after)

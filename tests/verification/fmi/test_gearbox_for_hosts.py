@@ -13,12 +13,12 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
 
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.fmi.check import check_fmu
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.fmi.reference import replay
 from herringbone.running.exporting.system_fmu import export_fmu
 
@@ -29,10 +29,7 @@ BOTH = Wanted({"pinion": Given.SPEED}, exchange=True)
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(
-        own_platform() is None or find_compiler(own_platform()) is None,
-        reason="there is no C compiler",
-    ),
+    needs_compiler,
 ]
 
 

@@ -7,12 +7,12 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
 
 import herringbone as hb
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Wanted
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.exporting.export import export_ssp
 from herringbone.running.exporting.system_fmu import export_fmu
 
@@ -20,10 +20,7 @@ LOAD = {"initial_speed": 100.0, "pinion.tau": 200.0, "wheel.tau": -600.0}
 PATH = "transmission_error"
 ITEMS = {"as_set": 0, "equilibrium": 1, "periodic": 2}
 
-pytestmark = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None,
-    reason="there is no C compiler",
-)
+pytestmark = needs_compiler
 
 
 @pytest.fixture(scope="module", params=[2, 3])

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from support.compiler import needs_compiler
 from support.exchange import ExchangeHost
 
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Instance
 from herringbone.core.places.paths import component_folder
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.exporting.system_fmu import export_fmu
 
 MICRO_STEP, INTERVAL, DURATION = 1e-7, 1e-5, 5e-3
@@ -24,10 +24,7 @@ EPS = np.finfo(float).eps
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(
-        own_platform() is None or find_compiler(own_platform()) is None,
-        reason="there is no C compiler",
-    ),
+    needs_compiler,
 ]
 
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.compiler import needs_compiler
 
 from herringbone.core import HerringboneError
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.fmi.check import check_fmu, without_unit
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.api import run
 from herringbone.running.exporting.system_fmu import export_fmu
 from herringbone.running.loading import load_scene, load_system
@@ -28,9 +28,7 @@ def test_a_system_that_cannot_be_one_fmu_is_refused(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
-)
+@needs_compiler
 def test_gearbox_in_one_fmu_gives_the_forces_of_the_rig(tmp_path):
     system, folder = load_system("test_rig")
     scene = replace(load_scene(folder, "loaded"), t_end=T_END, record_step=STEP)

@@ -3,18 +3,13 @@
 import shutil
 import zipfile
 
-import pytest
+from support.compiler import needs_compiler
 
 import herringbone as hb
 from herringbone.core.places.paths import component_folder
 from herringbone.cosim.ssp.read import read_ssp
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.running.exporting.export import export_ssp
-
-needs_compiler = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
-)
 
 
 def test_data_that_are_not_the_described_ones_lose_no_run(tmp_path):

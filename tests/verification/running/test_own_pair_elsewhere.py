@@ -4,12 +4,12 @@ import math
 
 import fmpy
 import pytest
+from support.compiler import needs_compiler
 from support.own_pair import write_pair
 
 import herringbone as hb
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
-from herringbone.fmi.native import find_compiler, own_platform
 from herringbone.gears.files.gear_file import read_gear_file
 from herringbone.running.exporting.export import export_ssp
 from herringbone.running.loading import load_system
@@ -26,9 +26,6 @@ second = { system = "gearbox" }
 bench_controller = { component = "bench_controller" }
 """
 SCENE = 't_end = 1e-3\nstart = "rest"\n'
-needs_compiler = pytest.mark.skipif(
-    own_platform() is None or find_compiler(own_platform()) is None, reason="there is no C compiler"
-)
 
 
 @pytest.fixture

@@ -93,9 +93,8 @@ def compile_wrapper(compiler: Compiler, platform: Platform, folder: Path, fmi: i
     Raises:
         FmuError: the compiler failed.
     """
-    flags = [*_FLAGS, *_system(platform), *_include(), "-c"]
     for source in _sources(fmi):  # zig takes one at a time
-        _run(compiler, platform, [*flags, str(source), "-o", f"{source.stem}.o"], folder)
+        _compile(compiler, platform, source, folder)
 
 
 def compile_library(
@@ -120,15 +119,17 @@ def compile_library(
     link = list(_LINK[platform.extension])
     if platform.extension == "dylib":
         link.append(f"-Wl,-install_name,@rpath/{library.name}")
-    own = f"{description.stem}.o"
-    flags = [*_FLAGS, *_system(platform), *_include(), "-c"]
-    _run(compiler, platform, [*flags, str(description), "-o", own], library.parent)
+    own = _compile(compiler, platform, description, library.parent)
     inputs = [own, *map(str, objects), "-o", library.name]
     _run(compiler, platform, ["-shared", "-s", *inputs, *link], library.parent)
 
 
-def _system(platform: Platform) -> tuple[str, ...]:
-    return _SYSTEM[platform.extension]
+def _compile(compiler: Compiler, platform: Platform, source: Path, folder: Path) -> str:
+    """Compile a C file into a folder; name of its object file there."""
+    made = f"{source.stem}.o"
+    flags = [*_FLAGS, *_SYSTEM[platform.extension], *_include(), "-c"]
+    _run(compiler, platform, [*flags, str(source), "-o", made], folder)
+    return made
 
 
 def _include() -> list[str]:

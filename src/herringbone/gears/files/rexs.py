@@ -45,11 +45,6 @@ _MODIFICATIONS = ("relief", "relief_datum_face", "relief_non_datum_face", "crown
 """How types of components end that modify flanks (REXS 1.4 and later)."""
 
 
-def read_rexs(file: str | Path, *, stage: str | None = None, halves: int = 1) -> GearPair:
-    """Read a stage of a REXS file; see `read_rexs_job`."""
-    return read_rexs_job(file, stage=stage, halves=halves).pair
-
-
 def read_rexs_job(file: str | Path, *, stage: str | None = None, halves: int = 1) -> GearJob:
     """Read a stage of a REXS file, and name what of it is not read.
 
