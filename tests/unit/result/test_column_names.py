@@ -21,7 +21,7 @@ def test_any_ending(result, name):
 
 
 def test_a_name_ends_at_a_dot(result):
-    with pytest.raises(ParameterError, match="no column 'left.force'"):
+    with pytest.raises(ParameterError, match=r"no column 'left\.force'"):
         result["left.force"]
 
 
