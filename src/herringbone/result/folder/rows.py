@@ -85,7 +85,7 @@ class RowFile:
         write_all(self._descriptor, _header(rows, self.columns))
 
     def _keep_whole(self, most: int) -> None:
-        """After an error: rows that are there as a whole, `most` at most, are counted; no others."""
+        """After an error: rows that are whole, `most` at most, are counted; no others."""
         try:
             there = (os.fstat(self._descriptor).st_size - _HEADER) // self._row
             if there > self.rows:
