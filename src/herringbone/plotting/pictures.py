@@ -13,6 +13,7 @@ from herringbone.analysis.asked import by_half, column_of, shaft_side
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
+from herringbone.analysis.figures.standstill import stands_still
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
@@ -223,6 +224,7 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
 }
 
 
+_OF_FREQUENCIES = frozenset({"spectra", "radiated_power", "sensors"})
 _OF_SOME: dict[str, Callable[[Result], Figure]] = {"run_up": run_up}
 """Pictures of runs of a kind: those whose speed changes."""
 
@@ -231,7 +233,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
     Several gearboxes have pictures of their own, such as `overview.first.png`. A run of less than
-    two records has no pictures.
+    two records has no pictures, one in which nothing turns none of frequencies.
 
     Args:
         result: of a run.
@@ -248,6 +250,8 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
     files: list[Path] = []
     if len(result.data) < 2:
         return files
+    if stands_still(result):
+        drawn = {name: draw for name, draw in drawn.items() if name not in _OF_FREQUENCIES}
     for box, seen in by_gearbox(result).items():
         for name, draw in drawn.items():
             try:

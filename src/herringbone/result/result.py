@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 TIME = "time"
 _SPLINE_ROWS = 4
+_SHOWN = 4
+"""Columns that a name may mean, in a message."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,8 @@ class RunInfo:
         slow: bodies that step once in several macro steps, and in how many.
         core: of a fused run, the "degree" of its polynomials, the base "step" [s], and how many
             "steps", "halvings", "evaluations" of the laws and "bends" of them there were.
-        parameters: all real parameters by `instance.variable`, SI units; not in the summary.
+        parameters: all real parameters, and inputs that nothing feeds, by `instance.variable`, SI
+            units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
         anatomy: what the parts are for, and what is joined to what; not in the summary.
         sensors: those of the system, by name; not in the summary.
@@ -143,7 +146,10 @@ class Result(Facts):
         return {c: endings(parts, c) for c in self.data.columns if c != TIME}
 
     def column(self, name: str) -> str:
-        """The column of that name, or the only one whose name ends so, its part cut short.
+        """The column of that name, or the only one whose name ends so, after a dot.
+
+        An ending of the path of the part, with the whole name of its variable, comes before an
+        ending of the variable's name: `motor.torque` is what a part `motor` shows.
 
         Raises:
             ParameterError: there is none, or there are several.
@@ -151,8 +157,11 @@ class Result(Facts):
         if name in self.data:
             return name
         found = [column for column, called in self._called().items() if name in called]
+        found = found or [column for column in self._called() if column.endswith(f".{name}")]
         if len(found) > 1:
-            raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
+            more = f" or {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+            meant = " or ".join(found[:_SHOWN]) + more
+            raise ParameterError(f"{shown(name)} may mean {meant}; write more of it")
         if not found:
             near = get_close_matches(str(name), self.data.columns, 3)
             hint = f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
