@@ -30,6 +30,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import HerringboneError
 from herringbone.housing import default_housing, write_housing
+from herringbone.running.operating.questions import questions_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Operating, Scene
@@ -38,7 +39,6 @@ from herringbone.studies.planning.estimated import Ladder
 from herringbone.studies.planning.plan import plan
 from herringbone.studies.planning.points import first_point, points_to_probe
 from herringbone.studies.planning.rung import SHARE, STEADY
-from herringbone.studies.planning.steady_plan import questions_of
 
 _R_MIN = math.pi / 30.0
 _LEAST, _LARGE = 1e-4, 0.3

@@ -11,14 +11,12 @@ from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, 
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.questions import USUAL, questions_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Scene
 from herringbone.studies.planning.points import first_point, points_to_probe
-from herringbone.studies.planning.steady_plan import questions_of
 
-_USUAL = tuple(Ask((what,)) for what in ("bearing force", "seat velocity"))
-"""What is looked at if the scene asks nothing."""
 _ROUND = 50.0
 """Bands are multiples of it [Hz]."""
 
@@ -90,7 +88,7 @@ def asked_of(system: str, scene: str | None, housing: Path | None) -> Asked:
     solver = _solver(system, own, housing)
     questions = tuple(
         Question(q.name, q.columns, Form.SPECTRUM, q.tolerance)
-        for q in questions_of(solver.structure.core, own.asks or _USUAL)
+        for q in questions_of(solver.structure.core, own.asks or USUAL)
     )
     return Asked(system, own, questions, _lines(solver, own, questions))
 

@@ -15,8 +15,9 @@ from herringbone.core.declaring.facts import Facts
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of
-from herringbone.running.operating.steady import prepared_at
+from herringbone.running.operating.questions import questions_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Model, Motion, Scene
@@ -24,7 +25,7 @@ from herringbone.studies.planning.certified import FINER, tolerance_for
 from herringbone.studies.planning.joint import Joint, joint_choices
 from herringbone.studies.planning.points import first_point
 from herringbone.studies.planning.rung import Rung
-from herringbone.studies.planning.steady_plan import questions_of, steady_rungs
+from herringbone.studies.planning.steady_plan import steady_rungs
 from herringbone.studies.planning.transient_plan import transient_rungs
 
 

@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.analysis.leaner.asked_for import asked_for
 from herringbone.analysis.leaner.question import Lines, Question, lines_of
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
-from herringbone.analysis.twin.fused.core import Core, Steps, closeness
+from herringbone.analysis.twin.fused.core import Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
 from herringbone.studies.planning.marching import marched
@@ -28,22 +27,6 @@ _ALIKE = 1.1
 """Cost over the least that is no difference, of one turn."""
 _WORTH = 0.95
 """Cost over that of the whole model below which leaving something out is worth it."""
-
-
-def questions_of(core: Core, asks: Sequence[Ask]) -> list[Question]:
-    """What is asked, with all outputs by name.
-
-    Raises:
-        ParameterError: the system has no such output.
-    """
-    found: dict[str, Question] = {}
-    for ask in asks:
-        columns = dict.fromkeys(c for what in ask.what for c in asked_for(core, what))
-        own = Question(ask.name, tuple(columns), ask.form, ask.tolerance, ask.band, ask.orders)
-        known = found.get(ask.name)
-        if known is None or own.tolerance < known.tolerance:
-            found[ask.name] = own
-    return list(found.values())
 
 
 def steady_rungs(
