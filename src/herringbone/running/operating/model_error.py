@@ -45,7 +45,11 @@ def model_errors(
         given = prepared_at(point, *leaner)
         own = SteadySolver(given.system, fine, lean=lean_of(given.scene))
         state = _found(own.solve(point), "the leaner model")
-    errors = {q: apart(q, lines_of(state, q), lines_of(theirs, q)).error for q in questions}
+    own_questions = questions_of(state.structure.core, asks)  # of its own housing's data
+    errors = {
+        q: apart(q, lines_of(state, own), lines_of(theirs, q)).error
+        for own, q in zip(own_questions, questions, strict=True)
+    }
     said = ", ".join(_told(q, error, asked=bool(asked)) for q, error in errors.items())
     at = f"steady at {abs(theirs.speed) * R_MIN:.5g} r/min"
     is_large = any(error > q.tolerance for q, error in errors.items())

@@ -64,7 +64,7 @@ class Asked(NamedTuple):
             HerringboneError: there is no steady state with it.
         """
         solver = _solver(self.system, self.scene, housing)
-        other = _lines(solver, self.scene, self.questions)
+        other = _lines(solver, self.scene, _questions(solver, self.scene))
         return [
             (
                 question,
@@ -86,11 +86,16 @@ def asked_of(system: str, scene: str | None, housing: Path | None) -> Asked:
     """
     own = load_scene(load_system(system)[1], scene)
     solver = _solver(system, own, housing)
-    questions = tuple(
-        Question(q.name, q.columns, Form.SPECTRUM, q.tolerance)
-        for q in questions_of(solver.structure.core, own.asks or USUAL)
-    )
+    questions = _questions(solver, own)
     return Asked(system, own, questions, _lines(solver, own, questions))
+
+
+def _questions(solver: SteadySolver, scene: Scene) -> tuple[Question, ...]:
+    """All lines of what is asked, whatever its band."""
+    return tuple(
+        Question(q.name, q.columns, Form.SPECTRUM, q.tolerance, view=q.view)
+        for q in questions_of(solver.structure.core, scene.asks or USUAL)
+    )
 
 
 def _solver(system: str, scene: Scene, housing: Path | None) -> SteadySolver:
