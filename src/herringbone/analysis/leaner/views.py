@@ -6,7 +6,6 @@ a leaner model holds; see `analysis.figures.sensors` and `analysis.figures.radia
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -19,13 +18,12 @@ from herringbone.analysis.figures.modal_response import (
 )
 from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, level_db
 from herringbone.analysis.figures.sensors import chain_of
+from herringbone.analysis.figures.system_housings import data_of
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor
-from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
-from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.structure.system import System
-from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
-from herringbone.housing.files.file_format import MODES
+from herringbone.housing import SEAT_DOFS, ModalHousing
 
 _MM = 1e3
 
@@ -129,7 +127,7 @@ def sensors_view(system: System, names: tuple[str, ...]) -> tuple[Sensors, list[
         raise ParameterError(f"ask: {system.name} has no {what}; there are: {known}")
     specs = [system.sensors[name] for name in names]
     parts = tuple(dict.fromkeys(spec.part for spec in specs))
-    housings = tuple(_data(system, part) for part in parts)
+    housings = tuple(data_of(system, part) for part in parts)
     at = tuple(parts.index(spec.part) for spec in specs)
     shapes = []
     for spec, k in zip(specs, at, strict=True):
@@ -149,7 +147,7 @@ def power_view(system: System) -> tuple[Power, list[str]]:
         ParameterError: there is no housing, or its data have no Gram matrix of the surface.
     """
     parts = tuple(anatomy(system).with_role(Role.HOUSING))
-    housings = tuple(_data(system, part) for part in parts)
+    housings = tuple(data_of(system, part) for part in parts)
     if not parts or any(housing.gram is None for housing in housings):
         raise ParameterError(
             f"ask: radiated power: {system.name} has no housing whose data have surface_gram.csv"
@@ -177,17 +175,3 @@ def _forces(system: System, parts: tuple[str, ...]) -> list[str]:
             raise ParameterError(f"ask: no part is a {Role.BEARING} at {part}.{missing[0]}")
         found += [f"{ports[seat]}.f_{axis}" for seat, axis in SEAT_DOFS]
     return found
-
-
-def _data(system: System, part: str) -> ModalHousing:
-    """Modal data of a housing; raises ParameterError if they are not known."""
-    spec, column = system.part(part), anatomy(system).column(part, Quantity.MODES)
-    if spec.foreign or column is None or spec.component is None:
-        raise ParameterError(f"ask: {part}: the modal data of a foreign part are not known")
-    component = COMPONENTS[spec.component]
-    variable = column.removeprefix(f"{part}.")
-    declared = next(text.start for text in component.declaration.texts if text.name == variable)
-    file = component.resources / Path(str(spec.values.get(variable, declared)))
-    if file.name != MODES:
-        raise ParameterError(f"ask: {part}: {file} is not of the format modal-housing")
-    return read_housing(file.parent)

@@ -31,7 +31,8 @@ def refuse_lean(scene: Scene) -> None:
     if scene.model:
         raise ParameterError(
             f"scene {scene.name}: [model]: leaner models are of steady states, sweeps of them, and "
-            "runs with fuse, without foreign parts; drop [model] for the whole one"
+            "runs with fuse, without foreign parts, and of export --as-fmu; drop [model] for the "
+            "whole one"
         )
 
 

@@ -82,6 +82,7 @@ def plan(
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
     chart: bool = False,
+    for_fmu: bool = False,
 ) -> Plan:
     """The least model and the solver that answer what a scene asks.
 
@@ -90,6 +91,7 @@ def plan(
 
     Args:
         system, scene, values, gear, housing: see `herringbone.run`; the scene asks.
+        for_fmu: choose what an FMU can do without, as much as may go; states are its cost.
         chart: also solve joint choices of model and tolerance, for a picture; of steady states.
 
     Raises:
@@ -117,7 +119,9 @@ def plan(
         solver = SteadySolver(found.system)
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
-        rungs, certifier, said = steady_rungs(fine, questions, asking, lean_of(asking))
+        rungs, certifier, said = steady_rungs(
+            fine, questions, asking, lean_of(asking), for_fmu=for_fmu
+        )
         tolerance, charted = certifier.tolerance, certifier
     asking = replace(asking, values={**asking.values, **as_texts(values)})
     notes = (*found.notes, *said)
