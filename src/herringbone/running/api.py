@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from herringbone.analysis.steady.set_points import Point
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import housing_of_strangers
@@ -18,6 +19,7 @@ from herringbone.running.fused.fused import (
     check_kind,
     check_record,
 )
+from herringbone.running.operating.by_hand import warned_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import lean_notes
 from herringbone.running.output.run_output import RunOutput
@@ -133,6 +135,7 @@ def run(
             operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
         )
+        notes += warned_by_hand(system, scene, wishes, Point(speed, torque))
         heard = Heard(progress, recorded, output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)

@@ -81,14 +81,23 @@ def _worst(
     found = []
     for question in questions:
         own = [place[name] for name in question.columns]
-        off = np.sqrt(np.mean((ours.values[:, own] - theirs.values[:, own]) ** 2, axis=0))
-        size = np.std(_less_slow(theirs.values[:, own], window), axis=0)
+        one, other = (_rows(question, each, own) for each in (ours, theirs))
+        off = np.sqrt(np.mean((one - other) ** 2, axis=0))
+        size = np.std(_less_slow(other, window), axis=0)
         whole = float(np.linalg.norm(size))
         single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
         k = int(single.argmax())
         error = float(np.linalg.norm(off)) / whole if whole else 0.0
-        found.append(Worst(error, question, question.columns[k], float(single[k]), Point()))
+        found.append(Worst(error, question, question.outputs[k], float(single[k]), Point()))
     return max(found, key=lambda each: each.ratio)
+
+
+def _rows(question: Question, march: Marched, columns: Sequence[int]) -> np.ndarray:
+    """What is asked for (times, outputs)."""
+    values = march.values[:, columns]
+    if question.view is None:
+        return values
+    return question.view.signals(values, march.times[1] - march.times[0])
 
 
 def _less_slow(values: np.ndarray, window: int) -> np.ndarray:
