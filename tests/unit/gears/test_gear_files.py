@@ -167,10 +167,10 @@ def test_deviations_of_a_class(tmp_path):
     for ours, wanted in zip(left, deviations(job.pair, (5, 7), 3, 0), strict=True):
         assert np.array_equal(ours.cumulative_pitch, wanted.cumulative_pitch)
     assert not np.array_equal(left[0].helix_slope, right[0].helix_slope)
-    assert str(job.deviations) == (
-        "teeth deviate as ISO 1328-1 class 5 and 7 lets pass, seed 3; drive flanks only: at "
-        "negative torque the teeth are perfect"
-    )
+    assert str(job.deviations) == "teeth deviate as ISO 1328-1 class 5 and 7 lets pass, seed 3"
+    coast = job.deviations.of_coast_flanks(job.pair)[1]
+    wanted = deviations(job.pair, (5, 7), 3, 1, coast=True)
+    assert np.array_equal(coast[1].helix_slope, wanted[1].helix_slope)
 
 
 def test_deviations_of_files_beside_the_gear_file(tmp_path):
@@ -182,6 +182,10 @@ def test_deviations_of_files_beside_the_gear_file(tmp_path):
     right = job.deviations.of_halves(job.pair)[1]
     wanted = deviations(job.pair, 6, 1, 1)
     assert np.array_equal(right[1].profile_slope, wanted[1].profile_slope)
+    assert job.deviations.of_coast_flanks(job.pair) == []
+    write_deviations(wanted, tmp_path / "r.csv", deviations(job.pair, 6, 1, 1, coast=True))
+    with pytest.raises(HerringboneError, match=r"one of .*l\.csv and .*r\.csv has no columns of"):
+        job.deviations.of_coast_flanks(job.pair)
 
 
 def test_missing_gear_file(tmp_path):
