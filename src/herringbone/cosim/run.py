@@ -15,7 +15,7 @@ from herringbone.cosim.divergence import diverged
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
-from herringbone.cosim.loops.adaptive import STEP_LIMIT
+from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT
 from herringbone.cosim.loops.common import (
     COUPLING_FAILED,
     DONE,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.cosim.loops.step_error import (
+from herringbone.cosim.loops.adaptive_step.step_error import (
     AMPLIFICATION,
     COUPLING,
     FLOOR,

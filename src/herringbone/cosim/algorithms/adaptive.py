@@ -31,17 +31,17 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.nodes import Buffers, Control
-from herringbone.cosim.loops.adaptive import STEP_LIMIT, run_adaptive
-from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
-from herringbone.cosim.loops.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
-from herringbone.cosim.loops.nodes import REFRESH
-from herringbone.cosim.loops.step_error import (
+from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
+from herringbone.cosim.loops.adaptive_step.step_error import (
     COUPLING,
     INNER_STEPS,
     LARGEST,
     ORDER,
     update_scale,
 )
+from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
+from herringbone.cosim.loops.nodes import REFRESH
 from herringbone.cosim.rows.record import Grid, GrowingRecord
 from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network

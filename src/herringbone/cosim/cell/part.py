@@ -13,8 +13,8 @@ from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Val
 from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits
 from herringbone.cosim.cell.calls import derivatives, signals, states
-from herringbone.cosim.cell.housing import give_back
 from herringbone.cosim.cell.policy import Remark, policy
+from herringbone.cosim.cell.pool import give_back
 from herringbone.cosim.cell.process import Cell, CellLost
 from herringbone.cosim.fmu.variables import read_variables, resized
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.core.declaring.declaration import node_name
-from herringbone.core.part import Part
+from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.energy.monitor import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.layouts.derivatives import Derivatives
 from herringbone.cosim.layouts.slow import Slow, lay_out_slow
@@ -82,7 +82,7 @@ def record_names(network: Network) -> list[list[str]]:
         [
             name
             for name, v in part.variables.items()
-            if v.causality == "output" and v.is_real and ".node" not in name
+            if v.causality == "output" and v.is_real and not is_signal_node(part, name)
         ]
         for part in network.parts
     ]

@@ -26,6 +26,19 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
+from herringbone.cosim.loops.adaptive_step.ladder import fitting_rung
+from herringbone.cosim.loops.adaptive_step.step_choice import (
+    TOO_MUCH,
+    continued,
+    next_rung,
+    too_much,
+)
+from herringbone.cosim.loops.adaptive_step.step_error import (
+    ORDER,
+    error_so_far,
+    step_error,
+    update_scale,
+)
 from herringbone.cosim.loops.common import (
     DONE,
     LAST_GOOD,
@@ -34,11 +47,8 @@ from herringbone.cosim.loops.common import (
     get_outputs,
     not_finite,
 )
-from herringbone.cosim.loops.ladder import fitting_rung
 from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
-from herringbone.cosim.loops.step_choice import TOO_MUCH, continued, next_rung, too_much
-from herringbone.cosim.loops.step_error import ORDER, error_so_far, step_error, update_scale
 from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
