@@ -3,10 +3,11 @@
 import json
 
 import pytest
-from support.c_housing import c_housing_fmu
+from support.c_housing import DOFS, c_housing_fmu
 
 import herringbone as hb
 from herringbone.commands import main as cli
+from herringbone.running.reporting.summary import summary_text
 
 SPRING, BETWEEN = 1.5e8, 8e7
 """Along the shafts [N/m], the softest direction: of each seat, and between two."""
@@ -64,3 +65,29 @@ def test_a_right_one_completes(capsys, caplog, tmp_path):
     code, found = run(capsys, tmp_path, c_housing_fmu(tmp_path), "0.001")
     assert (code, found["outcome"]) == (0, "completed")
     assert not any("c_housing.fmu" in line for line in [*caplog.messages, *found["notes"]])
+
+
+def test_check_knows_the_variables_of_a_housing(capsys, tmp_path):
+    file = c_housing_fmu(tmp_path)
+    assert cli.main(["check", str(file)]) == 0
+    assert f"'herringbone check {file} --as housing'" in capsys.readouterr().out
+
+
+def test_units_of_a_housing_without_are_si(tmp_path):
+    """As the table of the seats, the lines of the spectrum have theirs."""
+    names = [f"{seat}.{q}_{axis}" for seat, axis in DOFS for q in "fsv"]
+    file = c_housing_fmu(tmp_path, units=dict.fromkeys(names, ""))
+    result = hb.run("gearbox", replace_parts={"modal_housing": file}, t_end=2e-3)
+    assert result.units["modal_housing.wheel_left.v_y"] == "m/s"
+    assert result.units["modal_housing.wheel_left.s_y"] == "m"
+    lines = summary_text(result).splitlines()
+    (line,) = (line for line in lines if line.startswith("seat velocity:"))
+    assert " mm/s at " in line
+
+
+def test_stability_of_one_that_saves_no_state_says_what_helps(capsys, tmp_path):
+    file = c_housing_fmu(tmp_path)
+    assert cli.main(["stability", "gearbox", "--replace", f"modal_housing={file}"]) == 2
+    said = capsys.readouterr().err
+    assert "nothing is promised: modal_housing: it cannot repeat a step (it saves no state)" in said
+    assert "'herringbone run' with --step" in said

@@ -30,6 +30,7 @@ from herringbone.core.part import Part
 
 STEP = 2e-5
 """Communication step size [s] of the tests; two-way coupling wants no larger one."""
+_VARIABLES = "variables"
 _ENERGY = {"passivity", "damping"}
 """Tests that a housing fails which makes energy."""
 _UNITS = (
@@ -103,6 +104,11 @@ def usual_compliance() -> float:
     return compliance_of(lambda: InProcessPart(Instance(component_for(Role.HOUSING), "usual")))
 
 
+def looks_like_housing(part: Part) -> bool:
+    """True if a part has all variables of a housing."""
+    return all(finding.holds for finding in _declared(part) if finding.test == _VARIABLES)
+
+
 def of_energy(findings: Sequence[Finding]) -> list[Finding]:
     """What says of a housing that was tested that it makes energy."""
     return [finding for finding in findings if finding.test in _ENERGY and not finding.holds]
@@ -120,7 +126,7 @@ def _declared(part: Part) -> Iterator[Finding]:
     count = f"{len(wanted) - len(missing)} of {len(wanted)}"
     shown = f"{count}; missing: {', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
     limit = "12 inputs f, 12 outputs s, 12 outputs v"
-    yield judged("variables", not missing, shown if missing else count, limit)
+    yield judged(_VARIABLES, not missing, shown if missing else count, limit)
     present = [part.variables[name] for name in wanted if name not in missing]
     wrong = [
         f"{v.name} in {v.unit}"
