@@ -152,6 +152,13 @@ def test_pair_of_the_gear_mesh_component():
         ("[modification]", "[deviations]\ngrade = 6.5\n[modification]", "must be an integer"),
         ("[modification]", "[deviations]\ngrade = [6, 6, 6]\n[modification]", "one or two classes"),
         ("[modification]", "[deviations]\nleft = 6\n[modification]", "left = 6 must be a text"),
+        ("[modification]", "[deviations]\ngrade = 60\n[modification]",
+         "bad.toml: [deviations] grade = 60, seed = 0: ISO 1328-1 tolerance class 60 must be an "
+         "integer from 1 to 11"),
+        ("[modification]", "[deviations]\ngrade = 6\nseed = -1\n[modification]",
+         "[deviations] grade = 6, seed = -1: seed -1 of the tooth deviations must be zero or"),
+        ("face_width", 'shaft_diameter = ["110 mm", "80 mm"]\nstub_length = "80 mm"\nface_width',
+         "pinion: shaft_diameter 110 mm must not be larger than the root diameter 100.3692 mm"),
     ],
 )  # fmt: skip
 def test_bad_gear_file(message, old, new, expected):
