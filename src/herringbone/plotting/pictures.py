@@ -224,7 +224,6 @@ PICTURES: dict[str, Callable[[Result], Figure]] = {
 }
 
 
-_OF_FREQUENCIES = frozenset({"spectra", "radiated_power", "sensors"})
 _OF_SOME: dict[str, Callable[[Result], Figure]] = {"run_up": run_up}
 """Pictures of runs of a kind: those whose speed changes."""
 
@@ -233,7 +232,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
     Several gearboxes have pictures of their own, such as `overview.first.png`. A run of less than
-    two records has no pictures, one in which nothing turns none of frequencies.
+    two records has no pictures, and neither has one in which nothing turns.
 
     Args:
         result: of a run.
@@ -248,10 +247,8 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
         drawn["spectra"] = partial(spectra, highest=highest)
         drawn["run_up"] = partial(run_up, highest=highest)
     files: list[Path] = []
-    if len(result.data) < 2:
+    if len(result.data) < 2 or stands_still(result):
         return files
-    if stands_still(result):
-        drawn = {name: draw for name, draw in drawn.items() if name not in _OF_FREQUENCIES}
     for box, seen in by_gearbox(result).items():
         for name, draw in drawn.items():
             try:

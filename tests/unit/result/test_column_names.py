@@ -5,7 +5,7 @@ import re
 import pytest
 from support.result import make_result
 
-from herringbone.core import ParameterError
+from herringbone.core import HerringboneError, ParameterError
 
 
 @pytest.fixture(scope="module")
@@ -39,3 +39,27 @@ def test_what_may_mean_many_shows_a_few(result):
     said = f"'f_y' may mean {' or '.join(ending[:4])} or {len(ending) - 4} more; write more of it"
     with pytest.raises(ParameterError, match=re.escape(said)):
         result["f_y"]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("mesh_left.forse", "did you mean gearbox.gear_mesh.mesh_left.force or "),
+        ("qqqq", "no column 'qqqq'; see result.data.columns"),
+    ],
+)
+def test_a_short_name_that_is_misspelt(result, name, said):
+    """Nearness is that to the endings: the whole name is four times as long."""
+    with pytest.raises(ParameterError, match=re.escape(said)):
+        result[name]
+
+
+def test_a_group_that_is_misspelt(result):
+    with pytest.raises(ParameterError, match="no column matches 'bearing_forces'; did you mean be"):
+        result.plot("bearing_forces")
+
+
+def test_a_table_goes_into_a_folder_that_is_there(result, tmp_path):
+    file = tmp_path / "no" / "out.csv"
+    with pytest.raises(HerringboneError, match=re.escape(f"cannot write {file}: No such file")):
+        result.to_csv(file)

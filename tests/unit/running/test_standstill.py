@@ -67,8 +67,7 @@ def test_what_programs_and_pictures_show(still, tmp_path):
     (figures,) = physical_results(still)["gearboxes"].values()
     assert physical_results(still)["standstill"]
     assert set(figures) == {"gear_pairs", "bearing_force_N", "seat_velocity_m_s"}
-    drawn = {file.stem for file in write_pictures(still, tmp_path)}
-    assert drawn == {"overview", "bearing_forces", "seat_velocities", "torques"}
+    assert not write_pictures(still, tmp_path)
 
 
 def test_the_note_tells_what_to_set(still):

@@ -23,7 +23,7 @@ def summary_text(result: Result) -> str:
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
     if len(result.data) < 2 or result.outcome.unstable:
-        lines += ["", "No figures: the run left nothing that can be evaluated."]
+        lines += ["", f"No figures: {_why_none(result)}."]
     else:
         for found in map(list, _sections(result)):
             lines += ["", *found] if found else []
@@ -33,6 +33,17 @@ def summary_text(result: Result) -> str:
     )
     tail = notes + files
     return "\n".join([*lines, *(["", *tail] if tail else [])]) + "\n"
+
+
+def _why_none(result: Result) -> str:
+    """Why a run has no figures."""
+    records, step, reached = len(result.data), result.info.record_step, result.outcome.time
+    if result.outcome.unstable or step <= reached:
+        return "the run left nothing that can be evaluated"
+    return (
+        f"{records} record{'s' if records != 1 else ''}, as one every {_time(step)} was asked for "
+        f"and the run takes {_time(reached)}; use a shorter --record-step"
+    )
 
 
 def _time(seconds: float) -> str:
