@@ -50,7 +50,7 @@ def transient_rungs(
         except HerringboneError:
             finer = None
             continue
-        found = _worst(questions, columns, ours, finer)
+        found = worst_of(questions, columns, ours, finer)
         name = f"whole model, steps of {1e6 * steps.length:.4g} us, degree {steps.degree}"
         rung = Rung(name, FUSED, measured=found, cost=ours.seconds, step=steps.length)
         if found.ratio <= _SAFE:
@@ -72,10 +72,16 @@ def _run(core: Core, scene: Scene, steps: Steps, columns: Sequence[str]) -> Marc
     return marched(core, scene.t_end, scene.record_step, steps, columns)
 
 
-def _worst(
+def worst_of(
     questions: Sequence[Question], columns: Sequence[str], ours: Marched, theirs: Marched
 ) -> Worst:
-    """The largest difference over its tolerance, against what varies within a turn of the shaft."""
+    """The largest difference over its tolerance, against what varies within a turn of the shaft.
+
+    Args:
+        questions: what is asked.
+        columns: of both marches.
+        ours, theirs: at the same times; theirs is the better one.
+    """
     place = {name: k for k, name in enumerate(columns)}
     window = round(TURN / (theirs.times[1] - theirs.times[0]))
     found = []
