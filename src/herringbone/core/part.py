@@ -14,7 +14,7 @@ from herringbone.core.declaring.declaration import (
 
 Value = float | str | bytes
 """Value of a variable of any FMI type; also an int or a bool."""
-Given = Value | Sequence[Value]
+ValueOrArray = Value | Sequence[Value]
 """What a variable may be set to: an array takes all its values."""
 STRUCTURE = "structuralParameter"
 """Causality of what decides how large arrays are."""
@@ -118,7 +118,7 @@ class Part(Protocol):
     def new_state(self) -> int:
         """Handle that fmi2GetFMUstate is given first: 0, or memory that the part provides."""
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable before or during initialisation; raises ParameterError."""
 
     def get(self, names: Sequence[str]) -> list[float]:

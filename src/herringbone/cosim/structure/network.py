@@ -125,12 +125,12 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
     targets = {c.target for c in connections}
     sources = tuple(i for i in range(len(parts)) if i not in targets)
     return Network(
-        tuple(parts),
-        tuple(connections),
-        roles.elements,
-        sources,
-        roles.mixed,
-        (*notes, *roles.notes),
+        parts=tuple(parts),
+        connections=tuple(connections),
+        elements=roles.elements,
+        sources=sources,
+        mixed=roles.mixed,
+        notes=(*notes, *roles.notes),
         feedthrough=roles.feedthrough,
         undeclared=roles.undeclared,
         others=others,
