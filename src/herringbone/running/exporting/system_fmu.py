@@ -1,5 +1,6 @@
 """A whole system as one native FMU."""
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from herringbone.running.exporting.export import ready, written
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named
 from herringbone.scenes import Scene
+
+_log = logging.getLogger(__name__)
 
 
 def export_fmu(
@@ -76,6 +79,8 @@ def export_fmu(
     if wanted is not None and hosted:
         structure = structure.with_values(chosen.values)
         composite = make_hosted(structure, wanted)
+        for note in composite.component.hosting.notes if composite.component.hosting else ():
+            _log.warning(note)
     else:
         composite = make_composite(structure, tuple(outside))
     if file.suffix == ".ssv":
