@@ -1,6 +1,7 @@
 """Motion of a housing's oscillators under the bearing forces that a run has recorded."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -43,8 +44,11 @@ def housing_of(result: Result, part: str = "") -> ModalHousing | None:
     """
     name = the_housing(result, part)
     modes, shapes = (resource_file(result, name, q) for q in (Quantity.MODES, Quantity.SHAPES))
-    if modes is None or shapes is None:
-        return None
+    return None if modes is None or shapes is None else housing_in(modes, shapes)
+
+
+def housing_in(modes: Path, shapes: Path) -> ModalHousing | None:
+    """The modal data of two files; None if they are not in the neutral format."""
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None

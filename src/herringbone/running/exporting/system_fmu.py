@@ -1,5 +1,6 @@
 """A whole system as one native FMU."""
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,6 +21,8 @@ from herringbone.running.exporting.lean_system import ready_leaner
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes
 from herringbone.scenes import Scene
+
+_log = logging.getLogger(__name__)
 
 
 def export_fmu(
@@ -105,6 +108,8 @@ def _exported(
                 f"its housing, but not {held[0]}; add --outside, or hold modes alone"
             )
         composite = make_hosted(structure, wanted)
+        for note in composite.component.hosting.notes if composite.component.hosting else ():
+            _log.warning(note)
     else:
         composite = make_composite(structure, tuple(outside), held)
     if file.suffix == ".ssv":
