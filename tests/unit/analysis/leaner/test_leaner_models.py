@@ -115,7 +115,7 @@ def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
         encoding="utf-8",
     )
     point, wishes = (
-        Point(1900.0 * math.pi / 30.0, 250.0),
+        Point(570.0 * math.pi / 30.0, 270.0),
         Wishes(gear=gear, values={"gear_mesh.symmetry_deviation": 5e-6}),
     )
     solver, _ = prepared_solver("gearbox", point=point, wishes=wishes, tolerance=1e-3)
@@ -126,7 +126,7 @@ def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
         leaner = solver.leaner(lean).solve(point, state)
         truth = apart(force, lines_of(leaner, force), lines_of(state, force)).error
         estimate = Estimates(state, (force,), ()).of(state.structure.leaner(lean))["force"].error
-        assert 0.5 * truth <= estimate <= 2.0 * truth
+        assert 0.5 * truth <= estimate <= 2.0 * truth  # without these lines 0.19 of it
 
 
 def test_modes_are_ranked_by_what_they_do_and_not_by_their_frequency() -> None:
