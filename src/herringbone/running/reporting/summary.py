@@ -23,7 +23,8 @@ from herringbone.analysis.unanswered import unanswered
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.core.energy_report import EnergyReport
-from herringbone.result.result import Result, RunInfo
+from herringbone.result.result import Result
+from herringbone.result.run_info import RunInfo
 from herringbone.running.reporting.of_sensors import sensor_lines
 
 _R_MIN = 30.0 / math.pi
