@@ -7,7 +7,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.core.activity import tell
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
-from herringbone.cosim.cell.policy import housing_of_strangers
+from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -131,7 +131,7 @@ def run(
     )
     with (
         one_blas_thread(),
-        housing_of_strangers(in_process=in_process, deadline=call_deadline),
+        foreign_fmu_policy(in_process=in_process, deadline=call_deadline),
     ):
         structure, chosen, notes = prepared(
             system,

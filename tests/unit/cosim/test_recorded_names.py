@@ -1,7 +1,7 @@
 """Which outputs are recorded: all real ones but the values of other signals at nodes."""
 
 import numpy as np
-from support.parts import FakePart
+from support.parts.fakes import FakePart
 
 from herringbone.core.part import is_signal_node
 from herringbone.cosim.divergence import diverged

@@ -6,7 +6,7 @@ Found by a critic who had the claim and not the code.
 import math
 
 import pytest
-from support.parts import OK, CallbackPart
+from support.parts.fakes import OK, CallbackPart
 
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.signature.rotation import InputRule

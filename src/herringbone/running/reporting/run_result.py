@@ -23,7 +23,8 @@ from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
-from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.result.result import TIME, Result
+from herringbone.result.run_info import RunInfo
 from herringbone.scenes import Scene
 
 _FEWEST = 2

@@ -12,7 +12,8 @@ from pathlib import Path
 from herringbone.analysis.figures.channels import moments
 from herringbone.analysis.unanswered import unanswered
 from herringbone.core.energy_report import EnergyReport
-from herringbone.result.result import Result, RunInfo
+from herringbone.result.result import Result
+from herringbone.result.run_info import RunInfo
 from herringbone.running.reporting.figure_lines import WIDTH, figure_sections, labelled
 
 _SIGNALS = 12
