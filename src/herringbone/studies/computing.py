@@ -3,10 +3,12 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
+from itertools import chain as joined
+from itertools import islice
 
 from herringbone.studies.keys import Chain
 from herringbone.studies.store import StudyFolder
-from herringbone.studies.working.chain import Done, Job, read_so_far, run_chain
+from herringbone.studies.working.chain import Done, Job, read_so_far, run_chain, run_chains
 from herringbone.studies.working.executors import ThisProcess, Working
 
 _TRIED = 2
@@ -54,8 +56,8 @@ def compute(
     where: Working,
     progress: Progress,
 ) -> None:
-    """Compute chains; a bounded number of them is under way at a time."""
-    waiting: dict[Future[Done], Chain] = {}
+    """Compute chains, in pieces of some; a bounded number of pieces is under way at a time."""
+    waiting: dict[Future[list[Done]], list[Chain]] = {}
     counted: dict[str, int] = {}
     here = isinstance(where.executor, ThisProcess)
 
@@ -63,27 +65,27 @@ def compute(
         progress(points - counted.get(chain.key, 0))
         counted[chain.key] = points
 
-    def begin(chain: Chain) -> Future[Done]:
-        work = replace(job(chain.numbers), so_far=str(store.so_far(chain)))
+    def begin(chains: Sequence[Chain]) -> Future[list[Done]]:
+        jobs = [replace(job(c.numbers), so_far=str(store.so_far(c))) for c in chains]
         if not here:
-            return where.executor.submit(run_chain, work)
-        counted[chain.key] = len(chain.keys)
-        return where.executor.submit(run_chain, work, progress)
+            return where.executor.submit(run_chains, jobs)
+        counted.update((chain.key, len(chain.keys)) for chain in chains)
+        return where.executor.submit(run_chains, jobs, progress)
 
     left = iter(missing)
     try:
         while True:
-            while len(waiting) < where.window and (chain := next(left, None)) is not None:
-                waiting[begin(chain)] = chain
+            while len(waiting) < where.window and (piece := list(islice(left, where.piece))):
+                waiting[begin(piece)] = piece
             if not waiting:
                 return
             ended = wait(waiting, _EVERY, return_when=FIRST_COMPLETED).done
             for future in ended:
-                chain = waiting.pop(future)
-                store.write(chain, future.result())
-                count(chain, len(chain.keys))
+                for chain, done in zip(waiting.pop(future), future.result(), strict=True):
+                    store.write(chain, done)
+                    count(chain, len(chain.keys))
             if not ended:
-                for chain in waiting.values():
+                for chain in joined.from_iterable(waiting.values()):
                     if found := read_so_far(store.so_far(chain)):
                         count(chain, len(found.rows))
     except BaseException:

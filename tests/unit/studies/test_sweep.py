@@ -53,6 +53,28 @@ def test_workers_do_not_change_a_bit_even_if_one_dies(tmp_path, serial):
         assert (tmp_path / other / "table.csv").read_bytes() == one
 
 
+class Counting(ThreadPoolExecutor):
+    """Keeps how many chains come at once."""
+
+    def __init__(self):
+        super().__init__(2)
+        self.pieces = []
+
+    def submit(self, fn, /, *args):
+        self.pieces.append(len(args[0]))
+        return super().submit(fn, *args)
+
+
+def test_an_executor_takes_cheap_chains_in_pieces(tmp_path):
+    """96, of which two are measured before: 94 // 32 at once."""
+    asked = {"speed": [10.0 * k for k in range(1, 33)], "evaluator": Cheap(longest=1)}
+    with Counting() as executor:
+        found = swept(executor=executor, **asked)
+    assert found.table.equals(swept(**asked).table)
+    assert set(executor.pieces[:-1]) == {2}
+    assert sum(executor.pieces) == 94
+
+
 def test_only_what_is_missing_is_computed(tmp_path):
     log = tmp_path / "log"
     first = swept(tmp_path / "study", evaluator=Cheap(log=str(log)))

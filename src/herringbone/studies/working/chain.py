@@ -2,7 +2,7 @@
 
 import os
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, chdir, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -104,6 +104,13 @@ def run_chain(job: Job, progress: Callable[[int], None] = lambda points: None) -
                     so_far.keep(len(rows), cpu_seconds() - before, evaluate.kept(near))
             progress(1)
     return Done(tuple(rows), units, cpu_seconds() - before, series)
+
+
+def run_chains(
+    jobs: Sequence[Job], progress: Callable[[int], None] = lambda points: None
+) -> list[Done]:
+    """Compute chains one after the other, as an executor takes them; see `run_chain`."""
+    return [run_chain(job, progress) for job in jobs]
 
 
 def read_so_far(file: Path) -> Done | None:

@@ -14,7 +14,10 @@ from herringbone.studies.working.processes import WorkerProcesses
 _AHEAD = 3
 """Chains that are handed to a worker before it is done with one."""
 _WINDOW = 512
-"""Chains that are handed to an executor of the caller, whose workers are not known."""
+"""Pieces that are handed to an executor of the caller, whose workers are not known."""
+_PIECE, _PIECES = 1.0, 32
+"""CPU time [s] of a piece that such an executor takes at once, as each costs it some 10 ms of its
+own; and pieces that there are at the least, so that its workers end together."""
 _WORTH, _FORK_WORTH = 10.0, 1.0
 """CPU time [s] that a further process must save: one that is started anew loads all code first."""
 
@@ -44,13 +47,15 @@ class Working(NamedTuple):
 
     Attributes:
         executor: that computes them.
-        window: chains that are under way or wait at most.
+        window: pieces that are under way or wait at most.
         told: where, for people.
+        piece: chains that are handed on at once.
     """
 
     executor: Executor
     window: int
     told: str
+    piece: int = 1
 
 
 @contextmanager
@@ -63,7 +68,8 @@ def working(asked: Workers, cpu: float, chains: int) -> Iterator[Working]:
         chains: there are.
     """
     if asked.executor is not None:
-        yield Working(asked.executor, _WINDOW, f"on {type(asked.executor).__name__}")
+        piece = max(1, min(int(_PIECE * chains / max(cpu, _PIECE)), chains // _PIECES))
+        yield Working(asked.executor, _WINDOW, f"on {type(asked.executor).__name__}", piece)
         return
     fitting = max(1, _cores() // asked.cores)
     forked = asked.cores == 1 and can_fork()  # a part of others may have threads of its own
