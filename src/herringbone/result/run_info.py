@@ -30,7 +30,8 @@ class RunInfo:
         slow: bodies that step once in several macro steps, and in how many.
         core: of a fused run, the "degree" of its polynomials, the base "step" [s], and how many
             "steps", "halvings", "evaluations" of the laws and "bends" of them there were.
-        parameters: all real parameters by `instance.variable`, SI units; not in the summary.
+        parameters: all real parameters, and inputs that nothing feeds, by `instance.variable`, SI
+            units; not in the summary.
         resources: files that components read, by `instance.variable`; not in the summary.
         anatomy: what the parts are for, and what is joined to what; not in the summary.
         sensors: those of the system, by name; not in the summary.

@@ -38,6 +38,11 @@ class PeriodicMotion(Facts):
         """True if the motion was found, as exactly as was asked for."""
 
     @property
+    def found(self) -> bool:
+        """True if there is a motion, how exactly ever: else it has no figures."""
+        return True
+
+    @property
     @abstractmethod
     def error(self) -> float:
         """Of the worst group of channels, over its alternating part."""

@@ -25,6 +25,7 @@ int32_t hb_load(const double *values, const int64_t *shape, double *b, double *s
                 double *report);
 int32_t hb_verify(double *b, double *report);
 int32_t hb_settle(double *b, double t);
+int32_t hb_remark(double *b, double *w, int32_t which, double *report);
 void hb_tangent(double *b, double t, double *d, double *dx);
 void hb_indicators(double *b, double t, double *z);
 """
@@ -57,6 +58,7 @@ def component_source(used: UsedStates) -> str:
         *_grammars(declaration.texts),
         _array("HbRunsOn runs_on", _runs_on(component)),
         _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
+        _array("HbRemark remarks", _remarks(component)),
         _array("HbText texts", _text_entries(declaration.texts)),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
@@ -110,6 +112,9 @@ def _entries(
         "verify": "hb_verify" if loader and loader.check else "NULL",
         "settle": "hb_settle" if hosting else "NULL",
         "not_settled": "not_settled",
+        "remarks_count": len(hosting.remarks) if hosting else 0,
+        "remarks": "remarks",
+        "remark": "hb_remark" if hosting else "NULL",
         "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
@@ -180,6 +185,11 @@ def _runs_on(component: Component) -> Iterable[str]:
     index = component.declaration.index
     for which in component.hosting.runs_on if component.hosting else ():
         yield f"{{{', '.join(str(index[name]) for name in which)}}}"
+
+
+def _remarks(component: Component) -> Iterable[str]:
+    for remark in component.hosting.remarks if component.hosting else ():
+        yield f"{{{_string(remark.format)}, {int(remark.warning)}}}"
 
 
 def _nodes(declaration: Declaration) -> dict[int, int]:

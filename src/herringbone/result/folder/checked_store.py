@@ -85,10 +85,12 @@ class CheckedStore(Store):
         again = max(0, min(len(times), self._there - self._position))
         if again:
             self._compare(np.column_stack([times[:again], values[:again]]), others[:again])
+        self._position += again
         if again < len(times):
-            super().append(times[again:], values[again:], others[again:])
-            self._there = self._file.rows
-        self._position += len(times)
+            try:
+                super().append(times[again:], values[again:], others[again:])
+            finally:
+                self._there = self._position = self._file.rows
 
     def _compare(self, rows: np.ndarray, others: Sequence[Sequence[Any]]) -> None:
         first, last = self._position, self._position + len(rows)

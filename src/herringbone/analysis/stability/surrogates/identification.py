@@ -9,7 +9,7 @@ gives the step of any length, as long as h0 resolves the motions: their angles p
 below pi, and they must not have died out within one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,6 +95,17 @@ class LinearModel:
     d: np.ndarray
     given: tuple[InputRule, ...]
     rates: tuple[int, ...]
+
+    def as_lists(self) -> dict[str, list]:
+        """All of it, as JSON may hold it."""
+        matrices = {name: getattr(self, name).tolist() for name in "abcd"}
+        return {**matrices, "given": [int(g) for g in self.given], "rates": list(self.rates)}
+
+    @classmethod
+    def from_lists(cls, of: Mapping[str, list]) -> "LinearModel":
+        """The model that `as_lists` gave."""
+        a, b, c, d = (np.array(of[name], dtype=float) for name in "abcd")
+        return cls(a, b, c, d, tuple(map(InputRule, of["given"])), tuple(map(int, of["rates"])))
 
     def over(self, h: float) -> Step:
         """A step of length h [s]."""
