@@ -1,4 +1,4 @@
-"""What stands in front of a part hands on what it does not change."""
+"""Base of what stands in front of a part, and passes on all that it does not change."""
 
 from collections.abc import Mapping, Sequence
 

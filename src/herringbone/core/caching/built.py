@@ -17,7 +17,7 @@ def note_built(content: bytes) -> None:
 
 
 def content_of(file: Path) -> str:
-    """What tells a file's content from others; "" if it cannot be read."""
+    """SHA-256 of a file's content in hexadecimal digits; "" if it cannot be read."""
     try:
         with file.open("rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -48,7 +48,7 @@ _contents: Remembered[str] = Remembered(_MOST_FILES)
 
 
 def content_key(file: Path) -> str:
-    """What tells a file's content from others; "" if it is none, or cannot be read.
+    """SHA-256 of a file's content in hexadecimal digits; "" if it is no file, or cannot be read.
 
     A file that has the size and time that it had is not read again, unless it was changed so lately
     that another change might not show.

@@ -130,12 +130,18 @@ class Column:
 class Text:
     """A String parameter that names a resource file, a flat CSV of these columns.
 
-    A relative name is looked up in the component's resources folder. `quantity` is what the file
-    means to those who ask for the component's role. The file may have a comment line
-    `# header: ...` with `header_count` numbers.
+    A relative name is looked up in the component's resources folder. Several tables may lie in one
+    file; then one of them alone is a String parameter, which the others name as `shared`.
 
-    Several tables may lie in one file: each is the `section` that follows a line `# section: NAME`,
-    and of all but one of them `shared` names that one, which alone is a String parameter.
+    Attributes:
+        name, description: as of a variable.
+        start: file name at the start.
+        columns: of the file; those that it may have besides are `Column.rest`.
+        quantity, place: what the file means to those who ask for the component's role, and where.
+        header: name in a comment line `# NAME: ...` before the table; "" for none.
+        header_count: how many numbers that line has.
+        section: the table is what follows a line `# section: NAME`; "": the whole file.
+        shared: name of the Text whose file this table lies in; "": its own.
     """
 
     name: str

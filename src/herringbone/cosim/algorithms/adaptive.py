@@ -48,7 +48,7 @@ from herringbone.cosim.structure.network import Network
 RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
 MEMORY = 100.0
-"""Over which the mean of the forces is taken, in largest steps."""
+"""Time over which forces are taken about a straight line, in largest steps."""
 
 
 def fitted(known: Mapping[int, np.ndarray], rung: int) -> np.ndarray:
