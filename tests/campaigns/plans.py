@@ -30,6 +30,7 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import HerringboneError
 from herringbone.housing import default_housing, write_housing
+from herringbone.running.operating.questions import questions_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Operating, Scene
@@ -38,11 +39,17 @@ from herringbone.studies.planning.estimated import Ladder
 from herringbone.studies.planning.plan import plan
 from herringbone.studies.planning.points import first_point, points_to_probe
 from herringbone.studies.planning.rung import SHARE, STEADY
-from herringbone.studies.planning.steady_plan import questions_of
 
 _R_MIN = math.pi / 30.0
 _LEAST, _LARGE = 1e-4, 0.3
-_QUANTITIES = ("bearing force", "seat velocity", "mesh force", "transmission error")
+_QUANTITIES = (
+    "bearing force",
+    "seat velocity",
+    "mesh force",
+    "transmission error",
+    "radiated power",
+    "sensor",
+)
 _FRESH, _TURNS = 5, 9
 
 
@@ -96,7 +103,7 @@ def drawn(chance: random.Random, folder: Path) -> Drawn:
             shapes=model.shapes * size,
             static=None,
             residual=None,
-            gram=None,
+            gram=np.asarray(model.gram) * np.outer(size, size),
             certificate={},
         ),
         housing,
@@ -105,14 +112,20 @@ def drawn(chance: random.Random, folder: Path) -> Drawn:
     orders = (1.0, 2.0, 3.0) if form is Form.ORDER else ()
     band = chance.uniform(1000.0, 4000.0) if form is Form.SPECTRUM else math.inf
     tolerance = 10.0 ** chance.uniform(-3.0, -1.0)
-    ask = Ask((chance.choice(_QUANTITIES),), form, tolerance, band, orders)
+    what = chance.choice(_QUANTITIES)
+    if what == "radiated power" and form is Form.SIGNAL:  # a mean over time has none
+        form = Form.LEVEL
+    ask = Ask((what,), form, tolerance, band, orders)
     low = chance.uniform(400.0, 2400.0)
     speed = (low * _R_MIN, low * chance.uniform(1.0, 1.25) * _R_MIN)
     torque = chance.uniform(80.0, 400.0)
     at = Operating(speed=speed, torque=(torque, torque))
     symmetric = {"gear_mesh.symmetry_deviation": chance.choice((0.0, 0.0, 5e-6))}
     scene = Scene("drawn", asks=(ask,), operating=at, values=symmetric)
-    return Drawn(chance.choice(("test_rig", "gearbox")), gear, housing, scene)
+    system = chance.choice(("test_rig", "gearbox"))
+    if what == "sensor":  # the gearbox alone has none
+        system = "test_rig"
+    return Drawn(system, gear, housing, scene)
 
 
 def every_rung(given: Drawn) -> Iterator[Pair]:

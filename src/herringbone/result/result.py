@@ -12,9 +12,9 @@ import pandas as pd
 
 from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
-from herringbone.core.declaring.facts import Facts
 from herringbone.core.declaring.roles import Role
 from herringbone.core.energy_report import Diagnosis, EnergyReport
+from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any, shown
 from herringbone.core.places.part_path import PartPath, endings
 from herringbone.core.sensor_spec import SensorSpec

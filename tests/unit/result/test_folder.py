@@ -14,7 +14,7 @@ from support.result import make_foreign_result, make_result
 
 import herringbone as hb
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ResourceError
-from herringbone.core.declaring.table import TableColumns
+from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.checked_store import CheckedStore, ReplayError
 from herringbone.result.folder.names import State
 from herringbone.result.folder.rows import RowFile, counted_rows

@@ -27,7 +27,7 @@ from herringbone.analysis.accuracy.compared_tables import (
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
 from herringbone.analysis.figures.standstill import stands_still
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.result.folder.load import load
 from herringbone.result.result import TIME, Result
 

@@ -178,7 +178,9 @@ class Estimates:
         for question in self._questions:
             theirs = self._lines[question.name]
             values = own[[self._place[name] for name in question.columns]]
-            ours = Lines(values, state.orbit.response.orders, theirs.meshes, theirs.frequency)
+            orders = state.orbit.response.orders
+            made = question.lines(values, orders, theirs.frequency)
+            ours = Lines(made, orders, theirs.meshes, theirs.frequency)
             found[question.name] = apart(question, ours, theirs)
         return found
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.core.declaring.table import TableColumns
+from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State, remove_reports
 from herringbone.result.folder.others import OtherFile, read_others
 from herringbone.result.folder.room import check_room

@@ -84,8 +84,7 @@ def make_result(
         anatomy=known,
         sensors=system.sensors,
     )
-    units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
-    units |= recording.other_units
+    units = {TIME: "s", **_units(system, recording), **recording.other_units}
     return Result(data, units, recording.outcome, info, system.channels)
 
 
@@ -165,6 +164,18 @@ def with_coupling_row(result: Result) -> Result:
     coupling = coupling_row(result, 0.0)
     rows = [coupling if row.source == coupling.source else row for row in result.budget]
     return replace(result, budget=by_size(rows))
+
+
+def _units(system: System, recording: Recording) -> dict[str, str]:
+    """Units by column; a foreign part without is taken as SI, as the component that it replaces."""
+    replaced = {
+        f"{part.name}.{v.name}": v.unit
+        for part in system.parts
+        if part.foreign and part.stands_for in COMPONENTS
+        for v in COMPONENTS[part.stands_for].declaration.variables
+    }
+    given = zip(recording.names, recording.units, strict=True)
+    return {name: unit or replaced.get(name, "") for name, unit in given}
 
 
 def _parameters(system: System) -> dict[str, float]:
