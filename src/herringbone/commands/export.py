@@ -77,10 +77,11 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         HerringboneError: something about the options is wrong, or the export fails.
     """
     from herringbone.core import ParameterError  # noqa: PLC0415
+    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
     from herringbone.running.exporting.export import export_ssp, fmu_file_name  # noqa: PLC0415
     from herringbone.running.exporting.system_fmu import export_fmu  # noqa: PLC0415
 
-    name = Path(options.system).stem
+    name = short_name(options.system)
     if options.output:
         check_writable(options.output.parent, options.output)
     platforms, files = chosen_platforms(options), files_of_parts(options)

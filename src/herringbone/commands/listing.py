@@ -7,7 +7,7 @@ from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import HerringboneError, StructureError
 from herringbone.core.declaring.variable import Causality, Variable
 from herringbone.core.names import meant, shown
-from herringbone.core.places.files import is_folder
+from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.paths import systems_folder
 from herringbone.core.reading.structured import read_toml
 from herringbone.cosim.algorithms import ALGORITHMS
@@ -63,7 +63,9 @@ def described(name: str) -> str:
     if name in COMPONENTS:
         return describe_component(name)
     shipped = [file.parent.name for file in sorted(systems_folder().glob(f"*/{FILE_NAME}"))]
-    if name in shipped or is_folder(Path(name)) or is_ssp(Path(name)):
+    file = Path(name)
+    own = is_folder(file) or is_ssp(file) or (file.name == FILE_NAME and is_file(file))
+    if name in shipped or own:
         return describe_system(name)
     hint = meant(name, [*COMPONENTS, *shipped, STUDIES])
     raise StructureError(
@@ -97,15 +99,23 @@ def describe_system(name: str) -> str:
     lines += _table([(f"--{n}", _set_point(system, n)) for n in (SPEED, TORQUE)])
     if scenes := sorted(Path(folder).glob("scenes/*.toml")):
         lines += ["", "scenes:"]
-        lines += _table([(file.stem, read_scene(file).description) for file in scenes])
+        lines += _table([(file.stem, _about(file)) for file in scenes])
     return "\n".join([*lines, "", "'herringbone list COMPONENT' shows the variables of a part"])
+
+
+def _about(scene: Path) -> str:
+    """What a scene says of itself; of one that cannot be read, why."""
+    try:
+        return read_scene(scene).description
+    except HerringboneError as error:
+        return f"cannot be run: {error}"
 
 
 def _set_point(system: System, name: str) -> str:
     try:
         return addressed(system, name)
     except HerringboneError as error:
-        return f"none: {error}"
+        return f"none: {str(error).removeprefix(f'{name}: ')}"
 
 
 def studies() -> str:

@@ -35,6 +35,8 @@ def run(options: argparse.Namespace) -> int:
     output = options.output or options.folder
     if options.highest is not None and not options.highest > 0.0:
         raise ParameterError(f"--highest {options.highest:g}: it must be positive, in Hz")
+    if not options.folder.exists():
+        raise ParameterError(f"there is no folder {options.folder}")
     if is_file(options.folder):
         raise ParameterError(f"{options.folder} is a file: plot takes the folder that it is in")
     study = is_file(options.folder / _STUDY)

@@ -108,8 +108,10 @@ def read_scene(file: str | Path) -> Scene:
     data = read_toml(file, StructureError)
     known = {"description", "start", *_NUMBERS, *_TABLES, *_FILES, *ASKING}
     if unknown := set(data) - known:
+        hint = meant(min(unknown), sorted(known))
         raise ParameterError(
             f"{file}: unknown key {', '.join(sorted(unknown))}; known: {', '.join(sorted(known))}"
+            f"{hint and f'; {hint.rstrip()}'}"
         )
     _check_tables(data, file)
     numbers = {key: _positive(data[key], key, file) for key in _NUMBERS & set(data)}

@@ -79,6 +79,19 @@ def test_list_shows_a_system(capsys):
         assert told in text
 
 
+def test_list_shows_a_system_one_scene_of_which_is_broken(tmp_path, capsys):
+    (tmp_path / "scenes").mkdir()
+    file = tmp_path / "system.toml"
+    file.write_text('name = "mine"\n[parts]\na = { component = "rotating_inertia" }\n')
+    (tmp_path / "scenes" / "good.toml").write_text('description = "a good one"\n')
+    (tmp_path / "scenes" / "bad.toml").write_text("tend = 1\n")
+    for given in (tmp_path, file):
+        text = shown(capsys, "list", str(given))
+        assert "good  a good one" in text
+        assert "bad   cannot be run: " in text
+        assert "--speed   none: no part of mine declares a speed set point" in text
+
+
 @pytest.mark.parametrize("command", ["list", "build", "check", "run", "export"])
 def test_help(capsys, command):
     code, out, _ = ended(capsys, "--help")

@@ -53,6 +53,10 @@ def test_pictures_of_a_sweep(tmp_path, capsys):
 def test_what_is_no_folder_of_results_is_refused(tmp_path, capsys):
     assert main(["plot", str(tmp_path)]) == 2
     assert "holds no results" in capsys.readouterr().err
+    missing = tmp_path / "missing"
+    assert main(["plot", str(missing)]) == 2
+    assert f"there is no folder {missing}" in capsys.readouterr().err
+    assert not missing.exists()
 
 
 def test_a_file_is_no_folder(tmp_path, capsys):

@@ -6,7 +6,7 @@ import pytest
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.cosim.structure.system import PartSpec, System
-from herringbone.cosim.structure.system_file import find_system, read_system
+from herringbone.cosim.structure.system_file import find_system, read_system, short_name
 
 
 def write(folder, text, name="rig"):
@@ -41,6 +41,8 @@ def test_shipped_systems_are_found_by_name():
     }  # fmt: skip
     assert find_system("test_rig").name == "test_rig"
     assert find_system(find_system("test_rig") / "system.toml") == find_system("test_rig")
+    named = ("test_rig", "a/test_rig", "a/test_rig/system.toml", "a/test_rig.ssp")
+    assert {short_name(reference) for reference in named} == {"test_rig"}
 
 
 def test_unknown_system_names_the_shipped_ones():
@@ -66,6 +68,7 @@ def test_not_utf8(tmp_path):
 def test_unknown_key(tmp_path):
     said = refused("unknown key conections, step", write(tmp_path, "conections = []\nstep = 1"))
     assert "system.toml" in said
+    assert "did you mean connections? known: name, " in said
 
 
 def test_unknown_key_of_a_part(tmp_path):

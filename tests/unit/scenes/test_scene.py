@@ -56,6 +56,7 @@ def test_missing_file(tmp_path):
 def test_unknown_key(tmp_path):
     refused("unknown key step, tend; known: ask, description, gear, housing, model, ",
             write(tmp_path, "tend = 1\nstep = 2"))  # fmt: skip
+    refused("t_end; did you mean t_end?", write(tmp_path, "tend = 1"))
 
 
 @pytest.mark.parametrize("key", ["t_end", "record_step"])

@@ -66,6 +66,7 @@ def _missed(result: "Result") -> int:
 def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":
     """The result of a run, with its files."""
     from herringbone.analysis.steady.report import per_second  # noqa: PLC0415
+    from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
     from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
 
@@ -81,7 +82,7 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         overwrite=options.overwrite,
         parquet=options.parquet,
         asked={k: v for k, v in vars(options).items() if k not in _NOT_KEPT},
-        system=Path(options.system).stem,
+        system=short_name(options.system),
         resumed=resumed,
     )
     bar = Bar(always=False)

@@ -79,6 +79,12 @@ def find_system(reference: str | Path) -> Path:
     )
 
 
+def short_name(reference: str | Path) -> str:
+    """What files of a system are called: the name of its folder, or of its .ssp file."""
+    path = Path(reference)
+    return path.absolute().parent.name if path.name == FILE_NAME else path.stem
+
+
 def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     """Read a system and everything nested in it.
 
@@ -92,7 +98,11 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     data = read_toml(file, StructureError)
     unknown = set(data) - {*_KEYS, *_FILES}
     if unknown:
-        raise StructureError(f"{file}: unknown key {', '.join(sorted(unknown))}")
+        known = (*_KEYS, *_FILES)
+        hint = meant(min(unknown), known)
+        raise StructureError(
+            f"{file}: unknown key {', '.join(sorted(unknown))}; {hint}known: {', '.join(known)}"
+        )
     for key, kind in _KEYS.items():
         _check_type(data.get(key, kind()), kind, key, file)
     _check_names(data, file)
