@@ -21,8 +21,8 @@ from support.parts import (
 )
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.declaring.table import KeptRows
 from herringbone.core.part import closing_all
+from herringbone.core.run_table import KeptRows
 from herringbone.cosim import run
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.divergence import is_sudden

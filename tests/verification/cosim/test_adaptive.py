@@ -33,7 +33,7 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, with_tolerance
-from herringbone.cosim.loops.ladder import RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.ladder import RUNGS, TICKS
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system

@@ -2,10 +2,14 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from herringbone.commands.options import add_cells
 from herringbone.commands.output import show
 from herringbone.core import FmuError, ParameterError
+
+if TYPE_CHECKING:
+    from herringbone.core.part import Part
 
 _ROLES = ["housing", "motor", "load", "coupling"]
 
@@ -68,6 +72,18 @@ def run(options: argparse.Namespace) -> int:
     return 1 if problems else 0
 
 
+def _asked_as(part: "Part", fmu: Path) -> list[str]:
+    """The role that an FMU's variables are those of, and how it is tested."""
+    from herringbone.analysis.housing.contract import looks_like_housing  # noqa: PLC0415 (numba)
+
+    if not looks_like_housing(part):
+        return []
+    return [
+        "it has the variables of a housing; what it must do as one is tested by 'herringbone check "
+        f"{fmu} --as housing'"
+    ]
+
+
 def _remarks(fmu: Path) -> list[str]:
     """What FMI allows, but leaves open; nothing if the file cannot be read, which is said."""
     from herringbone.fmi.check import without_unit  # noqa: PLC0415
@@ -108,7 +124,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
             part.enter_initialization(0.0, 1.0)
             part.exit_initialization()  # pythonfmu does not survive freeing what was not
             try:
-                return described(signature_of(part, make, own_step(fmu) if step is None else step))
+                found = signature_of(part, make, own_step(fmu) if step is None else step)
+                return [*described(found), *_asked_as(part, fmu)]
             finally:
                 part.close()
     except FmuError:

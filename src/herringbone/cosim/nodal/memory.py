@@ -73,7 +73,7 @@ given: signals of the inputs (n, STRIDE); driven: 1 for inputs that were set (in
 (n, STRIDE); order (n, int64): of the inputs, those that are rates first; held (2, n): in each
 piece, and raw (m): outputs of the part, at the present node, of all_held (STRIDE, 2, n) and
 all_raw (STRIDE, m); packed and packed_references: of driven inputs; values: signals
-of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; rate (n, int64):
+of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `InputRule`; rate (n, int64):
 number of an input's rate, or -1.
 
 For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without

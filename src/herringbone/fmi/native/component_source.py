@@ -2,7 +2,7 @@
 
 import math
 import string
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
@@ -60,7 +60,25 @@ def component_source(used: UsedStates) -> str:
         _array("HbText texts", _text_entries(declaration.texts)),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
-    entries = {
+    entries = _entries(used, states, loader, len(refusals))
+    rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
+    return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])
+
+
+def _entries(
+    used: UsedStates, states: Mapping[int, Variable], loader: ResourceLoader | None, refusals: int
+) -> dict[str, object]:
+    """The members of `hb_component`, in the order of component.h.
+
+    Args:
+        used: the component, and the states that its FMU shows.
+        states: those of them that are scalars, by index in the block.
+        loader: of the component's resources; None without.
+        refusals: how many reasons it has to refuse them.
+    """
+    component, declaration = used.component, used.component.declaration
+    hosting = component.hosting
+    return {
         "name": _string(component.name),
         "token": _string(identifier(component, used.built_with)),
         "sources": _string(sources_key()),
@@ -96,7 +114,7 @@ def component_source(used: UsedStates) -> str:
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,
-        "refusals_count": len(refusals),
+        "refusals_count": refusals,
         "refusals": "refusals",
         "exchanged_count": len(states),
         "exchanged": "exchanged",
@@ -106,8 +124,6 @@ def component_source(used: UsedStates) -> str:
         "indicators": "hb_indicators" if component.indicators else "NULL",
         "tangent": "hb_tangent",
     }
-    rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
-    return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])
 
 
 def _array(name: str, entries: Iterable[object]) -> str:

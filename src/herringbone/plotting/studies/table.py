@@ -71,10 +71,15 @@ class Points:
         """
         choice = [wanted] if wanted else [c for c in (SPEED, *self.numbers) if c in self.numbers]
         if not choice or choice[0] not in self.numbers:
-            known = ", ".join(self.numbers) or "none"
+            known = ", ".join(self.numbers)
+            count = len(self.table)
+            if not known:
+                raise ParameterError(
+                    f"{count} point{'s' * (count != 1)} and no number that is varied: there is no "
+                    "curve; give several values, such as --speed 500:3000:26"
+                )
             raise ParameterError(
-                f"parameter {wanted or 'of the abscissa'}: the points have several numbers of: "
-                f"{known}"
+                f"parameter {wanted}: it has not several numbers; there are: {known}"
             )
         return choice[0]
 

@@ -15,7 +15,7 @@ from herringbone.core.activity import activity
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
 from herringbone.running.foreign.started import own_step, started
 
@@ -179,7 +179,7 @@ def _with_angle(model: LinearModel, flange: Flange) -> LinearModel:
     if not flange.takes_torque:
         # An angle at the input that nothing follows.
         b, d = np.hstack([np.zeros((n, 1)), model.b]), np.hstack([np.zeros((m, 1)), model.d])
-        return LinearModel(model.a, b, model.c, d, (Given.MEAN, Given.MEAN), (-1, -1))
+        return LinearModel(model.a, b, model.c, d, (InputRule.MEAN, InputRule.MEAN), (-1, -1))
     a = np.block([[model.a, np.zeros((n, 1))], [model.c, np.zeros((1, 1))]])
     b = np.vstack([model.b, model.d])
     c = np.zeros((2, n + 1))

@@ -11,7 +11,7 @@ from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
