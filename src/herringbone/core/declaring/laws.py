@@ -29,6 +29,10 @@ def _evenly(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
     return ()
 
 
+def _at_once(block: np.ndarray, turns: float) -> None:
+    del block, turns
+
+
 def common_period(periods: Iterable[Fraction]) -> Fraction:
     """The smallest turn that all of the periods, at least one, divide; they are positive."""
     found = list(periods)
@@ -63,11 +67,13 @@ class Laws:
         sharp: (n, arguments), directions along which the values change fast: along others,
             arguments may be interpolated over a step where the tolerance allows it; `directions`
             if not given.
+        fine: (n, arguments), further ones, needed where errors far below 1e-3 are wanted.
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
         periods: arguments that are angles, and the turn after which the values repeat, in whole
             turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
         settle: ends in a block what comes in over a time or an angle, as ramps do.
+        ramp: brings in over so many turns, after `settle`, what comes in over an angle; inf: never.
     """
 
     arguments: tuple[str, ...]
@@ -82,7 +88,9 @@ class Laws:
     prepare: Callable[[np.ndarray], None] = unchanged
     needed: Callable[[np.ndarray], bool] = _always
     sharp: Callable[[np.ndarray], np.ndarray] | None = None
+    fine: Callable[[np.ndarray], np.ndarray] | None = None
     clock: int | None = None
     refusal: Callable[[np.ndarray], str] = _nothing
     periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly
     settle: Callable[[np.ndarray], None] = unchanged
+    ramp: Callable[[np.ndarray, float], None] = _at_once
