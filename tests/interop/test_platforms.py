@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import fmpy
@@ -122,16 +123,28 @@ def run_plan(runner, tmp_path_factory):
     return run
 
 
+@cache
+def scene_of_all(name):
+    """The scene as all platforms run it."""
+    scene = load_scene(load_system("test_rig")[1], name)
+    return replace(scene, t_end=COUNT * STEP, record_step=EVERY * STEP)
+
+
+@cache
+def run_here(name):
+    """By the compiled loop with this platform's FMUs."""
+    parallel = Jacobi(order=0, schedule="parallel")
+    scene = scene_of_all(name)
+    return hb.run("test_rig", scene=scene, step=STEP, algorithm=parallel, fmu="native")
+
+
 @pytest.mark.parametrize("scene", ["loaded", "separation"])
 def test_same_bits_on_every_platform(scene, fmus, runner, run_plan, tmp_path):
     """Against the compiled loop with this platform's FMUs: all outputs of the test rig."""
-    system, folder = load_system("test_rig")
-    chosen = replace(load_scene(folder, scene), t_end=COUNT * STEP, record_step=EVERY * STEP)
-    parallel = Jacobi(order=0, schedule="parallel")
-    wanted = hb.run("test_rig", scene=chosen, step=STEP, algorithm=parallel, fmu="native")
+    wanted = run_here(scene)
     assert wanted.outcome.completed
     names = [name for name in wanted.data.columns if name != "time"]
-    system, _ = started(system, chosen)
+    system, _ = started(load_system("test_rig")[0], scene_of_all(scene))
     platform, grid = PLATFORMS[runner.platform], (STEP, COUNT, EVERY)
     rows = run_plan(write_plan(system, fmus, platform, runner.drive, names, grid, tmp_path))
     assert rows.shape == (COUNT // EVERY + 1, len(names))
