@@ -8,17 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.march import call_laws
-from herringbone.analysis.twin.condensed.march_arrays import Arrays
-from herringbone.analysis.twin.condensed.rungs import Rungs
+from herringbone.analysis.twin.fused import repeated
 from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.benchmarks.step_part import SCENE, STEP, SYSTEM, StepPart, least, timed
 from herringbone.core.one_thread import one_blas_thread
-from herringbone.kernels.compiling.jit import allocating
-from herringbone.kernels.condensed.collocation import residuals, spread
-from herringbone.kernels.condensed.correction import correct
-from herringbone.kernels.condensed.modal import add_chosen, add_product
 from herringbone.running.prepared import Wishes, prepared
 
 _STEPS = Steps(STEP, 4, closeness(1e-3))
@@ -49,12 +43,12 @@ def _measured(repeats: int, steps: int) -> list[StepPart]:
     chosen = np.flatnonzero(given)
     laws = int(np.searchsorted(chosen, arrays.table.unknown.size * u.shape[1]))
     found = {
-        f"laws at {_STEPS.degree} nodes": lambda: _laws(_AGAIN, arrays, _BEFORE),
-        "products of matrices": lambda: _products(
+        f"laws at {_STEPS.degree} nodes": lambda: repeated.laws(_AGAIN, arrays, _BEFORE),
+        "products of matrices": lambda: repeated.products(
             _AGAIN, arrays, rungs, given, chosen, laws, rungs.rows.shape[1]
         ),
-        "arguments of laws inside of the step": lambda: _arguments(_AGAIN, arrays),
-        "residuals and their correction": lambda: _corrections(_AGAIN, arrays, rungs),
+        "arguments of laws inside of the step": lambda: repeated.arguments(_AGAIN, arrays),
+        "residuals and their correction": lambda: repeated.corrections(_AGAIN, arrays, rungs),
     }
     parts = [
         StepPart(name, least(partial(timed, part), repeats) / _AGAIN, within=True)
@@ -83,43 +77,3 @@ def _marched(core: Core, columns: list[str], steps: int) -> float:
         seconds = timed(course.advance)
         found = min(found, seconds / (course.row - row))
     return found
-
-
-@allocating
-def _laws(count: int, arrays: Arrays, t: float) -> None:
-    nodes = arrays.nodes
-    for _ in range(count):
-        for i in range(len(nodes.z)):
-            call_laws(arrays.calls, t, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
-
-
-@allocating
-def _products(
-    count: int,
-    arrays: Arrays,
-    rungs: Rungs,
-    given: np.ndarray,
-    chosen: np.ndarray,
-    laws: int,
-    coordinates: int,
-) -> None:
-    """Rows of the coordinates and of the laws' inputs, and the coordinates at the end."""
-    rows, q = np.zeros(rungs.rows.shape[2]), np.zeros(rungs.push.shape[2])
-    for _ in range(count):
-        add_product(rungs.rows[0], arrays.state.q[:coordinates], rows)
-        add_chosen(rungs.of_inputs[0], given, chosen, laws, rows)
-        add_chosen(rungs.push[0], given, chosen, chosen.size, q)
-
-
-@allocating
-def _arguments(count: int, arrays: Arrays) -> None:
-    rows = np.zeros(arrays.fixed.offset.size)
-    for _ in range(count):
-        spread(arrays.fixed.sharp, arrays.nodes, rows)
-
-
-@allocating
-def _corrections(count: int, arrays: Arrays, rungs: Rungs) -> None:
-    for _ in range(count):
-        residuals(arrays.table, arrays.nodes, arrays.state.u, arrays.room.r)
-        correct(arrays.table, arrays.nodes, rungs.along[0], arrays.room)
