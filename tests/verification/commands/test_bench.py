@@ -9,7 +9,7 @@ import pytest
 from fuzz.campaign import last_commit
 from support.compiler import needs_compiler
 
-from herringbone.benchmarks import fmus, macro_step, steady
+from herringbone.benchmarks import coupled_step, fmus, fused_step, macro_step, steady
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.simulation import make_grid, simulate
@@ -80,3 +80,18 @@ def test_steady_states_are_found_and_timed():
     assert all(row.seconds > 0.0 for row in rows)
     assert all(row.error <= 1e-3 for row in rows)
     assert "81 meshes" in rows[-1].name
+
+
+@pytest.mark.parametrize("bench", [fused_step, coupled_step])
+def test_parts_of_a_step_and_their_rest_are_the_whole(bench):
+    whole, *parts = bench.measure(repeats=1, steps=400)
+    assert not whole.within
+    assert all(part.within for part in parts)
+    summed = [part.seconds for part in parts if not part.name.startswith("in them")]
+    assert sum(summed) == pytest.approx(whole.seconds, rel=1e-12)
+
+
+def test_a_coupled_step_passes_over_its_parts_twice_and_seldom_once_more():
+    """Prediction and one correction; a third pass where the residual asks for it."""
+    passes = next(p.name for p in coupled_step.measure(repeats=1, steps=400) if "passes" in p.name)
+    assert 2.0 <= float(passes.split()[0]) < 3.0

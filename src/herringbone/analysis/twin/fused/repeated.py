@@ -1,0 +1,54 @@
+"""Parts of a step, each repeated by itself, so that its cost can be measured."""
+
+import numpy as np
+
+from herringbone.analysis.twin.condensed.march import call_laws
+from herringbone.analysis.twin.condensed.march_arrays import Arrays
+from herringbone.analysis.twin.condensed.rungs import Rungs
+from herringbone.kernels.compiling.jit import allocating
+from herringbone.kernels.condensed.collocation import residuals, spread
+from herringbone.kernels.condensed.correction import correct
+from herringbone.kernels.condensed.modal import add_chosen, add_product
+
+
+@allocating
+def laws(count: int, arrays: Arrays, t: float) -> None:
+    """All laws at the nodes, at a time [s]."""
+    nodes = arrays.nodes
+    for _ in range(count):
+        for i in range(len(nodes.z)):
+            call_laws(arrays.calls, t, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
+
+
+@allocating
+def products(
+    count: int,
+    arrays: Arrays,
+    rungs: Rungs,
+    given: np.ndarray,
+    chosen: np.ndarray,
+    laws: int,
+    coordinates: int,
+) -> None:
+    """Rows of the coordinates and of the laws' inputs, and the coordinates at the end."""
+    rows, q = np.zeros(rungs.rows.shape[2]), np.zeros(rungs.push.shape[2])
+    for _ in range(count):
+        add_product(rungs.rows[0], arrays.state.q[:coordinates], rows)
+        add_chosen(rungs.of_inputs[0], given, chosen, laws, rows)
+        add_chosen(rungs.push[0], given, chosen, chosen.size, q)
+
+
+@allocating
+def arguments(count: int, arrays: Arrays) -> None:
+    """Arguments of the laws at the nodes."""
+    rows = np.zeros(arrays.fixed.offset.size)
+    for _ in range(count):
+        spread(arrays.fixed.sharp, arrays.nodes, rows)
+
+
+@allocating
+def corrections(count: int, arrays: Arrays, rungs: Rungs) -> None:
+    """Residuals, and what they change."""
+    for _ in range(count):
+        residuals(arrays.table, arrays.nodes, arrays.state.u, arrays.room.r)
+        correct(arrays.table, arrays.nodes, rungs.along[0], arrays.room)
