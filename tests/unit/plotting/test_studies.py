@@ -8,11 +8,12 @@ import pytest
 
 from herringbone.analysis.figures.sensitivity import sensitivities
 from herringbone.core import ParameterError
-from herringbone.plotting.studies.levels import levels, peaks, waterfall
+from herringbone.plotting.studies.levels import levels, peaks
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
 from herringbone.plotting.studies.table import Points
+from herringbone.plotting.studies.waterfall import waterfall
 
 SPEEDS, TORQUES, ZETAS, BACKLASHES = (
     np.linspace(800.0, 1500.0, 36), (100.0, 200.0), (0.01, 0.02, 0.04), (1e-4, 2e-4)

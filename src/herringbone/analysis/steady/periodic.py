@@ -10,7 +10,7 @@ import pandas as pd
 from herringbone.analysis.steady.outputs import Harmonics, level_of
 from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any
 
 if TYPE_CHECKING:

@@ -125,8 +125,8 @@ def _directions(block: np.ndarray) -> np.ndarray:
     return rows
 
 
-def _sharp(block: np.ndarray) -> np.ndarray:
-    """Approach and its rate, and phases of the meshes, left and right, without run-out."""
+def _phases(block: np.ndarray) -> np.ndarray:
+    """Phases of the meshes, left and right, without run-out."""
     prepared = block.copy()
     derive(prepared)
     rows = np.zeros((2, 2 * _POSITIONS))
@@ -134,7 +134,7 @@ def _sharp(block: np.ndarray) -> np.ndarray:
         rows[side, _ANGLE] = prepared[at.PHASE_RATE]
         rows[side, _TWIST_P] = side * prepared[at.PHASE_RATE]
         rows[side, _AXIS + side] = (1.0 - 2.0 * side) * prepared[at.AXIAL_PHASE]
-    return np.concatenate([_directions(block), rows])
+    return rows
 
 
 def _mean(block: np.ndarray) -> np.ndarray:
@@ -182,7 +182,7 @@ LAWS = Laws(
     mean=_mean,
     prepare=derive,
     refusal=_refusal,
-    sharp=_sharp,
+    fine=_phases,
     periods=_periods,
     settle=settle,
     ramp=ramp,

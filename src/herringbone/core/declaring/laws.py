@@ -67,6 +67,7 @@ class Laws:
         sharp: (n, arguments), directions along which the values change fast: along others,
             arguments may be interpolated over a step where the tolerance allows it; `directions`
             if not given.
+        fine: (n, arguments), further ones, needed where errors far below 1e-3 are wanted.
         clock: place in the block of the time [s] of what is evaluated, if the laws depend on it.
         refusal: why a block's equations cannot be taken apart; empty if they can.
         periods: arguments that are angles, and the turn after which the values repeat, in whole
@@ -87,6 +88,7 @@ class Laws:
     prepare: Callable[[np.ndarray], None] = unchanged
     needed: Callable[[np.ndarray], bool] = _always
     sharp: Callable[[np.ndarray], np.ndarray] | None = None
+    fine: Callable[[np.ndarray], np.ndarray] | None = None
     clock: int | None = None
     refusal: Callable[[np.ndarray], str] = _nothing
     periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly

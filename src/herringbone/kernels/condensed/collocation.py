@@ -1,4 +1,4 @@
-"""Collocation of laws over one step: residuals at the nodes, and their correction.
+"""Collocation of laws over one step: residuals at the nodes.
 
 Nodes are those of Lobatto, the start of the step included. Unknown are the values of the laws, less
 mean tangents times arguments, at all nodes but the first. Inputs of a step are the values of all
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inlined
-from herringbone.kernels.condensed.modal import solve
+from herringbone.kernels.condensed.modal import add_product
 
 _ROUNDED = 1e-13
 """Of an input: a residual below is rounding, as of a law that has given nothing but zero so far."""
@@ -55,24 +55,6 @@ class Nodes(NamedTuple):
     start: np.ndarray
 
 
-class Room(NamedTuple):
-    """Room for the correction of a step.
-
-    Attributes:
-        matrix: (unknowns x nodes, the same).
-        r: (unknowns x nodes,) residuals, then corrections.
-    """
-
-    matrix: np.ndarray
-    r: np.ndarray
-
-
-def make_room(unknowns: int, inner: int) -> Room:
-    """Room for so many unknowns at so many nodes."""
-    size = unknowns * inner
-    return Room(np.empty((size, size)), np.empty(size))
-
-
 @inlined
 def less_tangents(table: Table, value: int, force: float, z: np.ndarray) -> float:
     """A value less its mean tangents times the arguments."""
@@ -97,16 +79,12 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
                 own[i] = nodes.f[i, value]
             continue
         to = r[unknown * inner : (unknown + 1) * inner]
-        for i in range(inner):
-            to[i] = nodes.f[i, value]
-        for k in range(table.first[value], table.first[value + 1]):
-            tangent, argument = table.tangent[k], table.argument[k]
-            for i in range(inner):
-                to[i] -= tangent * nodes.z[i, argument]
         scale, off = table.scale[value], 0.0
         for i in range(inner):
-            scale = max(scale, abs(nodes.f[i, value]))
-            to[i] -= own[i]  # last, so that a solution leaves nothing, not even rounding
+            force = nodes.f[i, value]
+            scale = max(scale, abs(force))
+            # the input last, so that a solution leaves nothing, not even rounding
+            to[i] = less_tangents(table, value, force, nodes.z[i]) - own[i]
             if not abs(to[i]) <= max(off, _ROUNDED * abs(own[i])):
                 off = abs(to[i])
         table.scale[value] = scale
@@ -159,60 +137,7 @@ def spread(sharp: Sharp, nodes: Nodes, rows: np.ndarray) -> None:
         c, z = sharp.at[i + 1], nodes.z[i]
         for a in range(arguments):
             z[a] = nodes.start[a] + c * (end[a] - nodes.start[a])
-        for k in range(count):
-            miss, back = rows[i * count + k], sharp.back[k]
-            for a in range(arguments):
-                z[a] += back[a] * miss
-
-
-@inlined
-def _bent(table: Table, nodes: Nodes, r: np.ndarray) -> tuple[int, int]:
-    """First unknown, and the one after the last, that a correction is to be solved for.
-
-    All others have tangents that are their means, and no residual.
-    """
-    inner = len(nodes.z)
-    first, end = r.size // inner, 0
-    for t in range(table.value.size):
-        unknown = table.unknown[table.value[t]]
-        if first <= unknown < end:
-            continue
-        off = 0.0
-        for i in range(inner):
-            off += abs(nodes.k[i, t] - table.mean[t]) + abs(r[unknown * inner + i])
-        if off != 0.0:
-            first, end = min(first, unknown), max(end, unknown + 1)
-    return first, end
-
-
-@inlined
-def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
-    """Replace residuals by the corrections of the inputs, by one step of Newton.
-
-    Args:
-        table, nodes: with tangents.
-        along: (nodes - 1, tangents, unknowns x nodes): directions of the tangents over the inputs.
-        room: with residuals.
-    """
-    inner = len(nodes.z)
-    first, end = _bent(table, nodes, room.r)
-    begin, size = first * inner, (end - first) * inner
-    if size <= 0:
-        return
-    for row in range(size):
-        matrix = room.matrix[row]
-        for column in range(size):
-            matrix[column] = 0.0
-        matrix[row] = 1.0
-    for t in range(table.value.size):
-        place = (table.unknown[table.value[t]] - first) * inner
-        if 0 <= place < size:
-            for i in range(inner):
-                rest = nodes.k[i, t] - table.mean[t]
-                matrix, own = room.matrix[place + i], along[i, t, begin : begin + size]
-                for column in range(size):
-                    matrix[column] -= rest * own[column]
-    solve(room.matrix, room.r[begin : begin + size])
+        add_product(sharp.back, rows[i * count : (i + 1) * count], z)
 
 
 @inlined

@@ -18,14 +18,25 @@ def copy(values: np.ndarray, to: np.ndarray) -> None:
 
 @kernel
 def add_product(matrix: np.ndarray, values: np.ndarray, to: np.ndarray) -> None:
-    """Add matrix (values, rows) times the values to `to` (rows,)."""
+    """Add matrix (values, rows) times the values to `to` (rows,), eight at once."""
     n, rows = values.size, to.size
-    whole = n - n % 4
-    for i in range(0, whole, 4):
+    whole = n - n % 8
+    for i in range(0, whole, 8):
+        a, b, c, d = values[i], values[i + 1], values[i + 2], values[i + 3]
+        e, f, g, h = values[i + 4], values[i + 5], values[i + 6], values[i + 7]
+        of_a, of_b, of_c, of_d = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
+        of_e, of_f, of_g, of_h = matrix[i + 4], matrix[i + 5], matrix[i + 6], matrix[i + 7]
+        for row in range(rows):
+            first = (of_a[row] * a + of_b[row] * b) + (of_c[row] * c + of_d[row] * d)
+            second = (of_e[row] * e + of_f[row] * f) + (of_g[row] * g + of_h[row] * h)
+            to[row] += first + second
+    if n - whole >= 4:
+        i = whole
         a, b, c, d = values[i], values[i + 1], values[i + 2], values[i + 3]
         of_a, of_b, of_c, of_d = matrix[i], matrix[i + 1], matrix[i + 2], matrix[i + 3]
         for row in range(rows):
-            to[row] += of_a[row] * a + of_b[row] * b + (of_c[row] * c + of_d[row] * d)
+            to[row] += (of_a[row] * a + of_b[row] * b) + (of_c[row] * c + of_d[row] * d)
+        whole += 4
     for i in range(whole, n):
         a, of_a = values[i], matrix[i]
         for row in range(rows):

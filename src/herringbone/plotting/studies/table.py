@@ -165,3 +165,17 @@ def thinned(curves: Sequence[tuple[str, pd.DataFrame]]) -> list[tuple[str, pd.Da
 
 def _short(value: object) -> str:
     return f"{value:g}" if isinstance(value, float | int | np.floating) else str(value)
+
+
+def checked_groups(points: Points, groups: Sequence[str]) -> Sequence[str]:
+    """The groups whose levels are to be shown; all of the table if none are named.
+
+    Raises:
+        ParameterError: the table has no levels of a group, or none at all.
+    """
+    if wrong := [g for g in groups if g not in points.groups]:
+        known = ", ".join(points.groups) or "none"
+        raise ParameterError(f"the table has no level of '{wrong[0]}'; there are: {known}")
+    if not points.groups:
+        raise ParameterError("the table has no levels: there is no column that ends in .rms")
+    return groups or points.groups

@@ -13,7 +13,8 @@ from herringbone.result.folder.names import STUDY, SUMMARY, TABLE, State
 from herringbone.result.folder.result_file import result_of
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.stored_table import stored_table
-from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.result.result import TIME, Result
+from herringbone.result.run_info import RunInfo
 
 _UNITS = "# units: "
 

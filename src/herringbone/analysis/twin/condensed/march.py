@@ -8,14 +8,13 @@ from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.compiling.jit import allocating, inlined, kernel
 from herringbone.kernels.condensed.collocation import (
     Nodes,
-    Room,
     Table,
-    correct,
     less_tangents,
     residuals,
     spread,
     turned,
 )
+from herringbone.kernels.condensed.correction import Room, correct
 from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
 
 DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
@@ -75,8 +74,11 @@ def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np
                 u[first + k * count + i] = calls.blocks[calls.signal[k]]
             else:
                 curve = state.curve[k]
-                since, value = now - curve[0], curve[curve.size - 1]
-                for j in range(curve.size - 2, 0, -1):
+                since, last = now - curve[0], curve.size - 1
+                while last > 1 and curve[last] == 0.0:
+                    last -= 1
+                value = curve[last]
+                for j in range(last - 1, 0, -1):
                     value = curve[j] + since * value
                 u[first + k * count + i] = value
         u[u.size - count + i] = fixed.one
@@ -91,16 +93,17 @@ def _predict(
     for value in range(values):
         own, to = u[value * count : (value + 1) * count], ahead[value * count : (value + 1) * count]
         end = own[count - 1]
+        changes = False
         for i in range(count):
             to[i] = end
-        if last >= 0:
+            changes |= own[i] != end
+        if changes and last >= 0:
             on = fixed.ahead[rung - last + len(fixed.ahead) // 2]
-            for n in range(count):
-                change = own[n] - end
-                if change != 0.0:
-                    row = on[n]
-                    for i in range(1, count):
-                        to[i] += row[i] * change
+            for i in range(1, count):
+                row, total = on[i], end
+                for n in range(count - 1):
+                    total += row[n] * (own[n] - end)
+                to[i] = total
 
 
 @inlined
@@ -117,10 +120,15 @@ def _inputs(
         at = channel * nodes
         start = u[at]
         v[at] = start
+        change = 0.0
         for i in range(1, nodes):
             v[at + i] = u[at + i] - start
-        for i in range(nodes):
-            if v[at + i] != 0.0:
+            change += abs(v[at + i])
+        if start != 0.0:
+            chosen[count] = at
+            count += 1
+        if change != 0.0:
+            for i in range(1, nodes):
                 chosen[count] = at + i
                 count += 1
     return count
@@ -216,13 +224,16 @@ def _advance(
     fixed: Fixed,
     rungs: Rungs,
     rung: int,
+    free: np.ndarray,
     u: np.ndarray,
     v: np.ndarray,
     chosen: np.ndarray,
     state: State,
 ) -> None:
-    modes, rotations, q = rungs.turn.shape[2], rungs.angle.shape[2], state.q
-    add_product(rungs.angle[rung], q[: 2 * modes], q[2 * modes : 2 * modes + rotations])
+    modes, q = rungs.turn.shape[2], state.q
+    rotations = rungs.rows.shape[1] - 2 * modes
+    for k in range(rotations):
+        q[2 * modes + k] += free[free.size - rotations + k]
     turn(rungs.turn[rung, 0], rungs.turn[rung, 1], q)
     count = _inputs(u, fixed.nodes.size, 0, u.size // fixed.nodes.size, v, chosen)
     add_chosen(rungs.push[rung], v, chosen, count, q)
@@ -324,7 +335,7 @@ def march_in(
         place[KEPT] = _keep(samples, place[KEPT], state, u, t, h, end)
         if place[KEPT] == samples.times.size:  # the next one may lie in this step, too
             return DONE
-        _advance(fixed, rungs, rung, u, v, chosen, state)
+        _advance(fixed, rungs, rung, free, u, v, chosen, state)
         if not np.isfinite(state.q[0]):
             return NOT_FINITE
         copy(nodes.e[count - 1], nodes.e[0])

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.kernels.condensed.collocation import Nodes, Room, Sharp, Table
+from herringbone.kernels.condensed.collocation import Nodes, Sharp, Table
+from herringbone.kernels.condensed.correction import Room
 
 
 class Calls(NamedTuple):
@@ -40,7 +41,7 @@ class Fixed(NamedTuple):
 
     Attributes:
         offset: (rows,) of `Rungs`, of the angles at the start.
-        ahead: (differences of rungs, nodes, nodes): the polynomial of the last step, by its values,
+        ahead: (differences of rungs, nodes, nodes of the last step): its polynomial, by its values,
             continued; the middle one is of equal steps, later ones of shorter ones.
         nodes: (nodes,) places in a step.
         one: value of the last channel, 0 if nothing depends on it.

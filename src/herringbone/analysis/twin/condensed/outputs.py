@@ -112,14 +112,13 @@ class _Rows:
         """Values (times, rows)."""
         share = np.round(samples.since / (_GRID * samples.length)).astype(np.int64)
         if not share.any():  # all at starts of steps
-            return self._product(samples.held, self._rows(1.0, 0), at_start=True)
+            return self._product(samples.held, 1.0, 0)
         places = self._places(samples.length, share)
         if len(places) + len(self._kept) > _MOST_PLACES:
             return self._one_by_one(run, samples)
         found = np.empty((samples.times.size, self._still.size))
         for (length, own), here in places.items():
-            rows = self._rows(length, own)
-            found[here] = self._product(samples.held[here], rows, at_start=not own)
+            found[here] = self._product(samples.held[here], length, own)
         return found
 
     def _places(self, lengths: np.ndarray, shares: np.ndarray) -> dict[tuple, np.ndarray]:
@@ -131,19 +130,14 @@ class _Rows:
                 found[float(length), int(own)] = of_length[shares[of_length] == own]
         return found
 
-    def _rows(self, length: float, share: int) -> np.ndarray:
-        """Rows (held, rows) at a share, in units of the grid, of a step [s]."""
+    def _product(self, held: np.ndarray, length: float, share: int) -> np.ndarray:
+        """Values (times, rows) at a share, in units of the grid, of a step [s]."""
         key = (length if share else 0.0, share)
         if key not in self._kept:
-            self._kept[key] = np.asfortranarray(self.at(length, _GRID * share).T)
-        return self._kept[key]
-
-    def _product(self, held: np.ndarray, rows: np.ndarray, *, at_start: bool) -> np.ndarray:
-        """What is held times the rows; at the start of steps only the first nodes count."""
-        if not at_start:
-            return held @ rows + self._still
-        size, nodes = held.shape[1] - self._channels.shape[1] * (self._degree + 1), self._degree + 1
-        return held[:, :size] @ rows[:size] + held[:, size::nodes] @ rows[size::nodes] + self._still
+            self._kept[key] = np.ascontiguousarray(self.at(length, _GRID * share).T)
+        values: np.ndarray = held @ self._kept[key]
+        values += self._still
+        return values
 
     def _one_by_one(self, run: Solution, samples: Samples) -> np.ndarray:
         """Values (times, rows), from the coordinates at the times themselves."""

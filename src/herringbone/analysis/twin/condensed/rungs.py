@@ -75,9 +75,9 @@ class Rungs(NamedTuple):
     Attributes:
         made: (rungs,) 1 where there are matrices, which are made when they are asked for.
         turn: (rungs, 2, modes) factors of the coordinates, real and imaginary.
-        rows: (rungs, q, rows) what is wanted at the nodes, of the state at the start.
+        rows: (rungs, q, rows) what is wanted at the nodes, of the state at the start; the last ones
+            are the growth of the angles.
         of_inputs: (rungs, inputs, rows) the same of the inputs.
-        angle: (rungs, 2 modes, rotations) angles' growth of the coordinates at the start.
         push: (rungs, inputs, q) state at the end of the inputs.
         along: (rungs, nodes - 1, tangents, unknowns x (nodes - 1)), see `collocation`.
         lengths: (rungs,) [s].
@@ -87,7 +87,6 @@ class Rungs(NamedTuple):
     turn: np.ndarray
     rows: np.ndarray
     of_inputs: np.ndarray
-    angle: np.ndarray
     push: np.ndarray
     along: np.ndarray
     lengths: np.ndarray
@@ -168,14 +167,13 @@ def empty_rungs(modes: Modes, lengths: Sequence[float], shape: Shape) -> Rungs:
     m, k, degree = modes.rates.size, len(modes.turns), shape.degree
     rungs, size = len(lengths), 2 * m + k
     inputs = modes.inputs.shape[1] * (degree + 1)
-    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size)
+    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size + k)
     unknowns = len(shape.stiff) * degree
     return Rungs(
         np.zeros(rungs, dtype=np.int64),
         np.zeros((rungs, 2, m)),
         aligned(rungs, size, rows),
         aligned(rungs, inputs, rows),
-        np.zeros((rungs, 2 * m, k)),
         aligned(rungs, inputs, padded(size)),
         np.zeros((rungs, degree, len(shape.directions), unknowns)),
         np.array(lengths, dtype=float),
@@ -216,7 +214,8 @@ def make_rung(rungs: Rungs, rung: int, modes: Modes, shape: Shape) -> None:
     of_angles = np.broadcast_to(modes.of_angles.T[:, None], (len(modes.turns), degree, arguments))
     rungs.rows[rung, 2 * m :, :count] = shape.rows(of_angles)
     rungs.of_inputs[rung, :, :count] = _differences(shape.rows(inputs))
-    rungs.angle[rung] = parts((modes.turns * growth).T)
+    angles = parts((modes.turns * growth).T)
+    rungs.rows[rung, : 2 * m, rungs.rows.shape[2] - angles.shape[1] :] = angles
     rungs.push[rung, :, :size] = _differences(ends)
     along = np.einsum("ta,snia->itsn", shape.directions, inputs[list(shape.stiff), 1:])
     rungs.along[rung] = along.reshape(*along.shape[:2], len(shape.stiff) * degree)

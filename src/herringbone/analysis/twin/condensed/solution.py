@@ -30,7 +30,8 @@ from herringbone.analysis.twin.condensed.rungs import (
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.variable import NODES
-from herringbone.kernels.condensed.collocation import Nodes, Sharp, make_room
+from herringbone.kernels.condensed.collocation import Nodes, Sharp
+from herringbone.kernels.condensed.correction import make_room
 
 HALVINGS = 7
 """Rungs below the base step."""
@@ -38,6 +39,8 @@ CLOSE = 1e-8
 """Residual of the laws' values, over their size, whose correction solves a step.
 
 Every correction makes it a thousand times smaller, or more, wherever no law bends."""
+COARSE = 0.1
+"""Such a residual from which on errors of 1e-3 are wanted: fine directions are left out then."""
 _LEAN_AHEAD = 2
 """Degree of the prediction over long steps, where a higher one goes farther off."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
@@ -86,10 +89,13 @@ class Solution:
         self._corrections = make_room(len(system.stiff), degree)
         channels = system.equations.channels
         self._size = 2 * modes.rates.size + modes.angles.size
-        self._shape = Shape(degree, lean, system.directions, system.sharp, system.stiff)
+        sharp = system.sharp
+        if close < COARSE:
+            sharp = np.concatenate([sharp, system.fine])
+        self._shape = Shape(degree, lean, system.directions, sharp, system.stiff)
         turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
-            _filled(self._shape.rows(turned)),
+            _filled(np.append(self._shape.rows(turned), np.zeros_like(modes.angles))),
             _ahead(degree, _LEAN_AHEAD if lean else degree),
             np.array(LOBATTO[degree]),
             float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
@@ -97,8 +103,8 @@ class Solution:
             lean,
             Sharp(
                 np.array(LOBATTO[degree]),
-                *_not_zero(system.sharp),
-                np.ascontiguousarray(np.linalg.pinv(system.sharp).T),
+                *_not_zero(sharp),
+                np.ascontiguousarray(np.linalg.pinv(sharp).T),
             ),
         )
         start = modes.start
@@ -298,4 +304,4 @@ def _ahead(degree: int, of: int) -> np.ndarray:
     Along the polynomial of a degree that goes through the end and fits the other nodes best.
     """
     shares = 2.0 ** -np.arange(-HALVINGS, HALVINGS + 1)
-    return np.array([continued(degree, of, share) for share in shares])
+    return np.array([continued(degree, of, share).T for share in shares])

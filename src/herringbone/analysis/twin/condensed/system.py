@@ -17,6 +17,8 @@ from herringbone.core import Instance, Laws, StructureError
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.kernels.condensed.collocation import Table
 
+_NO_ROWS = np.zeros((0, 0))
+
 
 @dataclass(frozen=True)
 class Condensed:
@@ -41,6 +43,11 @@ class Condensed:
     def sharp(self) -> np.ndarray:
         """(n, arguments): directions along which the laws change fast."""
         return self._rows(lambda laws, block: (laws.sharp or laws.directions)(block))
+
+    @cached_property
+    def fine(self) -> np.ndarray:
+        """(n, arguments): further ones, where errors far below 1e-3 are wanted."""
+        return self._rows(lambda laws, block: laws.fine(block) if laws.fine else _NO_ROWS)
 
     def _rows(self, given: Callable[[Laws, np.ndarray], np.ndarray]) -> np.ndarray:
         """Rows over the arguments of all laws, from those over their own."""

@@ -12,7 +12,8 @@ from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Sampl
 from herringbone.analysis.twin.condensed.observing import Shown
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.core.caching.generated import load_generated
-from herringbone.kernels.condensed.collocation import Nodes, Room, Sharp, Table
+from herringbone.kernels.condensed.collocation import Nodes, Sharp, Table
+from herringbone.kernels.condensed.correction import Room
 
 
 class Signals(NamedTuple):
@@ -59,11 +60,11 @@ _KINDS: dict[type, str] = {
     Fixed: "f1 f3 f1 real real flag Sharp",
     Table: "i1 i1 f1 i1 f1 i1 f1",
     Nodes: "f2 f2 f2 f2 f1",
-    Room: "f2 f1",
+    Room: "f2 f1 f1",
     State: "f1 f1 f2 i1 i1",
     Samples: "f1 f2 f1 f1",
     Work: "f1 f1 f1 f1 i1",
-    Rungs: "i1 f3 f3 f3 f3 f3 f4 f1",
+    Rungs: "i1 f3 f3 f3 f3 f4 f1",
     Shown: "f1 i1 i1 i1 i1 f1 i1 i1",
     Signals: "f1 f1 f2 f1 f1 f1 f4 i2 f2 f2 f1 f1 f1 f1 i1",
 }

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.accuracy.apart import outputs_in
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner
 from herringbone.analysis.twin.condensed.outputs import (
@@ -14,7 +15,7 @@ from herringbone.analysis.twin.condensed.outputs import (
     affine_places,
     outputs_of_kernels,
 )
-from herringbone.analysis.twin.condensed.solution import CLOSE, Solution
+from herringbone.analysis.twin.condensed.solution import CLOSE, COARSE, Solution
 from herringbone.analysis.twin.condensed.system import Condensed, condensed
 from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
@@ -22,8 +23,6 @@ from herringbone.core import StructureError, Variable
 from herringbone.core.names import matches_any
 from herringbone.cosim.structure.system import System
 
-_LEAST = 0.1
-"""The largest residual whose correction solves a step: one evaluation of the laws for most."""
 _OF_TOLERANCE = 100.0
 """Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
 
@@ -46,7 +45,7 @@ class Steps(NamedTuple):
 
 def closeness(tolerance: float) -> float:
     """Residual of the laws whose correction solves a step, for a tolerance."""
-    return min(_LEAST, _OF_TOLERANCE * tolerance)
+    return min(COARSE, _OF_TOLERANCE * tolerance)  # one evaluation of the laws for most steps
 
 
 class Core:
@@ -164,7 +163,7 @@ class Core:
             return {group: names for group, names in found.items() if names}
         by_unit: dict[str, list[str]] = {}
         for name in self.names:
-            by_unit.setdefault(f"outputs in {self.unit(name) or '1'}", []).append(name)
+            by_unit.setdefault(outputs_in(self.unit(name)), []).append(name)
         return by_unit
 
     def unit(self, name: str) -> str:
