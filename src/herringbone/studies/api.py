@@ -4,9 +4,11 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
+from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.set_points import SPEED, TORQUE, addressed
 from herringbone.components.registry import component
 from herringbone.core import ParameterError
+from herringbone.core.declaring.roles import Role
 from herringbone.core.places.files import as_texts, is_file
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
@@ -108,6 +110,7 @@ def sweep(
         series,
         parquet,
         overwrite,
+        _told_pairs(known),
     )
     cells = len(known.foreign_parts)
     return computed(
@@ -130,6 +133,14 @@ def _of_runs(what: str) -> ParameterError:
     return ParameterError(
         f"{what}: of runs, and steady states are without; evaluate the points by runs (--transient)"
     )
+
+
+def _told_pairs(system: System) -> str:
+    """Of which gear pair mesh orders are; "" of a system with one."""
+    pairs = anatomy(system).with_role(Role.GEAR_PAIR)
+    if len(pairs) < 2:
+        return ""
+    return f"mesh frequency and orders of {pairs[0]}, groups of channels over {' and '.join(pairs)}"
 
 
 def _found(system: str | Path) -> str:

@@ -43,6 +43,7 @@ class Asked:
         name: what is computed, for people.
         settings: digests of what all points have in common, by name.
         key: of these.
+        of: of which gear pair mesh orders are, of a system with several; "": there is one.
     """
 
     key: str
@@ -53,6 +54,7 @@ class Asked:
     series: bool = False
     parquet: bool = False
     overwrite: bool = False
+    of: str = ""
 
 
 @dataclass(frozen=True)
@@ -64,19 +66,21 @@ class Sweep:
         units: by column.
         expected: what was expected of it before.
         files: that were written.
+        of: of which gear pair mesh orders are, of a system with several; "": there is one.
     """
 
     table: pd.DataFrame
     units: Mapping[str, str]
     expected: Expected
     files: tuple[Path, ...]
+    of: str = ""
 
     def plot(self, across: str | None = None) -> "Figure":
         """Levels and mesh orders over a parameter: speed, or the first number, if not given."""
         from herringbone.plotting.studies.levels import levels  # noqa: PLC0415 (matplotlib: lazy)
         from herringbone.plotting.studies.table import Points  # noqa: PLC0415
 
-        return levels(Points(self.table, self.units), across)
+        return levels(Points(self.table, self.units, self.of), across)
 
 
 Told = Callable[[str], None]
@@ -109,7 +113,7 @@ def computed(
         store = stack.enter_context(closing(StudyFolder(place)))
         store.claim(
             {
-                "name": asked.name,
+                "name": f"{asked.name}: {asked.of}" if asked.of else asked.name,
                 "settings": dict(asked.settings),
                 "parameters": list(study.names),
                 "points": len(study.points),
@@ -147,7 +151,7 @@ def computed(
             raise
         table = study_table(study, chains, store, asked.given)
         files = table.write(place, parquet=asked.parquet) if asked.output else []
-        return Sweep(table.data, table.units, ahead, tuple(files))
+        return Sweep(table.data, table.units, ahead, tuple(files), asked.of)
 
 
 def _interrupted(

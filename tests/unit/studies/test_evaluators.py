@@ -103,3 +103,12 @@ def test_dask_gives_the_same_bits():
     ):
         found = hb.sweep("gearbox", executor=client.get_executor(), **wanted)
     assert found.table.equals(hb.sweep("gearbox", workers=1, **wanted).table)
+
+
+def test_what_is_no_motion_has_no_figures():
+    """The drive gives less than 1e5 N m; at 1e8 rad/s 27 teeth mesh 4e8 times a second."""
+    table = hb.sweep("test_rig", speed=[300.0, 100.0, 1e8], torque=[1e5], workers=1).table
+    assert table["outcome"].tolist() == ["not_converged", "not_converged", "failed"]
+    assert table["message"].str.contains("no steady rotation").tolist() == [True, True, False]
+    assert "at most 2.327e+05 rad/s" in table["message"][2]
+    assert list(table.columns) == ["point", "torque", "speed", "outcome", "message"]

@@ -23,6 +23,11 @@ def test_other_forms_are_refused(text):
         axis("speed", text)
 
 
+def test_too_many_values_tell_the_limit():
+    with pytest.raises(ParameterError, match="COUNT = 2600000 must lie between 1 and 1000000"):
+        axis("speed", "500:3000:2600000")
+
+
 def test_speed_goes_fastest_and_its_line_is_a_chain():
     study = grid({"speed": [1.0, 2.0, 3.0], "torque": [5.0, 6.0]})
     assert study.names == ("torque", "speed")

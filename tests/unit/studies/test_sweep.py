@@ -14,7 +14,7 @@ import pytest
 from support.studies import Cheap
 
 import herringbone as hb
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ResourceError
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
 from herringbone.studies.working.chain import Done, Row
@@ -127,6 +127,8 @@ def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     assert not (tmp_path / "table.csv").exists()
+    with pytest.raises(ResourceError, match="holds a sweep, not a run"):
+        hb.load(tmp_path)
     found = swept(tmp_path, evaluator=Cheap(seconds=0.05))
     assert found.table.equals(serial)
 
@@ -230,3 +232,9 @@ def test_a_chain_goes_on_where_it_was_killed(tmp_path, serial, half):
     computed = [float(line) for line in Path(log).read_text().split()]
     assert computed == [*SPEEDS[:2], *SPEEDS[:2], *SPEEDS[4:]]  # the first ones tell the cost
     assert [file.suffix for file in Path(folder, "chains").iterdir()] == [".json"]
+
+
+def test_several_gear_pairs_are_told_apart():
+    found = hb.sweep("back_to_back", speed=[100.0], workers=1, evaluator=Cheap())
+    assert found.of.startswith("mesh frequency and orders of first.gear_mesh, ")
+    assert swept(torque=[1.0]).of == ""

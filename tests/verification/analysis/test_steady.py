@@ -141,6 +141,12 @@ def test_teeth_that_deviate_make_the_period_long(tmp_path):
     assert orders[1.0] > 1.0
 
 
+def test_teeth_at_no_load_are_said_to_drift_apart():
+    state = hb.steady("test_rig", values=STILL, torque=0.0, speed=100.0)
+    assert not state.found
+    assert "nothing holds the teeth together" in state.notes[-1]
+
+
 def test_sensitivities_are_differences():
     """Central differences of the same problem: what is left is the second order of their steps."""
     speed, name = 1300.0 * np.pi / 30.0, "gear_mesh.mesh_damping_ratio"

@@ -50,6 +50,9 @@ _NO_ROTATION = (
 )
 
 
+_NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
+
+
 class Found(NamedTuple):
     """A motion, what is given of it, and its errors."""
 
@@ -130,6 +133,8 @@ class SteadySolver:
             structure = self._at(point)
             given = motion_at(structure, point)
             (motion, orbit, errors), notes = self._found(structure, given, near)
+        if point.torque == 0.0 and not orbit.converged:
+            notes = (*notes, _NO_LOAD)
         return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)
 
     def _at(self, point: Point) -> Structure:

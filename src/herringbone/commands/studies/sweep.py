@@ -124,7 +124,7 @@ def run(options: argparse.Namespace) -> int:
         )
     from herringbone.plotting.studies.pictures import write_study_pictures  # noqa: PLC0415
 
-    title = Path(options.system).stem
+    title = ": ".join(filter(None, (Path(options.system).stem, found.of)))
     drawn = write_study_pictures(found.table, found.units, folder, title, spread)
     for line in drawn.missing:
         say(line)
@@ -208,11 +208,12 @@ def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:
                 "points": len(found.table),
                 "outcomes": outcomes,
                 "largest": largest,
+                "of": found.of or None,
                 "results": files,
             }
         )
     told = ", ".join(f"{count} {kind}" for kind, count in outcomes.items())
-    lines = [f"{len(found.table)} points: {told}"]
+    lines = [f"{len(found.table)} points: {told}", *filter(None, [found.of])]
     bad = found.table[~found.table["outcome"].isin(_GOOD)]
     for row in bad.head(3).itertuples(index=False):
         lines.append(f"point {row.point}: {row.outcome}: {row.message}")
