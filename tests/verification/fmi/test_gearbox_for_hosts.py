@@ -81,7 +81,7 @@ def test_no_input_is_missing(exported, capfd):
 
 DRAWN = random.Random("operating points")
 POINTS = [
-    (0.0, 0.0), (1.0, 200.0), (3.0, 900.0), (1.0, -200.0),
+    (0.0, 0.0), (1.0, 200.0), (3.0, 900.0), (1.0, -200.0), (6.0, 20.0),
     *((DRAWN.uniform(0.1, 3.5), DRAWN.uniform(-900.0, 900.0)) for _ in range(2)),
 ]  # fmt: skip
 

@@ -3,7 +3,7 @@
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.core import Remark
 
-_DEAR = "Runge-Kutta alone integrates, at about ten times the CPU time of the condensed core"
+_DEAR = "Runge-Kutta alone integrates, at about three times the CPU time of the condensed core"
 _NO_FORM = Remark(
     f"{_DEAR}, which needs torques as inputs at both flanges, and parts that are linear beside the "
     "meshes",

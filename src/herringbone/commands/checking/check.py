@@ -124,9 +124,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     from herringbone.running.foreign.foreign_parts import clearest_signature  # noqa: PLC0415 (numba)
     from herringbone.running.foreign.started import own_step  # noqa: PLC0415
 
-    steps = own_step(fmu) if step is None else step, *(() if step else _SHORTER)
-
     try:
+        steps = (step,) if step else (own_step(fmu), *_SHORTER)
         with many_of(fmu.stem, fmu) as make:
             part = make()
             part.enter_initialization(0.0, 1.0)
