@@ -1,6 +1,6 @@
 """What a co-simulation master needs to know of a participant, be it an FMU or in-process."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -176,9 +176,14 @@ def column(part: Part, name: str) -> str:
     return name if of_parts(part) else f"{part.name}.{name}"
 
 
-def is_signal_node(part: Part, name: str) -> bool:
-    """True for a value of another variable at a node; `plate.node_7` and the like are signals."""
-    return is_node(name) and signal_of(name) in part.variables
+def is_signal_node(variables: Container[str], name: str) -> bool:
+    """True for a value of another variable at a node; `plate.node_7` and the like are signals.
+
+    Args:
+        variables: names of all variables of the part.
+        name: of one of them.
+    """
+    return is_node(name) and signal_of(name) in variables
 
 
 def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:

@@ -32,7 +32,7 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
     try:
         found = zip(names, part.get(names), strict=True)
         bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
-        fed = signal_of(bad) if is_signal_node(part, bad) else bad
+        fed = signal_of(bad) if is_signal_node(part.variables, bad) else bad
         for c in network.inputs(culprit):
             if c.input == fed and not abs(parts[c.source].get([c.output])[0]) < BOUND:
                 return f"{parts[c.source].name}.{c.output}", value

@@ -36,9 +36,9 @@ def connected(*parts):
 def test_a_name_with_node_in_it_is_an_output_like_others():
     network = connected(fe_model(), FakePart("source").real("y", "output"))
     assert record_names(network)[0] == ["f", "plate.node12", "v.node_left", "port.node_s"]
-    assert [n for n in network.parts[0].variables if is_signal_node(network.parts[0], n)] == [
-        "f.node1"
-    ]
+    assert [
+        n for n in network.parts[0].variables if is_signal_node(network.parts[0].variables, n)
+    ] == ["f.node1"]
 
 
 def test_a_source_that_diverged_is_named_whatever_its_input_is_called():

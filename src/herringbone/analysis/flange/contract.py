@@ -21,7 +21,7 @@ from herringbone.analysis.flange.variables import Flange, asked, find_flanges
 from herringbone.analysis.flange.work import passivity
 from herringbone.core import FmuError
 from herringbone.core.declaring.roles import Role
-from herringbone.core.part import Part
+from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.signature import Kind, Laboratory, Signature, find_signature
 from herringbone.cosim.signature.trial import Refused
 
@@ -99,7 +99,7 @@ def _reals(part: Part, causality: str) -> list[str]:
     return [
         name
         for name, v in part.variables.items()
-        if v.causality == causality and v.is_real and ".node" not in name
+        if v.causality == causality and v.is_real and not is_signal_node(part.variables, name)
     ]
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from herringbone.core.part import PartVariable
+from herringbone.core.part import PartVariable, is_signal_node
 
 QUANTITIES = ("tau", "phi", "w")
 UNITS = {"tau": "N.m", "phi": "rad", "w": "rad/s"}
@@ -20,7 +20,7 @@ def reals(variables: Mapping[str, PartVariable]) -> dict[str, PartVariable]:
     return {
         name: v
         for name, v in variables.items()
-        if v.is_real and v.causality in {"input", "output"} and ".node" not in name
+        if v.is_real and v.causality in {"input", "output"} and not is_signal_node(variables, name)
     }
 
 

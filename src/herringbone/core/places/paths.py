@@ -38,11 +38,11 @@ def systems_folder() -> Path:
 def cache_root() -> Path:
     """Folder of everything that is generated: `build/` in a clone, else the user's cache folder.
 
-    HERRINGBONE_CACHE overrides both.
+    HERRINGBONE_CACHE overrides both, unless it is empty.
     """
     clone = _clone()
-    if CACHE_VARIABLE in os.environ:
-        return Path(os.environ[CACHE_VARIABLE])
+    if named := os.environ.get(CACHE_VARIABLE):
+        return Path(named)
     if clone:
         return clone / "build"
     if "LOCALAPPDATA" in os.environ:

@@ -98,7 +98,7 @@ def record_names(network: Network) -> list[list[str]]:
         [
             name
             for name, v in part.variables.items()
-            if v.causality == "output" and v.is_real and not is_signal_node(part, name)
+            if v.causality == "output" and v.is_real and not is_signal_node(part.variables, name)
         ]
         for part in network.parts
     ]

@@ -196,7 +196,9 @@ def _element_pairs(
 
 def _ports(part: Part) -> list[str]:
     names = [n for n, v in part.variables.items() if v.causality in {"input", "output"}]
-    return sorted({n.rpartition(".")[0] for n in names if "." in n and not is_signal_node(part, n)})
+    return sorted(
+        {n.rpartition(".")[0] for n in names if "." in n and not is_signal_node(part.variables, n)}
+    )
 
 
 def _pairs(

@@ -18,7 +18,13 @@ from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.one_thread import one_blas_thread
-from herringbone.core.part import Addresses, PartVariable, Value, ValueOrArray
+from herringbone.core.part import (
+    Addresses,
+    PartVariable,
+    Value,
+    ValueOrArray,
+    is_signal_node,
+)
 from herringbone.cosim.rows.recording import CoreStatistics
 from herringbone.kernels.signals import STRIDE
 
@@ -219,7 +225,7 @@ class CorePart:
     def get(self, names: Sequence[str]) -> list[float]:
         """Values of inputs and outputs; in initialisation mode they belong to the inputs set."""
         if self._initialising:
-            known = [name for name in names if ".node" not in name]
+            known = [name for name in names if not is_signal_node(self.variables, name)]
             values = dict(zip(known, self._observed(known), strict=True))
             return [float(values.get(name, 0.0)) for name in names]
         references = np.array([self.variables[name].reference for name in names], np.uint32)
