@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
 from herringbone.core.places.paths import cache_folder
-from herringbone.cosim.cell.policy import housing_of_strangers
+from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
 
@@ -30,7 +30,7 @@ def seldom_collected():
 @pytest.fixture(scope="session", autouse=True)
 def strangers_in_process():
     """A cell takes a third of a second to start; the tests of cells ask for them."""
-    with housing_of_strangers(in_process=True):
+    with foreign_fmu_policy(in_process=True):
         yield
 
 

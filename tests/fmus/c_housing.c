@@ -43,6 +43,9 @@ enum { DOFS = 12, OK = 0, ERROR = 3 };
 #ifndef SPEED /* factor of the velocities shown */
 #define SPEED 1.0
 #endif
+#ifndef PLACE /* factor of the positions shown */
+#define PLACE 1.0
+#endif
 #ifndef LONGEST /* s, inner step */
 #define LONGEST 1e-6
 #endif
@@ -83,7 +86,7 @@ static void advance(Housing *housing, double h) {
 static void show(Housing *housing) {
     double *real = housing->real;
     for (int i = 0; i < DOFS; ++i) {
-        real[DOFS + i] = housing->s[i] + DIRECT * real[i];
+        real[DOFS + i] = PLACE * housing->s[i] + DIRECT * real[i];
         real[2 * DOFS + i] = SPEED * housing->v[i];
     }
 }

@@ -25,6 +25,9 @@ from herringbone.running.start import started
 
 STEP, COUNT, EVERY = 2e-6, 100_000, 1000
 MASTER = Path(__file__).with_name("jacobi.c")
+WINDOWS_START = MASTER.with_name("windows_start.c")
+WINDOWS_PARTS = "convert", "heap", "private", "runtime", "stdio", "string"
+"""Of Windows' universal C runtime: those that the master calls."""
 AARCH64_LIBC = Path("/usr/aarch64-linux-gnu")
 
 pytestmark = [
@@ -75,16 +78,32 @@ def runner(request):
     return request.param
 
 
+def compile_master(platform, folder):
+    """The master's program for a platform; on Windows without mingw's library (windows_start.c)."""
+    windows = platform.extension == "dll"
+    command = require_compiler(platform).command
+    flags = ["-std=c11", "-O1", "-Wall", "-Wextra", "-Werror", "-c"]
+    flags.append(f"-I{Path(fmpy.__file__).parent / 'c-code'}")
+    flags += ["-D__USE_MINGW_ANSI_STDIO=0", "-fno-stack-protector"] * windows
+    program = folder / "jacobi.exe"
+    objects = []
+    for source in (MASTER, *[WINDOWS_START] * windows):  # zig takes one at a time
+        objects.append(folder / f"{source.stem}.o")
+        subprocess.run([*command, *flags, source, "-o", objects[-1]], check=True)
+    libraries = ["-ldl"]
+    if windows:
+        libraries = [f"-lapi-ms-win-crt-{part}-l1-1-0" for part in WINDOWS_PARTS]
+        libraries += ["-lkernel32", "-nostdlib", "-rtlib=none", "-Wl,-e,mainCRTStartup"]
+    link = ["-fno-sanitize=undefined", *libraries]  # zig would build a library for it
+    subprocess.run([*command, *objects, "-o", program, *link], check=True)
+    return program
+
+
 @pytest.fixture(scope="module")
 def run_plan(runner, tmp_path_factory):
     """Function that runs the master on a plan, and gives its rows."""
     folder = tmp_path_factory.mktemp("master")
-    program = folder / "jacobi.exe"
-    headers = Path(fmpy.__file__).parent / "c-code"
-    compiler = require_compiler(PLATFORMS[runner.platform]).command
-    flags = ("-std=c11", "-O1", "-Wall", "-Wextra", "-Werror", f"-I{headers}")
-    libraries = () if "windows" in runner.platform else ("-ldl",)
-    subprocess.run([*compiler, *flags, MASTER, "-o", program, *libraries], check=True)
+    program = compile_master(PLATFORMS[runner.platform], folder)
     quiet = {"WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
 
     def run(plan):

@@ -27,15 +27,8 @@ from herringbone.cosim.algorithms import ALGORITHMS, Algorithm, adapts
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
-from support.parts import (
-    MOTION,
-    TWO_MASS_SYSTEM,
-    Ramp,
-    TwoMass,
-    columns,
-    open_in_process,
-    slope,
-)
+from support.parts.running import columns, open_in_process, slope
+from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, Ramp, TwoMass
 
 
 def variants() -> tuple[Algorithm, ...]:

@@ -9,7 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
-from support.parts import DISCARD, OK, Mass
+from support.parts.fakes import DISCARD, OK
+from support.parts.two_masses import Mass
 
 _ORDERS = ctypes.POINTER(ctypes.c_int32)
 _DERIVATIVES = ctypes.CFUNCTYPE(

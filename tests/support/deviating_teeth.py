@@ -25,10 +25,13 @@ def write_law(file: Path, mesh: SliceMesh | PointMesh) -> Path:
     return file
 
 
-def write_teeth(file: Path, grade: int, seed: int = 7) -> Path:
-    """Deviations of both halves of the thesis' pair, by a class."""
-    halves = [deviations(PAIR, grade, seed, half) for half in range(2)]
-    file.write_text(tooth_deviations_text(PAIR, halves))
+def write_teeth(file: Path, grade: int, seed: int = 7, *, coast: bool = False) -> Path:
+    """Deviations of both halves of the thesis' pair, by a class; of the coast flanks, too."""
+    drive, other = (
+        [deviations(PAIR, grade, seed, half, coast=flank) for half in range(2)]
+        for flank in (False, True)
+    )
+    file.write_text(tooth_deviations_text(PAIR, drive, other if coast else ()))
     return file
 
 

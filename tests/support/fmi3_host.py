@@ -13,11 +13,12 @@ class Fmi3Host:
     Args:
         fmu: file.
         folder: where it is unzipped.
-        degree: of the signals at the nodes of its inputs.
+        degree: of the signals at the nodes of its inputs; None: it has no nodes.
+        values: set in initialisation mode.
         options: of fmpy's instantiate.
     """
 
-    def __init__(self, fmu: Path, folder: Path, degree=0.0, **options):
+    def __init__(self, fmu: Path, folder: Path, degree=0.0, values=None, **options):
         description = read_model_description(str(fmu))
         self.reference = {v.name: v.valueReference for v in description.modelVariables}
         self.slave = FMU3Slave(
@@ -27,8 +28,10 @@ class Fmi3Host:
             instanceName="part",
         )
         self.slave.instantiate(**options)
-        self.set({"interface_degree": degree})
+        if degree is not None:
+            self.set({"interface_degree": degree})
         self.slave.enterInitializationMode()
+        self.set(values or {})
         self.slave.exitInitializationMode()
 
     def set(self, values):

@@ -80,3 +80,10 @@ def read_modes(
     n = int(out[0])
     frequency_hz, damping_ratio = out[1 : 1 + n], out[1 + most : 1 + most + n]
     return frequency_hz, damping_ratio, out[1 + 2 * most :].reshape(len(dofs), most)[:, :n]
+
+
+PROTOTYPE_HOUSING = {
+    f"modal_housing.{name}": str(Path(__file__).parents[1] / "data" / "prototype_housing" / file)
+    for name, file in (("modes", "modes.csv"), ("shapes", "shapes.csv"))
+}
+"""Housing of the dense prototypes whose figures some tests reproduce: 52 oscillators."""

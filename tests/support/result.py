@@ -13,7 +13,8 @@ from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.declaring.variable import Causality
 from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.structure.system_file import read_system
-from herringbone.result.result import Result, RunInfo
+from herringbone.result.result import Result
+from herringbone.result.run_info import RunInfo
 
 SPEED = 1000.0 * 2.0 * math.pi / 60.0
 """Pinion speed [rad/s]."""

@@ -7,6 +7,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from herringbone.core import ParameterError
 from herringbone.studies.evaluators.evaluator import Evaluated, Figure
 
@@ -33,9 +35,15 @@ class Cheap:
 
     def opened(self, base):
         del base
-        return self._evaluate
+        return self
 
-    def _evaluate(self, point, near, *, series):
+    def kept(self, near):
+        return {"x": np.array(near)}
+
+    def renewed(self, kept):
+        return float(kept["x"])
+
+    def __call__(self, point, near, *, series):
         del series
         speed = float(point["speed"])
         if self.log:

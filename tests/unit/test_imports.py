@@ -1,6 +1,7 @@
 """The import rule: who may import whom, and where heavy packages may appear."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,7 @@ ONLY_IN: dict[str, set[str]] = {
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 
+@cache
 def imported(file: Path) -> list[tuple[str, ast.AST]]:
     """Modules that a file imports anywhere, type checking excluded."""
     tree = ast.parse(file.read_text(encoding="utf-8"))

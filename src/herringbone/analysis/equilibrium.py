@@ -24,10 +24,11 @@ _ITERATIONS, _PATIENCE = 40, 12
 _CLOSER = 0.9
 _CONVERGED = 1e-11
 _DIFFERENCE = 1e-3
-_SCALE = {
+SCALE = {
     "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
     "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
 }  # fmt: skip
+"""Sizes of states, by unit; others 1."""
 _RANK = 1e-12
 
 
@@ -154,9 +155,9 @@ def _scales(twin: Twin) -> np.ndarray:
     scales = []
     for instance in twin.instances:
         declaration = instance.component.declaration
-        scales += [_SCALE.get(v.unit, 1.0) for v in declaration.states]
+        scales += [SCALE.get(v.unit, 1.0) for v in declaration.states]
         for vector in declaration.vectors:
-            scales += [_SCALE.get(vector.unit, 1.0)] * vector.capacity
+            scales += [SCALE.get(vector.unit, 1.0)] * vector.capacity
     return np.array(scales)
 
 

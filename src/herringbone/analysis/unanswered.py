@@ -10,7 +10,7 @@ from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, SIDES, Quantity, Role
 from herringbone.result.result import Result
 
-_POWER = "power"
+_POWER, _ELECTRICAL = "power", "electrical power"
 _QUESTIONS: tuple[tuple[str, Role, Quantity, str | None], ...] = (
     ("pinion speed", Role.GEAR_PAIR, Quantity.SPEED, "pinion"),
     *(("mesh force", Role.GEAR_PAIR, Quantity.MESH_FORCE, side) for side in SIDES),
@@ -45,11 +45,10 @@ def unanswered(result: Result) -> dict[str, list[str]]:
 
 
 def _missing(result: Result) -> Iterator[tuple[str, str]]:
-    machines = result.parts_with(Role.DRIVE) or result.parts_with(Role.LOAD)
-    told = not machines and mean_powers(result) is not None  # by flanges, in place of supplies
     for what, role, quantity, place in _QUESTIONS:
-        if what != _POWER or not told:
+        if what != _POWER:
             yield from ((what, why) for why in _unoffered(result, role, quantity, place))
+    yield from _unpowered(result)
     if result.parts_with(Role.GEAR_PAIR):
         yield from (("number of teeth, mesh orders", why) for why in _untoothed(result))
     yield from (("torque", why) for why in _unmeasured(result))
@@ -70,6 +69,23 @@ def _missing(result: Result) -> Iterator[tuple[str, str]]:
             power_inputs(result, part=part)
         except ParameterError as error:
             yield "radiated power", str(error) if part else _nobody(result, Role.HOUSING)
+
+
+def _unpowered(result: Result) -> Iterator[tuple[str, str]]:
+    """Why no power is known; where flanges tell the mechanical ones, why no electrical one is.
+
+    Then, a system without a drive or load has none: what drives or loads it is a source.
+    """
+    told = mean_powers(result) is not None
+    machines = result.parts_with(Role.DRIVE) or result.parts_with(Role.LOAD)
+    strangers = any(not info.roles for info in result.info.anatomy.parts.values())
+    for what, role, quantity, place in _QUESTIONS:
+        if what != _POWER or (told and not machines):
+            continue
+        if told and not strangers and not result.parts_with(role):
+            continue
+        name = _ELECTRICAL if told else _POWER
+        yield from ((name, why) for why in _unoffered(result, role, quantity, place))
 
 
 def _nobody(result: Result, role: Role) -> str:

@@ -1,154 +1,20 @@
 """The speed-accuracy chart of a system's scene: runs, table, picture, files."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
-from herringbone.analysis.accuracy.converged import Converged
-from herringbone.analysis.accuracy.step_ladder import (
-    STEPS,
-    OpenParts,
-    Progress,
-    Reference,
-    charted_algorithms,
-    ladder,
-    run_points,
-)
 from herringbone.analysis.accuracy.work_precision import MARKS, Reach, WorkPrecision
-from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.declaring.roles import Quantity, Role
-from herringbone.core.part import Part
+from herringbone.core import HerringboneError, OutcomeKind
 from herringbone.core.places.files import write_whole
-from herringbone.cosim.algorithms import AUTO, LI, parse_algorithm, refuse_adaptive
-from herringbone.cosim.rows.record import Grid
-from herringbone.cosim.structure.system import System
-from herringbone.fmi.kind import AUTO as AUTO_FMU
-from herringbone.fmi.kind import choose_kind
-from herringbone.running.foreign.foreign_parts import alike, understood
-from herringbone.running.fused.charted import fused_points
-from herringbone.running.fused.fused import refuse_strangers
-from herringbone.running.loading import instances, open_parts
-from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named, Wishes, prepared
+from herringbone.running.charting.measure import measure
 
 LEVELS = (1e-2, 1e-3)
 """Errors at which steps are compared [1]."""
 _FILES = ("chart.csv", "chart.json", "chart.png")
-
-
-def measure(
-    system: str | Path,
-    *,
-    scene: str | None = None,
-    algorithms: Sequence[str] = (),
-    steps: Sequence[float] = STEPS,
-    tolerances: Sequence[float] = (),
-    t_end: float | None = None,
-    values: Mapping[str, float | str] | None = None,
-    gear: Gear | Mapping[str, Gear] | None = None,
-    housing: Named | None = None,
-    replace_parts: Mapping[str, str | Path] | None = None,
-    fmu: str = AUTO_FMU,
-    fuse: bool = False,
-    progress: Progress = lambda algorithm, step: None,
-) -> WorkPrecision:
-    """Run algorithms up a ladder of steps, against the monolithic twin.
-
-    Args:
-        system: name of a shipped system, folder with system.toml, or .ssp file.
-        scene: name or file of a scene; the system's "loaded" if not given.
-        algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
-        steps: communication step sizes [s].
-        tolerances: relative errors for which li adapts its step, one more curve; none if not given.
-        t_end: duration of each run [s]; the scene's if not given.
-        values, gear, housing, replace_parts: as in `herringbone.run`.
-        fmu: kind of the parts' FMUs, as in `herringbone.run`.
-        fuse: curves of the fused system, too; its steps are the base steps of the core.
-        progress: called before each run with the algorithm and the step [s].
-
-    Raises:
-        HerringboneError: something about the input is wrong.
-    """
-    if AUTO in algorithms:
-        raise ParameterError(
-            f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
-        )
-    chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or charted_algorithms()
-    if 0.0 in tolerances:
-        raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
-    refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
-    chosen = [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
-    wishes = Wishes(
-        t_end=t_end,
-        values=values or {},
-        gear=gear,
-        housing=housing,
-        replace_parts=replace_parts or {},
-    )
-    structure, options, notes = prepared(system, scene, wishes)
-    fmu, why = choose_kind(fmu)
-    notes = (*notes, *why)
-    grids = ladder(steps, options.t_end)
-    if structure.foreign_parts and tolerances:
-        raise ParameterError("tolerances: with foreign FMUs a curve is drawn over fixed steps only")
-
-    known: list[Part] = []
-
-    def opened() -> list[Part]:
-        parts = open_parts(structure, fmu)
-        if known:
-            return [
-                alike(first, part) if spec.foreign else part
-                for spec, first, part in zip(structure.parts, known, parts, strict=True)
-            ]
-        known.extend(understood(structure, parts, instances, grids[0].step)[0])
-        return list(known)
-
-    reference = _reference(structure, opened, grids)
-    found = list(run_points(structure, opened, reference, chosen, grids, progress))
-    if fuse:
-        refuse_strangers(structure)
-    if fuse and isinstance(reference, Reference):
-        found += [(p, ()) for p in fused_points(structure, reference, grids, progress)]
-    modes, micro_step = 0, 0.0
-    if isinstance(reference, Reference):
-        modes, micro_step = _internals(reference.twin)
-    else:
-        notes = (*notes, reference.note)
-    return WorkPrecision(
-        structure.name,
-        options.name,
-        options.t_end,
-        fmu,
-        modes,
-        micro_step,
-        tuple(point for point, _ in found),
-        tuple(dict.fromkeys([*notes, *(note for _, own in found for note in own)])),
-        bool(structure.foreign_parts),
-    )
-
-
-def _reference(system: System, opened: OpenParts, grids: Sequence[Grid]) -> Reference | Converged:
-    """The twin, or finer runs where there is none."""
-    if system.foreign_parts:
-        return Converged(system, opened, grids)
-    return Reference(system, grids)
-
-
-def _internals(twin: Twin) -> tuple[int, float]:
-    """Modes of the housing, and shortest micro step [s] of the parts."""
-    modes, micro_steps = 0, []
-    for instance in twin.instances:
-        declaration = instance.component.declaration
-        if Role.HOUSING in declaration.roles:
-            counts = {declaration.first_table + v.length for v in declaration.vectors if v.text}
-            modes += sum(int(instance.block[count]) for count in counts)
-        micro_steps += [instance[v.name] for v in declaration.offered(Quantity.MICRO_STEP)]
-    return modes, min(micro_steps, default=0.0)
 
 
 def chart(

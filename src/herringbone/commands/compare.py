@@ -3,7 +3,7 @@
 import argparse
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,31 +69,11 @@ def lines(found: "Comparison") -> Iterator[str]:
     yield f"B {other}"
     yield f"compared from {found.begin:g} to {found.end:g} s; differences over B's alternating part"
     yield ""
-    wide = max([len(str(g)) for g in found.groups["group"]] + [8]) + 2
-    head = f"{'difference':>12}{'rms of A':>12}{'rms of B':>12}{'A / B':>8}  worst channel"
-    yield " " * wide + head
-    for row in found.groups.itertuples():
-        ratio = _ratio(row.level_first, row.level_second)
-        yield (f"{row.group:<{wide}}{_percent(row.difference):>12}{row.level_first:>12.4g}"
-               f"{row.level_second:>12.4g}{ratio:>8.4f}  {row.worst} "
-               f"({_percent(row.worst_difference)}) [{row.unit or '1'}]")  # fmt: skip
+    yield from aligned(_groups(found), "<>>>><")
     if len(found.orders):
         yield ""
-        yield f"{'mesh orders, largest channel':<{wide + 12}}{'A':>12}{'B':>12}{'A / B':>8}"
-        for row in found.orders.itertuples():
-            label = str(row.group) if row.order == 1 else ""
-            ratio = (
-                row.amplitude_first / row.amplitude_second if row.amplitude_second else float("nan")
-            )
-            yield (f"{label:<{wide}}{f'{row.order} f_m':>12}{row.amplitude_first:>12.4g}"
-                   f"{row.amplitude_second:>12.4g}{ratio:>8.4f}  [{row.unit or '1'}]")  # fmt: skip
-    if len(found.parameters):
-        yield ""
-        yield f"parameters that differ: {len(found.parameters)}"
-        for row in found.parameters.head(_MOST_PARAMETERS).itertuples():
-            yield f"  {row.parameter}: {row.first:.8g} and {row.second:.8g}"
-        if len(found.parameters) > _MOST_PARAMETERS:
-            yield f"  and {len(found.parameters) - _MOST_PARAMETERS} more, which --json tells"
+        yield from aligned(_orders(found), "<>>>><")
+    yield from _parameters(found)
     if len(found.resources):
         yield ""
         yield f"files of components that differ: {len(found.resources)}"
@@ -106,9 +86,60 @@ def lines(found: "Comparison") -> Iterator[str]:
         yield f"note: {note}"
 
 
+def aligned(rows: Iterable[Sequence[str]], sides: str) -> Iterator[str]:
+    """Cells in columns, at least two spaces apart however long they are.
+
+    Args:
+        rows: cells, as many in each row as there are sides.
+        sides: < or > by column.
+    """
+    table = list(rows)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for row in table:
+        cells = zip(row, sides, widths, strict=True)
+        yield "  ".join(f"{cell:{side}{width}}" for cell, side, width in cells).rstrip()
+
+
+def _groups(found: "Comparison") -> Iterator[tuple[str, ...]]:
+    yield "", "difference", "rms of A", "rms of B", "A / B", "worst channel"
+    for row in found.groups.itertuples():
+        share = _percent(row.worst_difference)
+        worst = f"{row.worst} ({share})" if share != "-" else share
+        levels = _side_by_side(row.level_first, row.level_second)
+        yield str(row.group), _percent(row.difference), *levels, f"{worst} [{row.unit or '1'}]"
+
+
+def _orders(found: "Comparison") -> Iterator[tuple[str, ...]]:
+    yield "mesh orders, largest channel", "", "A", "B", "A / B", ""
+    for row in found.orders.itertuples():
+        label = str(row.group) if row.order == 1 else ""
+        values = _side_by_side(row.amplitude_first, row.amplitude_second)
+        yield label, f"{row.order} f_m", *values, f"[{row.unit or '1'}]"
+
+
+def _parameters(found: "Comparison") -> Iterator[str]:
+    """Those that were set, and how many follow from them."""
+    if not len(found.parameters):
+        return
+    yield ""
+    yield f"parameters that differ: {len(found.parameters)}"
+    given = found.parameters[~found.parameters["computed"].astype(bool)]
+    for row in given.head(_MOST_PARAMETERS).itertuples():
+        yield f"  {row.parameter}: {row.first:.8g} and {row.second:.8g}"
+    if len(given) > _MOST_PARAMETERS:
+        yield f"  and {len(given) - _MOST_PARAMETERS} more, which --json tells"
+    if computed := len(found.parameters) - len(given):
+        yield f"  and {computed} forces at the start, which follow; --json tells them"
+
+
+def _side_by_side(one: float, other: float) -> tuple[str, str, str]:
+    """Two values and their ratio."""
+    ratio = one / other if other else math.nan
+    shown = "-" if math.isnan(ratio) else f"{ratio:.4f}" if 1e-3 < ratio < 1e4 else f"{ratio:.3g}"
+    return f"{one:.4g}", f"{other:.4g}", shown
+
+
 def _percent(share: float) -> str:
-    return "-" if math.isnan(share) else f"{100.0 * share:.3g} %"
-
-
-def _ratio(one: float, other: float) -> float:
-    return one / other if other else math.nan
+    percent = 100.0 * share
+    shown = f"{percent:.0f}" if 1e3 <= percent < 1e7 else f"{percent:.3g}"
+    return "-" if math.isnan(share) else f"{shown} %"

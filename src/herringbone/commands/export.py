@@ -3,12 +3,16 @@
 import argparse
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from herringbone.commands.build import add_platform_options, chosen_platforms, untested
 from herringbone.commands.options import add_scene, files_of_parts
 from herringbone.commands.output import check_writable
 from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import GEARS
+
+if TYPE_CHECKING:
+    from herringbone.scenes import Scene
 
 _SHOWN = {
     "internals": "all variables of its parts, as locals",
@@ -24,6 +28,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     add_scene(sub)
     sub.add_argument("--step", type=float, help="communication step size in s (.ssp only)")
     sub.add_argument("--as-fmu", action="store_true", help="one native FMU of the whole system")
+    sub.add_argument(
+        "--plan", action="store_true",
+        help="with --as-fmu: plan what the scene asks, and leave out what the choice does",
+    )  # fmt: skip
     sub.add_argument(
         "--outside",
         action="append",
@@ -81,18 +89,21 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
             raise ParameterError("--step belongs to .ssp files; an FMU takes any step")
         if options.nested or options.python:
             raise ParameterError("--nested and --python belong to .ssp files; leave out --as-fmu")
+        lines, scene = _planned(options, values) if options.plan else ([], options.scene)
         file = export_fmu(
             options.system,
             options.output or Path(fmu_file_name(name, options.fmi)),
             outside=options.outside,
-            scene=options.scene,
+            scene=scene,
             values=values,
             **files,
             platforms=platforms,
             fmi=options.fmi,
             wanted=_wanted(options),
         )
-        return [str(file), *untested(platforms)]
+        return [*lines, str(file), *untested(platforms)]
+    if options.plan:
+        raise ParameterError("--plan: a leaner model is one FMU; add --as-fmu")
     if options.outside or options.fmi != 2 or _wanted(options) != Wanted():
         raise ParameterError(
             "--outside, --fmi, flanges and variables belong to one FMU; add --as-fmu"
@@ -111,6 +122,18 @@ def export(options: argparse.Namespace, values: Mapping[str, float | str]) -> li
         nested=options.nested,
     )
     return [str(file), *untested(platforms)]
+
+
+def _planned(
+    options: argparse.Namespace, values: Mapping[str, float | str]
+) -> "tuple[list[str], Scene]":
+    """A plan's text, and its scene."""
+    from herringbone.studies.planning.plan import plan  # noqa: PLC0415 (numba)
+    from herringbone.studies.planning.text import plan_text  # noqa: PLC0415
+
+    files = files_of_parts(options)
+    found = plan(options.system, scene=options.scene, values=values, **files, for_fmu=True)
+    return plan_text(found), found.scene
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:

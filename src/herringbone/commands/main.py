@@ -43,7 +43,7 @@ from herringbone.core import (
     HerringboneError,
     OutcomeKind,
 )
-from herringbone.cosim.cell.policy import Policy, housing_of_strangers
+from herringbone.cosim.cell.policy import Policy, foreign_fmu_policy
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
     """How the command's foreign FMUs are housed."""
-    return housing_of_strangers(
+    return foreign_fmu_policy(
         in_process=getattr(options, "in_process", None),
         deadline=getattr(options, "call_deadline", None),
     )

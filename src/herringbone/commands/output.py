@@ -16,6 +16,11 @@ from herringbone.core.errors import reason
 
 _SELDOM = 20_000, 10, 5
 """Thresholds of Python's three generations of objects."""
+_NO_MEMORY = (
+    "there is no memory left; end other programs, or ask for less, such as a longer --record-step"
+)
+_OPENSSL = "[digital envelope routines]"
+"""How OpenSSL's hashes begin their ValueError; ours fail only where memory does."""
 
 
 def say(text: str) -> None:
@@ -37,10 +42,11 @@ def limits_told() -> Iterator[None]:
     try:
         yield
     except (MemoryError, SystemError) as error:  # the second where a library forgets to say so
-        raise HerringboneError(
-            "there is no memory left; end other programs, or ask for less, such as a longer "
-            "--record-step"
-        ) from error
+        raise HerringboneError(_NO_MEMORY) from error
+    except ValueError as error:
+        if not str(error).startswith(_OPENSSL):
+            raise
+        raise HerringboneError(_NO_MEMORY) from error
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         raise HerringboneError(f"{where}{reason(error)}") from error

@@ -35,6 +35,8 @@ def run(options: argparse.Namespace) -> int:
     output = options.output or options.folder
     if options.highest is not None and not options.highest > 0.0:
         raise ParameterError(f"--highest {options.highest:g}: it must be positive, in Hz")
+    if is_file(options.folder):
+        raise ParameterError(f"{options.folder} is a file: plot takes the folder that it is in")
     study = is_file(options.folder / _STUDY)
     if study and (options.columns or options.highest):
         raise ParameterError("--columns and --highest are of runs; this is the folder of a sweep")

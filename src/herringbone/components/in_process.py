@@ -13,7 +13,7 @@ from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaring.declaration import Declaration, node_name
 from herringbone.core.declaring.units import base_exponents
 from herringbone.core.declaring.variable import NODES, Causality
-from herringbone.core.part import Addresses, Given, PartVariable, Value
+from herringbone.core.part import Addresses, PartVariable, Value, ValueOrArray
 from herringbone.kernels import fmi_calls
 
 _DO_STEP = '''"""Address of a component's fmi2DoStep; generated, not to be edited."""
@@ -133,7 +133,7 @@ class InProcessPart:
             raise ParameterError(f"{self.name}: the checkpoint is of another version of it")
         self.instance.block[: values.size] = values
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable; raises ParameterError."""
         if not isinstance(value, float | int | str):
             raise ParameterError(f"{self.name}.{name} = {value!r}: it takes a number or a text")

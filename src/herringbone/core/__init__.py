@@ -1,8 +1,8 @@
 """Declarations that everything else is derived from: variables, blocks, units, errors, outcomes."""
 
-from herringbone.core.declaring.component import Component, Kernels
+from herringbone.core.declaring.component import Beyond, Component, Kernels
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.core.declaring.hosting import Experiment, Hosting, RunsOn
+from herringbone.core.declaring.hosting import Experiment, Hosting, Remark, RunsOn
 from herringbone.core.declaring.laws import Laws, common_period
 from herringbone.core.declaring.variable import (
     Column,
@@ -31,6 +31,7 @@ from herringbone.core.outcome import EXIT_CODES, Outcome, OutcomeKind
 
 __all__ = [
     "EXIT_CODES",
+    "Beyond",
     "Column",
     "Component",
     "Declaration",
@@ -45,6 +46,7 @@ __all__ = [
     "Outcome",
     "OutcomeKind",
     "ParameterError",
+    "Remark",
     "ResourceError",
     "RunsOn",
     "StateVector",

@@ -194,3 +194,8 @@ def activity(what: str, note: str = "", *, shown: bool = False) -> Iterator[None
     finally:
         _open.activity = around
         this.end()
+
+
+def tell(line: str) -> None:
+    """Say at once what the user should know before something takes long."""
+    _LOG.info("%s", line)

@@ -9,6 +9,7 @@ class OutcomeKind(StrEnum):
 
     COMPLETED = "completed"
     PART_LOST_AT_END = "completed_part_lost"
+    PART_MAKES_ENERGY = "completed_part_makes_energy"
     ENDED = "ended_by_part"
     INTERRUPTED = "interrupted"
     UNSTABLE = "unstable"
@@ -22,6 +23,7 @@ EXIT_CODES = {
     OutcomeKind.COMPLETED: 0,
     OutcomeKind.ENDED: 0,
     OutcomeKind.PART_LOST_AT_END: 1,
+    OutcomeKind.PART_MAKES_ENERGY: 1,
     OutcomeKind.UNSTABLE: 1,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
@@ -30,7 +32,12 @@ EXIT_CODES = {
     OutcomeKind.INTERRUPTED: 130,
 }
 """Exit code of a command whose run ended in one of these ways."""
-_REACHED_END = {OutcomeKind.COMPLETED, OutcomeKind.UNSTABLE, OutcomeKind.PART_LOST_AT_END}
+_REACHED_END = {
+    OutcomeKind.COMPLETED,
+    OutcomeKind.UNSTABLE,
+    OutcomeKind.PART_LOST_AT_END,
+    OutcomeKind.PART_MAKES_ENERGY,
+}
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.declaration import (
+    INTERFACE_DEGREE,
+    is_node,
+    node_name,
+    signal_of,
+)
 
 Value = float | str | bytes
 """Value of a variable of any FMI type; also an int or a bool."""
-Given = Value | Sequence[Value]
+ValueOrArray = Value | Sequence[Value]
 """What a variable may be set to: an array takes all its values."""
 STRUCTURE = "structuralParameter"
 """Causality of what decides how large arrays are."""
@@ -113,7 +118,7 @@ class Part(Protocol):
     def new_state(self) -> int:
         """Handle that fmi2GetFMUstate is given first: 0, or memory that the part provides."""
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable before or during initialisation; raises ParameterError."""
 
     def get(self, names: Sequence[str]) -> list[float]:
@@ -169,6 +174,11 @@ def of_parts(part: Part) -> bool:
 def column(part: Part, name: str) -> str:
     """`instance.variable`, as an output is recorded; a part of parts has such names itself."""
     return name if of_parts(part) else f"{part.name}.{name}"
+
+
+def is_signal_node(part: Part, name: str) -> bool:
+    """True for a value of another variable at a node; `plate.node_7` and the like are signals."""
+    return is_node(name) and signal_of(name) in part.variables
 
 
 def has_nodes(part: Part, inputs: Sequence[str], degree: int) -> bool:

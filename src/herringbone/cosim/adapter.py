@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
+from herringbone.core.part import Addresses, Part, PartVariable, Value, ValueOrArray
 from herringbone.cosim.signature.signature import Signature
 
 
@@ -29,7 +29,7 @@ class PartAdapter:
         """See `Part`."""
         return self.part.new_state()
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """See `Part`."""
         self.part.set(name, value)
 

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from herringbone.core import HerringboneError
+from herringbone.core.declaring.declaration import signal_of
+from herringbone.core.part import is_signal_node
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.structure.network import Network
 
@@ -30,7 +32,7 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
     try:
         found = zip(names, part.get(names), strict=True)
         bad, value = next(((n, x) for n, x in found if not abs(x) < BOUND), ("", 0.0))
-        fed = bad.partition(".node")[0]
+        fed = signal_of(bad) if is_signal_node(part, bad) else bad
         for c in network.inputs(culprit):
             if c.input == fed and not abs(parts[c.source].get([c.output])[0]) < BOUND:
                 return f"{parts[c.source].name}.{c.output}", value

@@ -15,7 +15,7 @@ from herringbone.cosim.divergence import diverged
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
-from herringbone.cosim.loops.adaptive import STEP_LIMIT
+from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT
 from herringbone.cosim.loops.common import (
     COUPLING_FAILED,
     DONE,
@@ -230,29 +230,30 @@ class Run:
         kept, record_step = self.rows.finish(done, outcome)
         rows = self.rows
         notes = wrapped_angles(rows.names, rows.recorded, kept.time, kept.values)
+        passes = zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
         return Recording(
-            kept.time,
-            kept.values,
-            rows.names,
-            rows.units,
-            outcome,
-            self._step(done),
-            record_step,
-            self.prepared.macro_steps(done),
-            dict(
-                zip((p.name for p in self.network.parts), self.prepared.passes(done), strict=True)
+            time=kept.time,
+            values=kept.values,
+            names=rows.names,
+            units=rows.units,
+            outcome=outcome,
+            step=self._step(done),
+            record_step=record_step,
+            macro_steps=self.prepared.macro_steps(done),
+            passes=dict(passes),
+            rollbacks=self.prepared.rollbacks,
+            wall_seconds=wall,
+            cpu_seconds=cpu,
+            notes=(
+                *self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes, *notes
             ),
-            self.prepared.rollbacks,
-            wall,
-            cpu,
-            (*self.network.notes, *self.notes, *self.loop_notes, *self.prepared.notes, *notes),
-            self.prepared.steps,
-            self.watch.report() if done else None,
-            {self.network.parts[p].name: m for p, m in self.network.slow.items()},
-            kept.others,
-            self.others.units,
+            steps=self.prepared.steps,
+            energy=self.watch.report() if done else None,
+            slow={self.network.parts[p].name: m for p, m in self.network.slow.items()},
+            others=kept.others,
+            other_units=self.others.units,
             estimate=self.prepared.estimate,
-        )
+        )  # fmt: skip
 
     def _step(self, done: int) -> float:
         """Macro step, or its mean [s]."""

@@ -51,21 +51,9 @@ def model_description_3(used: UsedStates) -> Element:
     """
     component = used.component
     declaration = component.declaration
-    root = Element(
-        "fmiModelDescription",
-        fmiVersion="3.0",
-        modelName=component.name,
-        instantiationToken=identifier(component, used.built_with),
-        description=declaration.description,
-        author=AUTHOR,
-        version=version("herringbone"),
-        copyright=f"(c) {AUTHOR}",
-        license="MIT",
-        generationTool=f"herringbone {version('herringbone')}",
-        variableNamingConvention="structured",
-    )
     states = used.arrays()
     rates = interface.derivatives(declaration, {i: v for i, (v, _) in states.items()})
+    root = _root(used)
     if rates:
         SubElement(root, "ModelExchange", modelIdentifier=component.name, **_CAPABILITIES)
     SubElement(root, "CoSimulation", modelIdentifier=component.name, **_STEPS, **_CAPABILITIES)
@@ -74,10 +62,39 @@ def model_description_3(used: UsedStates) -> Element:
     _add_types(root, declaration)
     add_log_categories(root)
     add_experiment(root, component)
-    variables = SubElement(root, "ModelVariables")
     references = dict(sorted((_references(declaration) | states).items()))
+    _add_variables(root, component, references)
+    _add_structure(root, component, references)
+    if rates:
+        _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
+        _add_indicators(root, component)
+    return root
+
+
+def _root(used: UsedStates) -> Element:
+    component = used.component
+    return Element(
+        "fmiModelDescription",
+        fmiVersion="3.0",
+        modelName=component.name,
+        instantiationToken=identifier(component, used.built_with),
+        description=component.declaration.description,
+        author=AUTHOR,
+        version=version("herringbone"),
+        copyright=f"(c) {AUTHOR}",
+        license="MIT",
+        generationTool=f"herringbone {version('herringbone')}",
+        variableNamingConvention="structured",
+    )
+
+
+def _add_variables(
+    root: Element, component: Component, references: dict[int, tuple[Variable, int]]
+) -> None:
+    """Numbers by value reference, String parameters, and the time."""
+    declaration, settled = component.declaration, component.hosting is not None
+    variables = SubElement(root, "ModelVariables")
     for reference, (variable, extent) in references.items():
-        settled = component.hosting is not None
         if variable.items:
             variables.append(_enumeration(reference, variable))
         else:
@@ -102,11 +119,6 @@ def model_description_3(used: UsedStates) -> Element:
         variability="continuous",
         unit=_TIME_UNIT,
     )
-    _add_structure(root, component, references)
-    if rates:
-        _add_derivatives(root, {i: extent for i, (_, extent) in states.items()}, rates)
-        _add_indicators(root, component)
-    return root
 
 
 def _add_types(root: Element, declaration: Declaration) -> None:

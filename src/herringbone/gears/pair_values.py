@@ -30,11 +30,8 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
             f"the pair has halves = {pair.halves}; the component is double helical: halves = 2"
         )
     notes = (*job.unread, *backlash_notes(job))
-    backlash = mesh.backlash
-    if backlash is None:
-        backlash = pair.normal_backlash
-    if mesh.backlash is None and backlash < _NONE:
-        backlash = USUAL_BACKLASH * pair.normal_module
+    backlash = backlash_of(job)
+    if mesh.backlash is None and pair.normal_backlash < _NONE:
         notes += (
             f"backlash assumed: {1e6 * backlash:.4g} um, {USUAL_BACKLASH:g} of the module, as the "
             "teeth are not thinner than nominal; give [mesh] backlash or tooth_thickness_allowance",
@@ -52,12 +49,20 @@ def pair_values(job: GearJob) -> tuple[PairValues, tuple[str, ...]]:
         working_pressure_angle=pair.working_transverse_pressure_angle,
         face_width=pair.face_width,
         backlash=backlash,
-        coast_phase=_coast_phase(pair, backlash),
+        coast_phase=_coast_phase(pair, backlash) % 1.0,
         mesh_damping_ratio=mesh.damping_ratio,
         shaft_damping_ratio=mesh.shaft_damping_ratio,
         bearing_damping_ratio=mesh.bearing_damping_ratio,
     )
     return values, notes
+
+
+def backlash_of(job: GearJob) -> float:
+    """Normal backlash [m] that runs take: what is given, that of the geometry, or a usual one."""
+    if job.mesh.backlash is not None:
+        return job.mesh.backlash
+    geometric = job.pair.normal_backlash
+    return geometric if geometric >= _NONE else USUAL_BACKLASH * job.pair.normal_module
 
 
 def backlash_notes(job: GearJob) -> tuple[str, ...]:
@@ -78,8 +83,13 @@ def backlash_notes(job: GearJob) -> tuple[str, ...]:
     return tuple(lines)
 
 
+def coast_periods(job: GearJob) -> int:
+    """Whole mesh periods that the coast phase of a pair leaves out; they tell teeth apart."""
+    return math.floor(_coast_phase(job.pair, backlash_of(job)))
+
+
 def _coast_phase(pair: GearPair, backlash: float) -> float:
-    """Phase of the drive flank plus that of the coast flank, in [0, 1).
+    """Phase of the drive flank of a pinion tooth plus that of its coast flank [mesh periods].
 
     A pinion tooth of thickness s_w at the working circle touches at the pitch point with one flank,
     and s_w / p_w of a pitch later with the other. On either line of action the phase begins where
@@ -100,4 +110,4 @@ def _coast_phase(pair: GearPair, backlash: float) -> float:
     thinned = (beyond - allowance) / math.cos(pair.base_helix_angle)
     overlap = pair.face_width * math.tan(abs(pair.base_helix_angle))
     along = 2.0 * (points.pitch - points.start) - thinned + overlap
-    return (of_pitch + along / pitch) % 1.0
+    return of_pitch + along / pitch

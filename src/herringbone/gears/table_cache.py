@@ -11,6 +11,7 @@ from herringbone.gears.files.table_file import table_text
 from herringbone.gears.job import GearJob
 from herringbone.gears.job_pair_law import pair_law_for
 from herringbone.gears.job_stiffness import stiffness_for
+from herringbone.gears.pair_values import coast_periods
 
 
 def cached_table(job: GearJob) -> Path:
@@ -31,9 +32,14 @@ def cached_deviations(job: GearJob, deviations: GivenDeviations) -> Path:
     """File of the deviations of the teeth, as `cached_table`.
 
     Raises:
-        ParameterError, ResourceError: see `GivenDeviations.of_halves`.
+        ParameterError, ResourceError: see `GivenDeviations`.
     """
-    text = tooth_deviations_text(job.pair, deviations.of_halves(job.pair))
+    text = tooth_deviations_text(
+        job.pair,
+        deviations.of_halves(job.pair),
+        deviations.of_coast_flanks(job.pair),
+        coast_periods(job),
+    )
     return _cached("tooth_deviations", job, text)
 
 

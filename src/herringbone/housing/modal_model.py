@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from herringbone.core.declaring.facts import Facts
 from herringbone.core.declaring.roles import HALVES
+from herringbone.core.facts import Facts
 
 AXES = ("x", "y", "z")
 SEAT_DOFS = tuple((seat, axis) for seat in HALVES for axis in AXES)

@@ -199,6 +199,15 @@ def law(b: np.ndarray, at: int, phase: float, deflection: float) -> tuple[float,
 
 
 @kernel
+def largest_force(b: np.ndarray, at: int) -> float:
+    """The largest load [N] of a mesh's table."""
+    largest, last = 0.0, at + 2 + _LAST * NODE
+    for i in range(PHASES):
+        largest = max(largest, b[last + i * _ROW])
+    return largest * b[at]
+
+
+@kernel
 def energy(b: np.ndarray, at: int, phase: float, deflection: float) -> float:
     """Elastic energy U [J] of one mesh; arguments as of `law`."""
     limit = b[at]

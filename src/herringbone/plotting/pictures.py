@@ -13,6 +13,7 @@ from herringbone.analysis.asked import by_half, column_of, shaft_side
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
+from herringbone.analysis.figures.standstill import stands_still
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
@@ -231,7 +232,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
     """Write the overview and the standard pictures as PNG; those without columns are left out.
 
     Several gearboxes have pictures of their own, such as `overview.first.png`. A run of less than
-    two records has no pictures.
+    two records has no pictures, and neither has one in which nothing turns.
 
     Args:
         result: of a run.
@@ -246,7 +247,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
         drawn["spectra"] = partial(spectra, highest=highest)
         drawn["run_up"] = partial(run_up, highest=highest)
     files: list[Path] = []
-    if len(result.data) < 2:
+    if len(result.data) < 2 or stands_still(result):
         return files
     for box, seen in by_gearbox(result).items():
         for name, draw in drawn.items():

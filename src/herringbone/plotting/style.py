@@ -162,10 +162,12 @@ def legend(axes: Axes, columns: int = 1, lift: float = 0.0) -> None:
     )
 
 
-def legend_beside(axes: Axes) -> None:
-    """Legend right of a panel, for long names."""
+def legend_beside(axes: Axes, title: str = "") -> None:
+    """Legend right of a panel, for long names; under what they are, if they do not say it."""
     if axes.lines:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0)
+        axes.legend(
+            loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0, title=title or None
+        )
 
 
 def figure_legend(figure: Figure, *panels: Axes) -> None:

@@ -1,7 +1,7 @@
 """Result of a run: a table of recorded outputs, units, outcome, and how it was computed."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -12,14 +12,13 @@ import pandas as pd
 
 from herringbone.core import Outcome, ParameterError
 from herringbone.core.anatomy import Anatomy
-from herringbone.core.declaring.facts import Facts
 from herringbone.core.declaring.roles import Role
-from herringbone.core.energy_report import Diagnosis, EnergyReport
+from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any, shown
-from herringbone.core.places.files import replacing
 from herringbone.core.places.part_path import PartPath, endings
-from herringbone.core.sensor_spec import SensorSpec
 from herringbone.result.budget import BudgetRow
+from herringbone.result.folder.writing import replacing
+from herringbone.result.run_info import RunInfo
 from herringbone.result.tables import pieces_of, write_csv, write_parquet
 from herringbone.result.verification import Verification
 
@@ -28,65 +27,8 @@ if TYPE_CHECKING:
 
 TIME = "time"
 _SPLINE_ROWS = 4
-
-
-@dataclass(frozen=True)
-class RunInfo:
-    """How a result was computed; the fields of the JSON summary.
-
-    Attributes:
-        system, scene, model: names; `model` is the list of components by instance.
-        t_end: end that was asked for [s].
-        communication_step, record_step: [s]; means, if the step is adaptive.
-        micro_steps: longest internal step by instance [s].
-        algorithm: as on the command line.
-        fmu: "native", "python" or "in-process".
-        macro_steps, passes, rollbacks, wall_s: cost of the loop.
-        notes: downgrades and other lines to read.
-        steps: if the step is adaptive, the macro steps "accepted" and "rejected", and the
-            "shortest", "median" and "longest" of the accepted ones [s].
-        estimate: if the step is adaptive, the relative error "asked" for, and what the steps let
-            expect: of the "coupling", and of the "inner_steps" of the parts.
-        energy: what the coupling did to the energy; None where no element has dampers.
-        why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
-        slow: bodies that step once in several macro steps, and in how many.
-        core: of a fused run, the "degree" of its polynomials, the base "step" [s], and how many
-            "steps", "halvings", "evaluations" of the laws and "bends" of them there were.
-        parameters: all real parameters by `instance.variable`, SI units; not in the summary.
-        resources: files that components read, by `instance.variable`; not in the summary.
-        anatomy: what the parts are for, and what is joined to what; not in the summary.
-        sensors: those of the system, by name; not in the summary.
-    """
-
-    system: str
-    scene: str
-    model: Mapping[str, str]
-    t_end: float
-    communication_step: float
-    record_step: float
-    micro_steps: Mapping[str, float]
-    algorithm: str
-    fmu: str
-    macro_steps: int
-    passes: Mapping[str, int]
-    rollbacks: int
-    wall_s: float
-    notes: tuple[str, ...] = ()
-    steps: Mapping[str, float] | None = None
-    estimate: Mapping[str, float] | None = None
-    energy: EnergyReport | None = None
-    why: Diagnosis | None = None
-    slow: Mapping[str, int] = field(default_factory=dict)
-    core: Mapping[str, float] | None = None
-    parameters: Mapping[str, float] = field(default_factory=dict, repr=False)
-    resources: Mapping[str, str] = field(default_factory=dict, repr=False)
-    anatomy: Anatomy = field(default_factory=Anatomy, repr=False)
-    sensors: Mapping[str, SensorSpec] = field(default_factory=dict, repr=False)
-
-    @property
-    def all_fused(self) -> bool:
-        """True if all parts made one core, so that nothing was coupled."""
-        return self.core is not None and not self.passes
+_SHOWN = 4
+"""Columns that a name may mean, in a message."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,7 +76,8 @@ class Result(Facts):
         names = self._called()
         for pattern in patterns:
             if not any(matches_any(called, [pattern]) for called in names.values()):
-                raise ParameterError(f"no column matches '{pattern}'; see result.data.columns")
+                hint = self._hint(pattern, self.channels)
+                raise ParameterError(f"no column matches '{pattern}'; {hint}")
         return [c for c, called in names.items() if matches_any(called, patterns)]
 
     def _called(self) -> dict[str, tuple[str, ...]]:
@@ -143,7 +86,10 @@ class Result(Facts):
         return {c: endings(parts, c) for c in self.data.columns if c != TIME}
 
     def column(self, name: str) -> str:
-        """The column of that name, or the only one whose name ends so, its part cut short.
+        """The column of that name, or the only one whose name ends so, after a dot.
+
+        An ending of the path of the part, with the whole name of its variable, comes before an
+        ending of the variable's name: `motor.torque` is what a part `motor` shows.
 
         Raises:
             ParameterError: there is none, or there are several.
@@ -151,13 +97,23 @@ class Result(Facts):
         if name in self.data:
             return name
         found = [column for column, called in self._called().items() if name in called]
+        found = found or [column for column in self._called() if column.endswith(f".{name}")]
         if len(found) > 1:
-            raise ParameterError(f"{shown(name)} may mean {' or '.join(found)}; write more of it")
+            more = f" or {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+            meant = " or ".join(found[:_SHOWN]) + more
+            raise ParameterError(f"{shown(name)} may mean {meant}; write more of it")
         if not found:
-            near = get_close_matches(str(name), self.data.columns, 3)
-            hint = f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
-            raise ParameterError(f"there is no column {shown(name)}; {hint}")
+            raise ParameterError(f"there is no column {shown(name)}; {self._hint(str(name))}")
         return found[0]
+
+    def _hint(self, text: str, others: Iterable[str] = ()) -> str:
+        """What a name of no column may mean: columns, as much of them as was written; `others`."""
+        known = {other: other for other in others}
+        for column in self.data.columns:
+            for k in range(column.count(".") + 1):
+                known.setdefault(column.split(".", k)[-1], column)
+        near = dict.fromkeys(known[name] for name in get_close_matches(text, known, 3))
+        return f"did you mean {' or '.join(near)}" if near else "see result.data.columns"
 
     def __getitem__(self, name: str) -> pd.Series:
         """Recorded values of a column (n,), SI unit; see `column`."""
@@ -220,6 +176,9 @@ class Result(Facts):
         Args:
             file: to be written.
             units: begin with a line `# units: ...`.
+
+        Raises:
+            HerringboneError: it cannot be written.
         """
         with replacing(Path(file)) as stream:
             told = self.units if units else None

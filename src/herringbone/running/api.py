@@ -3,9 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from herringbone.analysis.steady.set_points import Point
+from herringbone.core.activity import tell
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
-from herringbone.cosim.cell.policy import housing_of_strangers
+from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
@@ -18,6 +20,8 @@ from herringbone.running.fused.fused import (
     check_kind,
     check_record,
 )
+from herringbone.running.housing_check import HousingFault, with_faults
+from herringbone.running.operating.by_hand import warned_by_hand
 from herringbone.running.operating.commanded import operated
 from herringbone.running.operating.lean import lean_notes
 from herringbone.running.output.run_output import RunOutput
@@ -81,7 +85,8 @@ def run(
         fmu: "native", "python", "in-process" (the same kernels without FMU), or "auto": native
             FMUs if there is a C compiler, Python FMUs otherwise.
         replace_parts: FMU files by instance name; a housing is tested against the contract of
-            housings first, and what it breaks becomes a note.
+            housings first, and what it breaks is told, and becomes a note; a run with one that
+            makes energy has not completed.
         values: variables to set, by `instance.variable`.
         gear: gear file (TOML or REXS) or job of the gear pair, whose values all parts get that
             belong to it; of several pairs: by path.
@@ -120,19 +125,24 @@ def run(
     coupling = _asked_for(algorithm)
     if tolerance is not None:
         check_tolerance(tolerance)
+    faults: list[HousingFault] = []
     wishes = Wishes(
         t_end, record_step, start, values or {}, gear, housing, replace_parts or {}, lean=fuse
     )
     with (
         one_blas_thread(),
-        housing_of_strangers(in_process=in_process, deadline=call_deadline),
+        foreign_fmu_policy(in_process=in_process, deadline=call_deadline),
     ):
         structure, chosen, notes = prepared(
             system,
             scene,
             operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
+            faulty=faults.append,
         )
+        notes += warned_by_hand(system, scene, wishes, Point(speed, torque))
+        for line in (line for fault in faults for line in fault.lines):
+            tell(line)
         heard = Heard(progress, recorded, output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
@@ -151,7 +161,8 @@ def run(
             fuse=fuse,
             record=tuple(record),
         )
-        return coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
+        found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
+        return with_faults(found, faults)
 
 
 def _asked_for(algorithm: str | Algorithm | None) -> Algorithm | None:

@@ -195,7 +195,7 @@ def _coupled(
         lines += _step_notes(asked.step, algorithm, recording)
         every = make_result(system, scene, algorithm, kind, recording, lines)
         if asked.judge:
-            every = judged(every, bond)
+            every = judged(every, system, bond)
         _log_end(recording)
         if asked.all_points:
             result = decimated(every, scene.record_step)

@@ -1,37 +1,93 @@
 """Testing a housing FMU against the contract of housings before it runs."""
 
 import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from herringbone.analysis.housing.contract import check_housing
-from herringbone.core import HerringboneError
+from herringbone.analysis.finding import Finding, Verdict
+from herringbone.analysis.housing.contract import check_housing, of_energy
+from herringbone.core import HerringboneError, Outcome, OutcomeKind
 from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.fmu.opening import open_fmu
+from herringbone.result.result import Result
+
+_SIZE = "compliance"
 
 
-def replacement_notes(fmu: Path) -> list[str]:
-    """What a housing FMU that replaces the component does not hold; tested once per content.
+@dataclass(frozen=True)
+class HousingFault:
+    """What is wrong with a housing FMU that takes part in a run.
+
+    Attributes:
+        part: whose place it takes.
+        lines: that the user should read; at least one.
+        energy: the one of them that says that it makes energy; empty: it makes none.
+    """
+
+    part: str
+    lines: tuple[str, ...]
+    energy: str = ""
+
+
+def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None:
+    """What a housing FMU that replaces a part does not hold; tested once per content.
 
     Wrong variables and units are left to the wiring, which refuses them.
+
+    Args:
+        part: that is replaced.
+        fmu: in its place.
+        usual: static compliance of the part that is replaced [m/N].
     """
     try:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
     except OSError:
-        return []
-    known = cache_folder(f"housing-checks/{sources_key()}") / f"{digest}.json"
-    if (notes := kept(known)) is not None:
-        return notes
-    try:
-        findings = check_housing(lambda: open_fmu("housing", fmu))
-    except HerringboneError as error:
-        return [f"{fmu} could not be tested as housing: {error}"]
-    notes = [
-        f"{fmu} breaks the contract of housings: {f.test}: {f.measured} (limit {f.limit}); see "
-        f"'herringbone check {fmu} --as housing'"
-        for f in findings
-        if not f.holds
+        return None
+    known = cache_folder(f"housing-checks/{sources_key()}") / f"{digest}-{usual:.3g}.json"
+    if (found := kept(known)) is None:
+        try:
+            found = _tested(fmu, usual)
+        except HerringboneError as error:
+            return HousingFault(part, (f"{fmu} could not be tested as housing: {error}",))
+        keep(known, found)
+    lines, energy = found
+    return HousingFault(part, tuple(lines), energy) if lines else None
+
+
+def _tested(fmu: Path, usual: float) -> tuple[list[str], str]:
+    """Lines on what does not hold, and the one on energy, or nothing."""
+
+    def broken(finding: Finding) -> str:
+        return (
+            f"{fmu} breaks the contract of housings: {finding.test}: {finding.measured} "
+            f"(limit {finding.limit}); see 'herringbone check {fmu} --as housing'"
+        )
+
+    findings = check_housing(lambda: open_fmu("housing", fmu), usual=usual)
+    lines = [broken(finding) for finding in findings if not finding.holds]
+    lines += [
+        f"{fmu}: the static {finding.test} of its seats is {finding.measured}"
+        for finding in findings
+        if finding.test == _SIZE and finding.verdict is Verdict.REMARK
     ]
-    keep(known, notes)
-    return notes
+    return lines, next(map(broken, of_energy(findings)), "")
+
+
+def with_faults(result: Result, faults: Sequence[HousingFault]) -> Result:
+    """The result, which has not completed if a housing made energy; of one that diverged, why."""
+    outcome = result.outcome
+    if faults and outcome.unstable:
+        said = f"{outcome.message}; {faults[0].part}: {faults[0].lines[0]}"
+        return replace(result, outcome=replace(outcome, message=said))
+    active = [fault for fault in faults if fault.energy]
+    if not active or outcome.kind is not OutcomeKind.COMPLETED:
+        return result
+    said = (
+        f"{active[0].part} makes energy, so that no figure of the run is that of a gearbox: "
+        f"{active[0].energy}"
+    )
+    kind = OutcomeKind.PART_MAKES_ENERGY
+    return replace(result, outcome=Outcome(kind, outcome.time, active[0].part, said))

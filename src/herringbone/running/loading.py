@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.housing.contract import compliance_of, usual_compliance
 from herringbone.components.in_process import InProcessPart, part_variables
 from herringbone.components.registry import component
 from herringbone.core import FmuError, HerringboneError, Instance, ParameterError
@@ -23,7 +24,7 @@ from herringbone.fmi.kind import choose_kind
 from herringbone.fmi.native import build_native_fmus
 from herringbone.fmi.python.build import build_python_fmus
 from herringbone.running.exporting.ssp_import import load_ssp, ssp_scene
-from herringbone.running.housing_check import replacement_notes
+from herringbone.running.housing_check import HousingFault, replacement_fault
 from herringbone.scenes import Scene, Start, find_scene, read_scene
 from herringbone.scenes.scene import DEFAULT_SCENE
 
@@ -85,22 +86,38 @@ def with_options(
     )
 
 
-def with_replacements(system: System, files: Mapping[str, str | Path]) -> tuple[System, list[str]]:
-    """The system with FMU files in the place of instances, and what replaced housings break.
+def with_replacements(
+    system: System, files: Mapping[str, str | Path]
+) -> tuple[System, list[HousingFault]]:
+    """The system with FMU files in the place of instances, and what is wrong with housings.
 
     Raises:
         HerringboneError: there is no such instance, or an FMU cannot be used.
     """
-    notes: list[str] = []
+    faults: list[HousingFault] = []
     for asked, file in files.items():
-        name = system.part(asked).name
-        with _named(name):
+        spec = system.part(asked)
+        with _named(spec.name):
             require_file(Path(file))
-        if Role.HOUSING in anatomy(system).parts[name].roles:
+        if Role.HOUSING in anatomy(system).parts[spec.name].roles:
             with same_folder():
-                notes += replacement_notes(Path(file))
-        system = system.with_fmu(name, Path(file))
-    return system, notes
+                fault = replacement_fault(spec.name, Path(file), _compliance(spec))
+            faults += [fault] if fault else []
+        system = system.with_fmu(spec.name, Path(file))
+    return system, faults
+
+
+def _compliance(spec: PartSpec) -> float:
+    """Static compliance of a housing that is replaced; of the usual one for a foreign one [m/N]."""
+    if spec.foreign:
+        return usual_compliance()
+
+    def opened() -> Part:
+        part = _open_part(replace(spec, fmu=None), {}, shared=False)
+        _set_values(part, spec)
+        return part
+
+    return compliance_of(opened)
 
 
 def open_parts(system: System, fmu: str) -> list[Part]:

@@ -11,6 +11,7 @@ from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import System
 from herringbone.running.chosen_parts import part_for
+from herringbone.running.housing_check import HousingFault
 from herringbone.running.housings import split_housings, with_housing_data
 from herringbone.running.loading import load_scene, load_system, with_options, with_replacements
 from herringbone.running.operating.lean import refuse_lean
@@ -63,6 +64,7 @@ def prepared(
     scene: str | Path | Scene | None,
     wishes: Wishes,
     check: Callable[[Scene], None] = lambda scene: None,
+    faulty: Callable[[HousingFault], None] = lambda fault: None,
 ) -> Prepared:
     """Load a system and a scene, and set what is wished.
 
@@ -73,6 +75,7 @@ def prepared(
         system, scene: see `api.run`.
         wishes: over these.
         check: called with the scene before anything takes long.
+        faulty: called with what is wrong with an FMU that replaces a housing.
 
     Raises:
         HerringboneError: something about the input is wrong.
@@ -94,7 +97,10 @@ def prepared(
             f"{folder}: an .ssp file sets all values by name; --gear and --housing are of systems"
         )
     data, fmus = split_housings(housings)
-    structure, broken = with_replacements(structure, {**w.replace_parts, **fmus})
+    structure, faults = with_replacements(structure, {**w.replace_parts, **fmus})
+    for fault in faults:
+        faulty(fault)
+    broken = [line for fault in faults for line in fault.lines]
     structure = with_housing_data(structure, data).with_values(chosen.values)
     check_sensors(structure)
     structure, jobs, said = with_gears(structure, gears)

@@ -1,8 +1,10 @@
 """Start values of a run: equilibrium, the thesis' gradual load, or rest."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
-from herringbone.components.registry import COMPONENTS
+from herringbone.analysis.equilibrium import SCALE
+from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import EquilibriumError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
@@ -12,6 +14,11 @@ from herringbone.scenes import Scene, Start
 
 LOAD_RAMP_TIME = 0.02
 """Time over which the load rises in a gradual start [s]; the thesis discards its first 0.02 s."""
+_MOVED = 0.01
+"""Share of its size by which the steady rotation may move a state that was set: a speed a little,
+where nothing holds it."""
+_NOTHING = 1e-9
+_SHOWN = 3
 
 
 def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
@@ -41,7 +48,8 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
     if start is not Start.REST:
         try:
             values, lines = equilibrium_values(system)
-            system, notes = system.with_values(values), (*notes, *lines)
+            notes = (*notes, *lines, *_dropped(system, values))
+            system = system.with_values(values)
         except EquilibriumError:
             if not system.foreign_parts:
                 raise
@@ -71,6 +79,29 @@ def equilibrium_values(system: System) -> tuple[Values, tuple[str, ...]]:
     """Equilibrium of the known parts; what a foreign part would feed is taken as zero."""
     with activity(f"looking for the steady rotation of {system.name}"):
         return start_of_known(known_parts(system))
+
+
+def _dropped(system: System, found: Values) -> Iterator[str]:
+    """A line on states that a user set and the steady rotation has otherwise, if any."""
+    lost = []
+    for path, value in found.items():
+        instance, name = system.split(path)
+        part = system.part(instance)
+        given = part.values.get(name)
+        if given is None or not part.component:
+            continue
+        unit = component(part.component).declaration.variable(name).unit
+        size = max(abs(float(given)), abs(float(value)), SCALE.get(unit, 1.0))
+        if abs(float(given) - float(value)) > _MOVED * size:
+            there = float(value) if abs(float(value)) > _NOTHING * size else 0.0
+            lost.append(f"{path} = {float(given):.6g} {unit} (it is {there:.6g} there)")
+    if lost:
+        more = f" and {len(lost) - _SHOWN} more" if len(lost) > _SHOWN else ""
+        yield (
+            f"not used: {', '.join(lost[:_SHOWN])}{more}: the start is the steady rotation, which "
+            "decides on all states; set what commands them, add by start_offset, or use --start "
+            f"{Start.REST}"
+        )
 
 
 def known_parts(system: System) -> System:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import ParameterError, StructureError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.names import meant, shown
 from herringbone.core.places.files import beside, is_file
 from herringbone.core.reading.structured import read_toml

@@ -41,8 +41,13 @@ def _spaced(name: str, texts: Sequence[str]) -> list[Value]:
         if name in SET_POINTS:
             raise _refused(name, ":".join(texts)) from None
         return []  # the name of a file, such as C:\...
-    if not (math.isfinite(start) and math.isfinite(stop) and 1 <= count <= _MOST):
+    if not (math.isfinite(start) and math.isfinite(stop)):
         raise _refused(name, ":".join(texts))
+    if not 1 <= count <= _MOST:
+        raise ParameterError(
+            f"{name} '{':'.join(texts)}': COUNT = {count} must lie between 1 and {_MOST}; give "
+            "fewer values"
+        )
     if count == 1 and start != stop:
         raise ParameterError(f"{name} {':'.join(texts)}: one value cannot be both ends")
     last = max(count - 1, 1)

@@ -14,17 +14,18 @@ from herringbone.core import HerringboneError, ResourceError
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.places.files import PART, is_file
 from herringbone.result.folder.formatted import read_formatted
-from herringbone.result.folder.names import State
+from herringbone.result.folder.names import STUDY, State
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.writing import refused, write_text
 from herringbone.result.result import Result
 from herringbone.running.output.claim import FolderLock
 from herringbone.running.reporting.report import store_result
 from herringbone.studies.keys import Chain
-from herringbone.studies.working.chain import Done, Row, read_so_far
+from herringbone.studies.working.chain import Done, read_so_far
+from herringbone.studies.working.so_far import Row, SoFar
 
 FORMAT = 1
-STUDY, CHAINS, SERIES = "study.json", "chains", "series"
+CHAINS, SERIES = "chains", "series"
 _CPU, _UNITS, _ROWS = "cpu_s", "units", "rows"
 
 
@@ -102,7 +103,7 @@ class StudyFolder:
         }
         text = json.dumps(body)
         write_text(self._file(chain), f"{digest_of(text)}\n{text}\n")
-        self.so_far(chain).unlink(missing_ok=True)
+        SoFar(self.so_far(chain)).remove()
 
     def _write_series(self, folder: Path, result: Result) -> None:
         try:
@@ -135,8 +136,8 @@ class StudyFolder:
         return Done(rows, body[_UNITS], body[_CPU])
 
     def so_far(self, chain: Chain) -> Path:
-        """File of the rows of a chain that is not whole; gone when the folder is used again."""
-        return self.folder / CHAINS / f".{chain.key}{PART}"
+        """File of the rows of a chain that is not whole, see `SoFar`."""
+        return self.folder / CHAINS / f"{chain.key}.rows"
 
     def all(self, chains: list[Chain], *, whole: bool = True) -> Iterator[tuple[Chain, Done]]:
         """Chains one after the other, of which one is in memory at a time.

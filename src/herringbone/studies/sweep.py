@@ -161,5 +161,5 @@ def _interrupted(
     files = table.write(place, parquet=asked.parquet)
     return (
         f"interrupted: {there} of {len(study.points)} points are in {files[1]}; the same sweep "
-        "goes on with the lines of neighbours that are whole"
+        "goes on from there"
     )

@@ -2,7 +2,7 @@
 
 import pytest
 from support.algorithms import check_determinism, check_end, every
-from support.parts import run_in_process
+from support.parts.running import run_in_process
 
 from herringbone.cosim.algorithms import ALGORITHMS
 from herringbone.cosim.structure.system_file import find_system, read_system

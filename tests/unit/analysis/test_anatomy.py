@@ -134,8 +134,19 @@ def test_a_stranger_is_named_where_a_role_is_missing():
     known = anatomy(foreign(RIG, name))
     result = replace(result, info=replace(result.info, anatomy=known))
     assert unanswered(result) == {
-        f"no part is known as drive, and nothing is known of {name}": ["power"]
+        f"no part is known as drive, and nothing is known of {name}": ["electrical power"]
     }
+
+
+def test_a_source_that_loads_takes_no_electrical_power():
+    """What it takes through its flange is told; so nothing about power is missing."""
+    result, name = make_result(), part(Role.LOAD)
+    parts = dict(result.info.anatomy.parts)
+    parts[name] = replace(parts[name], roles=(Role.SOURCE,))
+    known = replace(result.info.anatomy, parts=parts)
+    result = replace(result, info=replace(result.info, anatomy=known))
+    assert f"{name} takes" in summary_text(result)
+    assert not unanswered(result)
 
 
 def test_a_part_that_lacks_a_quantity():
@@ -146,7 +157,9 @@ def test_a_part_that_lacks_a_quantity():
     parts[drive] = replace(parts[drive], answers=tuple(answers))
     known = replace(result.info.anatomy, parts=parts)
     lacking = replace(result, info=replace(result.info, anatomy=known))
-    assert unanswered(lacking) == {f"{drive}, a drive, offers no electrical power": ["power"]}
+    assert unanswered(lacking) == {
+        f"{drive}, a drive, offers no electrical power": ["electrical power"]
+    }
     column = f"{part(Role.GEAR_PAIR)}.pinion.w"
     dropped = replace(result, data=result.data.drop(columns=column))
     assert unanswered(dropped)[f"{column} is not recorded"] == ["pinion speed"]

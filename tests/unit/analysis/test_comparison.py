@@ -1,6 +1,7 @@
 """Comparison of runs: differences, levels and orders of runs that are known to differ."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -77,6 +78,51 @@ def test_what_differs_is_told_apart(first, second, tmp_path):
     assert text.count("[m/s]") == 1 + ORDERS
 
 
+def test_what_the_user_set_comes_before_what_follows(second):
+    """Forces under which the housing starts at rest follow from the set points."""
+    computed = {f"gearbox.modal_housing.start.pinion_left.f_{axis}": 1.0 for axis in "xyz"}
+    given = {"load_motor.torque_setpoint": 600.0}
+    sides = [
+        replace(
+            second,
+            info=replace(
+                second.info,
+                parameters={k: factor * v for k, v in {**computed, **given}.items()},
+            ),
+        )
+        for factor in (1.0, 2.0)
+    ]
+    found = hb.compare(*sides)
+    assert list(found.parameters["parameter"]) == [*given, *computed]
+    text = "\n".join(lines(found))
+    assert "differ: 4\n  load_motor.torque_setpoint: 600 and 1200\n  and 3 forces" in text
+    assert "modal_housing.start" not in text
+
+
+def test_standstill_has_no_differences(first, second):
+    """Nothing in the second run alternates but rounding: nothing can be over that."""
+    still = replace(second, data=second.data.assign(**dict.fromkeys(second.signals, 1e-17)))
+    found = hb.compare(first, still)
+    assert found.groups["difference"].isna().all()
+    assert list(found.groups["level_second"]) == [0.0, 0.0]
+    assert "nothing turns" in found.notes[0]
+    text = "\n".join(lines(found))
+    assert "%" not in text
+    assert "nan" not in text.split("parameters that differ")[0]
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-12, -1e15])
+def test_columns_stay_apart_whatever_the_size(first, second, factor):
+    columns = [c for c in second.signals if not c.endswith(".w")]
+    scaled = replace(second, data=second.data.assign(**(second.data[columns] * factor)))
+    for sides in ((first, scaled), (scaled, first)):
+        rows = [line for line in lines(hb.compare(*sides)) if line.endswith(("[N]", "[m/s]"))]
+        cells = [re.split(r" {2,}", row) for row in rows]
+        assert {len(row) for row in cells} == {6}, rows
+        for row in cells:
+            assert all(re.fullmatch(r"-?[\d.]+(e[+-]\d+)?", cell) for cell in row[2:5]), row
+
+
 def test_runs_of_other_record_steps_are_interpolated(first, second):
     """Cubic splines through 25 kHz err by (2 pi f h)^4 / 384 of a line at 900 Hz, 7e-6."""
     coarse = replace(first, data=first.data.iloc[::2].reset_index(drop=True))
@@ -107,7 +153,7 @@ def test_what_has_nothing_in_common_is_refused(second):
 
 def test_systems_without_gears_are_compared_by_unit():
     found = hb.compare(make_foreign_result(), make_foreign_result())
-    assert list(found.groups["group"]) == ["outputs in m", "outputs in m/s", "outputs in 1"]
+    assert list(found.groups["group"]) == ["outputs in m", "outputs in m/s", "outputs without unit"]
     assert not found.groups["difference"].any()
     assert not len(found.orders)
 

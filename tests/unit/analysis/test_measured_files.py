@@ -89,6 +89,9 @@ def test_a_wav_file_is_whole_and_has_a_scale(tmp_path):
     with pytest.raises(HerringboneError, match="WAV has no unit"):
         read_measured(file)
     content = file.read_bytes()
+    wavfile.write(file, RATE, SIGNAL[:0].astype(np.float32))
+    with pytest.raises(HerringboneError, match="0 samples; a record takes 64 or more"):
+        read_measured(file, full_scale=FULL)
     file.write_bytes(content[: len(content) // 2])
     with pytest.raises(HerringboneError, match="no whole WAV file"):
         read_measured(file, full_scale=FULL)

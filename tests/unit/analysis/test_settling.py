@@ -1,5 +1,6 @@
 """Whether a run has settled, on decaying oscillations: how much they lose in a quarter is known."""
 
+import re
 import warnings
 from dataclasses import replace
 
@@ -32,3 +33,12 @@ def test_loss_from_the_third_to_the_last_quarter(first):
 @pytest.mark.parametrize("first", [0.0, 30.0])
 def test_a_settled_motion_is_not_told(first):
     assert unsettled(decaying(0.1, first)) == []
+
+
+def test_much_is_told_in_plain_digits():
+    """A motion that starts in the last quarter but for a hundredth: 9900 %, not 9.9e+03 %."""
+    result = decaying(0.0)
+    time = result.data["time"].to_numpy()
+    force = np.where(time < 0.75, 0.01, 1.0) * result.data["a.f"]
+    (line,) = unsettled(replace(result, data=result.data.assign(**{"a.f": force})))
+    assert re.search(r"changes by \d+ % of", line), line

@@ -9,7 +9,7 @@ from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.stability.surrogates.surrogate_part import SurrogatePart
 from herringbone.core.part import PartVariable
 from herringbone.cosim.loops.calls import do_step
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 
 STATES, INPUTS, OUTPUTS = 7, 2, 3
 EQUAL, UNLIKE = [1e-3] * 5, [1e-3, 1e-3, 4e-4, 2e-3]
@@ -24,7 +24,7 @@ def surrogate_part(random):
         random.standard_normal((STATES, INPUTS)),
         random.standard_normal((OUTPUTS, STATES)),
         random.standard_normal((OUTPUTS, INPUTS)),
-        (Given.MEAN,) * INPUTS,
+        (InputRule.MEAN,) * INPUTS,
         (-1,) * INPUTS,
     )
     inputs, outputs = [f"u{k}" for k in range(INPUTS)], [f"y{k}" for k in range(OUTPUTS)]

@@ -1,6 +1,7 @@
 """The gear command: its table, its files, and what it refuses."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,8 @@ def test_table_and_files(tmp_path, capsys):
     text = capsys.readouterr().out
     for line in ("transverse contact ratio", "1.4024", "12.6817 N/(mm um)", "normal to the flank"):
         assert line in text
+    assert re.search(r"normal backlash by geometry +0.0 um", text)
+    assert re.search(r"normal backlash in runs +180.0 um \(\[mesh\] backlash\)", text)
     (loads, left), (_, right) = read_stiffness_table(tmp_path / "mesh_stiffness.csv")
     assert left.shape == (10, 64)
     assert np.array_equal(left, right)

@@ -53,3 +53,10 @@ def test_pictures_of_a_sweep(tmp_path, capsys):
 def test_what_is_no_folder_of_results_is_refused(tmp_path, capsys):
     assert main(["plot", str(tmp_path)]) == 2
     assert "holds no results" in capsys.readouterr().err
+
+
+def test_a_file_is_no_folder(tmp_path, capsys):
+    file = tmp_path / "results.csv"
+    file.write_text("time\n0\n")
+    assert main(["plot", str(file)]) == 2
+    assert f"{file} is a file: plot takes the folder that it is in" in capsys.readouterr().err

@@ -114,6 +114,27 @@ def test_laws_of_deviating_teeth(tmp_path):
     assert abs(taken_apart(gear)[1][4]) > 0.0
 
 
+def test_tangents_of_teeth_that_touch_by_an_edge(tmp_path):
+    """The spline's tangent is below zero in places there; the damping's root has none."""
+    law = write_law(tmp_path / "law.csv", SliceMesh(PAIR, slices=60))
+    teeth = write_teeth(tmp_path / "teeth.csv", 7)
+    gear = moving("gear_mesh", pair_law=str(law), tooth_deviations=str(teeth), ramp_turns=0.0)
+    laws, b = gear.component.laws, gear.block.copy()
+    laws.prepare(b)
+    z, f, e = np.zeros(len(laws.arguments)), np.zeros(len(laws.values)), np.zeros(laws.kinks)
+    laws.gather(b, z)
+    approach, angle = laws.arguments.index("approach"), laws.arguments.index("angle")
+    every = []
+    for z[angle] in np.linspace(0.0, 6.0, 61):
+        for z[approach] in np.linspace(-3e-5, 1e-5, 41):
+            k = np.zeros(len(laws.stiff))
+            laws.evaluate(b.copy(), z, f, k, e)
+            every.append(k)
+    assert np.isfinite(every).all()
+    assert np.min(every) < 0.0  # of the elastic force; the damping has none below zero
+    assert np.array(every)[:, 2:].min() == 0.0
+
+
 def test_what_cannot_be_taken_apart():
     gear = moving("gear_mesh")
     assert gear.component.laws.refusal(gear.block) == ""

@@ -3,7 +3,8 @@
 import re
 
 import pytest
-from support.parts import TWO_MASS_SYSTEM, FakePart, Mass, SpringDamper, TwoMass
+from support.parts.fakes import FakePart
+from support.parts.two_masses import TWO_MASS_SYSTEM, Mass, SpringDamper, TwoMass
 
 from herringbone.core import ParameterError
 from herringbone.core.part import Addresses

@@ -5,11 +5,10 @@ import re
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from support.parts import (
-    DISCARD,
-    ERROR,
+from support.parts.fakes import DISCARD, ERROR, OK
+from support.parts.running import columns
+from support.parts.two_masses import (
     MOTION,
-    OK,
     TWO_MASS_SYSTEM,
     Echo,
     Forgetful,
@@ -17,7 +16,6 @@ from support.parts import (
     Ramp,
     SpringDamper,
     TwoMass,
-    columns,
 )
 
 from herringbone.core import OutcomeKind, ParameterError

@@ -2,7 +2,7 @@
 
 import pytest
 from support.derivatives import DerivativeMass
-from support.parts import TWO_MASS_SYSTEM, Mass, TwoMass
+from support.parts.two_masses import TWO_MASS_SYSTEM, Mass, TwoMass
 
 from herringbone.cosim.algorithms import LI, GaussSeidel, Jacobi
 from herringbone.cosim.structure.network import build_network

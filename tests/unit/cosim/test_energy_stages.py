@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.cosim.energy.monitor import Watched, energy_monitor
+from herringbone.cosim.energy.monitor import PairPlaces, energy_monitor
 from herringbone.cosim.energy.stages import _write_forces, _write_slips
 from herringbone.cosim.loops.common import signal
 
@@ -15,7 +15,7 @@ ROUNDING = 1e-14
 
 def monitor(held=0):
     """One pair: force 0, velocity 1, position 2."""
-    pair = Watched(
+    pair = PairPlaces(
         ONE, POSITION, VELOCITY, ONE, POSITION, VELOCITY, ONE, np.array([held]), ONE + 1, NONE
     )
     matrix = np.ones((1, 1))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from herringbone.cosim.loops.ladder import FIRST, RUNGS, TICKS, fitting_rung
+from herringbone.cosim.loops.adaptive_step.ladder import FIRST, RUNGS, TICKS, fitting_rung
 
 LADDER = np.array(RUNGS, dtype=np.int64)
 

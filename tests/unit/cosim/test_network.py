@@ -4,7 +4,8 @@ import math
 import re
 
 import pytest
-from support.parts import FakePart, Mass, SpringDamper
+from support.parts.fakes import FakePart
+from support.parts.two_masses import Mass, SpringDamper
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.part import PartVariable

@@ -10,19 +10,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from support.algorithms import variants
-from support.parts import (
-    OK,
-    TWO_MASS_SYSTEM,
-    TwoMass,
-    columns,
-    dawdle,
-    fail_at,
-    spoil_at,
-)
+from support.parts.fakes import OK
+from support.parts.misbehaviour import dawdle, fail_at, spoil_at
+from support.parts.running import columns
+from support.parts.two_masses import TWO_MASS_SYSTEM, TwoMass
 
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.declaring.table import KeptRows
 from herringbone.core.part import closing_all
+from herringbone.core.run_table import KeptRows
 from herringbone.cosim import run
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.cosim.divergence import is_sudden

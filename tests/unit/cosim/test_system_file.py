@@ -40,6 +40,7 @@ def test_shipped_systems_are_found_by_name():
         "gear_mesh", "bearing_supports", "modal_housing"
     }  # fmt: skip
     assert find_system("test_rig").name == "test_rig"
+    assert find_system(find_system("test_rig") / "system.toml") == find_system("test_rig")
 
 
 def test_unknown_system_names_the_shipped_ones():

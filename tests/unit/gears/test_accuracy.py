@@ -44,10 +44,11 @@ def test_rounding(value, expected):
 
 @pytest.mark.parametrize("data", [THESIS, SPUR, HELICAL], ids=["thesis", "spur", "helical"])
 @pytest.mark.parametrize("grade", [4, 6, 8])
-def test_extremes_are_the_tolerances(data, grade):
+@pytest.mark.parametrize("coast", [False, True])
+def test_extremes_are_the_tolerances(data, grade, coast):
     pair = gear_pair(data)
     for seed in range(5):
-        for gear, found in enumerate(deviations(pair, grade, seed)):
+        for gear, found in enumerate(deviations(pair, grade, seed, coast=coast)):
             limit = flank_tolerances(pair, gear, grade)
             assert found.cumulative_pitch.shape == (pair.number_of_teeth[gear],)
             assert np.abs(found.single_pitch).max() == pytest.approx(limit.single_pitch, rel=1e-9)
@@ -57,17 +58,19 @@ def test_extremes_are_the_tolerances(data, grade):
             assert np.abs(found.helix_slope).max() == pytest.approx(limit.helix_slope)
 
 
-def test_pitch_holds_the_run_out():
+@pytest.mark.parametrize("coast", [False, True])
+def test_pitch_holds_the_run_out(coast):
     """First harmonics are those of teeth beside the axis, moved e along their normal.
 
-    Normals of carrying flanks face along the count of teeth (wheel, +1) or against it (pinion).
-    Random parts have a first harmonic of some per cent of 200 teeth.
+    Normals of drive flanks face along the count of teeth (wheel, +1) or against it (pinion), those
+    of coast flanks the other way. Random parts have a first harmonic of some per cent of 200 teeth.
     """
     pair = gear_pair(
         THESIS, number_of_teeth=(200, 220), bore_diameter=0.0, groove_diameter=None
     )  # fmt: skip
     alpha = pair.transverse_pressure_angle
-    for faces, found in zip((-1.0, 1.0), deviations(pair, 6, 3), strict=True):
+    normals = (1.0, -1.0) if coast else (-1.0, 1.0)
+    for faces, found in zip(normals, deviations(pair, 6, 3, coast=coast), strict=True):
         radial, pitch = (np.fft.rfft(v)[1] for v in (found.run_out, found.cumulative_pitch))
         angle = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
         along = faces * np.cos(alpha) * -np.sin(angle) + np.sin(alpha) * np.cos(angle)
@@ -93,18 +96,43 @@ def test_seeds():
     """One seed, one gear pair; other seeds, other halves and other gears differ; known numbers."""
     first, again = deviations(PAIR, 6, 1), deviations(PAIR, (6, 6), 1)
     assert all(map(np.array_equal, vars(first[1]).values(), vars(again[1]).values()))
-    for other in (deviations(PAIR, 6, 2), deviations(PAIR, 6, 1, half=1)):
+    others = (
+        deviations(PAIR, 6, 2),
+        deviations(PAIR, 6, 1, half=1),
+        deviations(PAIR, 6, 1, coast=True),
+    )
+    for other in others:
         assert not np.allclose(first[0].helix_slope, other[0].helix_slope, atol=1e-7)
     known = [-0.5549571345201295, -0.5017921815987866]
     assert 1e6 * first[0].profile_slope[:2] == pytest.approx(known, rel=1e-12)
 
 
+def same(one, two):
+    return all(
+        all(map(np.array_equal, vars(a).values(), vars(b).values()))
+        for a, b in zip(one, two, strict=True)
+    )
+
+
 def test_file_gives_back_the_bits(tmp_path):
-    found = deviations(PAIR, (5, 7), 11)
+    """Of both flanks; a file without columns of coast flanks says nothing of them."""
+    found, coast = (deviations(PAIR, (5, 7), 11, coast=flank) for flank in (False, True))
+    write_deviations(found, tmp_path / "teeth.csv", coast)
+    back, other = read_deviations(tmp_path / "teeth.csv", PAIR)
+    assert same(found, back)
+    assert same(coast, other)
     write_deviations(found, tmp_path / "teeth.csv")
-    back = read_deviations(tmp_path / "teeth.csv", PAIR)
-    for one, two in zip(found, back, strict=True):
-        assert all(map(np.array_equal, vars(one).values(), vars(two).values()))
+    back, other = read_deviations(tmp_path / "teeth.csv", PAIR)
+    assert same(found, back)
+    assert other is None
+
+
+def test_known_columns_under_another_first_line(tmp_path):
+    write_deviations(deviations(PAIR, 6, 0), tmp_path / "teeth.csv")
+    text = (tmp_path / "teeth.csv").read_text(encoding="utf-8")
+    (tmp_path / "teeth.csv").write_text(text.replace("1.0", "1.1", 1), encoding="utf-8")
+    with pytest.raises(ResourceError, match=r"coast_helix_slope or .* 1\.0"):
+        read_deviations(tmp_path / "teeth.csv", PAIR)
 
 
 @pytest.mark.parametrize(

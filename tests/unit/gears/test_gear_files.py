@@ -152,6 +152,13 @@ def test_pair_of_the_gear_mesh_component():
         ("[modification]", "[deviations]\ngrade = 6.5\n[modification]", "must be an integer"),
         ("[modification]", "[deviations]\ngrade = [6, 6, 6]\n[modification]", "one or two classes"),
         ("[modification]", "[deviations]\nleft = 6\n[modification]", "left = 6 must be a text"),
+        ("[modification]", "[deviations]\ngrade = 60\n[modification]",
+         "bad.toml: [deviations] grade = 60, seed = 0: ISO 1328-1 tolerance class 60 must be an "
+         "integer from 1 to 11"),
+        ("[modification]", "[deviations]\ngrade = 6\nseed = -1\n[modification]",
+         "[deviations] grade = 6, seed = -1: seed -1 of the tooth deviations must be zero or"),
+        ("face_width", 'shaft_diameter = ["110 mm", "80 mm"]\nstub_length = "80 mm"\nface_width',
+         "pinion: shaft_diameter 110 mm must not be larger than the root diameter 100.3692 mm"),
     ],
 )  # fmt: skip
 def test_bad_gear_file(message, old, new, expected):
@@ -167,10 +174,10 @@ def test_deviations_of_a_class(tmp_path):
     for ours, wanted in zip(left, deviations(job.pair, (5, 7), 3, 0), strict=True):
         assert np.array_equal(ours.cumulative_pitch, wanted.cumulative_pitch)
     assert not np.array_equal(left[0].helix_slope, right[0].helix_slope)
-    assert str(job.deviations) == (
-        "teeth deviate as ISO 1328-1 class 5 and 7 lets pass, seed 3; drive flanks only: at "
-        "negative torque the teeth are perfect"
-    )
+    assert str(job.deviations) == "teeth deviate as ISO 1328-1 class 5 and 7 lets pass, seed 3"
+    coast = job.deviations.of_coast_flanks(job.pair)[1]
+    wanted = deviations(job.pair, (5, 7), 3, 1, coast=True)
+    assert np.array_equal(coast[1].helix_slope, wanted[1].helix_slope)
 
 
 def test_deviations_of_files_beside_the_gear_file(tmp_path):
@@ -182,6 +189,10 @@ def test_deviations_of_files_beside_the_gear_file(tmp_path):
     right = job.deviations.of_halves(job.pair)[1]
     wanted = deviations(job.pair, 6, 1, 1)
     assert np.array_equal(right[1].profile_slope, wanted[1].profile_slope)
+    assert job.deviations.of_coast_flanks(job.pair) == []
+    write_deviations(wanted, tmp_path / "r.csv", deviations(job.pair, 6, 1, 1, coast=True))
+    with pytest.raises(HerringboneError, match=r"one of .*l\.csv and .*r\.csv has no columns of"):
+        job.deviations.of_coast_flanks(job.pair)
 
 
 def test_missing_gear_file(tmp_path):

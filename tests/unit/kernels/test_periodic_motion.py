@@ -38,7 +38,7 @@ def start(depth, slow, w):
     b[:FIRST] = FORCE / OMEGA**2, 0.0, 0.0, w, depth, slow
     sizes = (1e-6, 1e-6)
     search = periodic_motion(swing, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, "test")
-    status = search(b, 2.0 * math.pi / w)
+    status = search(b, 2.0 * math.pi / w, (1.0, 1.0))
     return b[:STATES].copy(), status
 
 
@@ -71,6 +71,33 @@ def test_what_changes_slowly_is_followed():
     assert status == SETTLED
     assert found[0] == pytest.approx(FORCE / OMEGA**2, rel=1e-6)
     assert found[2] == pytest.approx(FORCE / OMEGA**2 * 1e-3 * 50.0, rel=1e-6)
+
+
+@kernel
+def run_out(b: np.ndarray, t: float, dx: np.ndarray) -> None:
+    """The oscillator under forces that return after 50 and after 80 turns."""
+    dx[0], dx[1] = b[2], b[3]
+    force = FORCE * (math.cos(b[1] / 50.0 + 0.3) + b[SLOW] * math.sin(b[1] / 80.0))
+    dx[2] = force - 2.0 * ZETA * OMEGA * b[2] - OMEGA * OMEGA * b[0]
+    dx[3] = 0.0
+
+
+@pytest.mark.parametrize("turns", [(50.0, 80.0), (80.0, 50.0), (50.0, 50.0)])
+def test_what_returns_with_a_turn_swings(turns):
+    """At 0.7 of the resonance the answer is twice the static one; in closed form."""
+    w, second = 50.0 * 0.7 * OMEGA, float(80.0 in turns)
+    b = np.zeros(FIRST + periodic_scratch(STATES, 2))
+    b[3], b[SLOW] = w, second
+    sizes = (1e-6, 1e-6)
+    search = periodic_motion(run_out, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, "run_out")
+    assert search(b, 2.0 * math.pi / w, turns) == SETTLED
+    exact = 0.0
+    for force, rate in ((np.exp(0.3j), w / 50.0), (-1j * second, w / 80.0)):
+        answer = FORCE * force / (OMEGA**2 - rate**2 + 2j * ZETA * OMEGA * rate)
+        exact += np.array([answer.real, (1j * rate * answer).real])
+    size = FORCE / OMEGA**2
+    assert b[0] == pytest.approx(exact[0], abs=2e-3 * size)  # a mean over a period lies beside it
+    assert b[2] == pytest.approx(exact[1], abs=2e-3 * size * OMEGA)
 
 
 def test_no_periodic_motion():

@@ -12,6 +12,7 @@ from herringbone.gears.load.figures import Conditions, loaded_figures
 from herringbone.gears.load.loaded_pair import Symmetry
 from herringbone.gears.stiffness.slices import SliceMesh
 from herringbone.plotting.gears.gear_load import gear_load_picture
+from herringbone.plotting.gears.gear_pair import gear_pair_picture
 
 
 def draw(data: dict, **conditions: object) -> tuple:
@@ -57,3 +58,10 @@ def test_single_half():
     assert titles[0] == f"Contact pressure, at most {largest:.0f} MPa"
     assert len(loaded.flanks) == 1
     assert not any("left" in title for title in titles)
+
+
+def test_legend_of_stiffness_curves_says_what_its_forces_are():
+    mesh = SliceMesh(gear_pair(THESIS), slices=20)
+    panel = gear_pair_picture(mesh.solve(GearJob(mesh.pair).task().loads, 16), "Pair").axes[-1]
+    assert panel.get_legend().get_title().get_text() == "normal force"
+    assert all(line.get_label().endswith(" N") for line in panel.lines)

@@ -8,11 +8,12 @@ import pytest
 
 from herringbone.analysis.figures.sensitivity import sensitivities
 from herringbone.core import ParameterError
-from herringbone.plotting.studies.levels import levels, peaks, waterfall
+from herringbone.plotting.studies.levels import levels, peaks
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.pictures import _uncertain, write_study_pictures
 from herringbone.plotting.studies.sensitivities import band, changes, tornado
 from herringbone.plotting.studies.table import Points
+from herringbone.plotting.studies.waterfall import waterfall
 
 SPEEDS, TORQUES, ZETAS, BACKLASHES = (
     np.linspace(800.0, 1500.0, 36), (100.0, 200.0), (0.01, 0.02, 0.04), (1e-4, 2e-4)
@@ -152,9 +153,10 @@ def test_folder_of_a_study_gets_what_its_points_allow(table, tmp_path):
     files, missing = write_study_pictures(single, UNITS, tmp_path)
     assert files == []
     assert missing == [
-        "no levels.png: parameter of the abscissa: the points have several numbers of: none"
+        "no levels.png: 1 point and no number that is varied: there is no curve; give several "
+        "values, such as --speed 500:3000:26"
     ]
-    with pytest.raises(ParameterError, match="several numbers of: speed"):
+    with pytest.raises(ParameterError, match="not several numbers; there are: speed"):
         one = shipped(table, torque=200.0, zeta=0.02, backlash=1e-4)
         levels(Points(one, UNITS), across="torque")
 

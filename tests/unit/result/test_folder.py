@@ -14,7 +14,7 @@ from support.result import make_foreign_result, make_result
 
 import herringbone as hb
 from herringbone.core import HerringboneError, Outcome, OutcomeKind, ResourceError
-from herringbone.core.declaring.table import TableColumns
+from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.checked_store import CheckedStore, ReplayError
 from herringbone.result.folder.names import State
 from herringbone.result.folder.rows import RowFile, counted_rows
@@ -224,6 +224,35 @@ def test_rows_that_are_there_are_compared_bit_by_bit(tmp_path):
         with pytest.raises(ReplayError, match="does not repeat itself"):
             appended(tmp_path, wrong)
         assert np.load(tmp_path / "results.npy")[:3, 1].tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize("room", [0, 7, 8 * 3, 8 * 3 * 5 + 8, 8 * 3 * 10 - 1])
+def test_rows_for_which_there_is_room_stay(tmp_path, monkeypatch, room):
+    """A disk that takes `room` bytes more: rows of three doubles that are whole are counted."""
+    store = Store(tmp_path, RUN, make_foreign_result())
+    store.begin(TableColumns(("a", "b"), ("m", "m"), {}, {}))
+    times, values = np.arange(12.0), np.arange(24.0).reshape(12, 2)
+    store.append(times[:2], values[:2], [])
+    own, left = os.write, [room]
+
+    def bounded(descriptor, data):
+        if bytes(data[:6]) == b"\x93NUMPY":  # written over the one that is there
+            return own(descriptor, data)
+        written = own(descriptor, data[: left[0]]) if left[0] else 0
+        if not written:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        left[0] -= written
+        return written
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "write", bounded)
+        with pytest.raises(HerringboneError, match="make room"):
+            store.append(times[2:], values[2:], [])
+    there = 2 + room // 24
+    assert store.rows == there
+    store.append(times[there:], values[there:], [])
+    store.close()
+    assert np.array_equal(np.load(tmp_path / "results.npy"), np.column_stack([times, values]))
 
 
 CALLS = ("write", "fsync", "open", "replace", "ftruncate")

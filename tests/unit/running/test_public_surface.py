@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from support.result import make_result
 
 import herringbone
 from herringbone.core import ParameterError
@@ -21,7 +22,6 @@ from herringbone.plotting.style import ShownFigure
 from herringbone.running.reporting.progress import told
 from herringbone.running.reporting.report import write_report
 from herringbone.scenes import find_scene, read_scene
-from tests.support.result import make_result
 
 ROOT = Path(__file__).parents[3]
 LINE = 400

@@ -125,6 +125,12 @@ def test_a_run_without_figures_says_so(rig, kind):
     assert "No figures" in summary_text(replace(rig, data=rig.data.iloc[:0]))
 
 
+def test_a_record_step_longer_than_the_run_is_named(rig):
+    info = replace(rig.info, record_step=1.0)
+    text = summary_text(replace(rig, info=info, data=rig.data.iloc[:1]))
+    assert "1 record, as one every 1 s was asked for and the run takes 200 ms; use a short" in text
+
+
 def test_radiated_power(rig):
     """Level of the data that the run used; left out where they have no surface."""
     text = summary_text(rig)

@@ -51,6 +51,18 @@ def test_equilibrium_keeps_the_values_of_the_scene(rig, loaded):
     assert values(found, "drive_coupling")["stiffness"] == 6e4
 
 
+def test_a_state_that_the_equilibrium_decides_on_is_named(rig, loaded):
+    """The controller asks for 1000 r/min, 104.72 rad/s; 1 % of that is a little, 25 % is not."""
+    for speed, told in ((104.0, False), (78.5, True)):
+        asked = replace(loaded, values={**loaded.values, "drive_motor.speed": speed})
+        found, notes = started(rig, asked)
+        assert values(found, "drive_motor")["speed"] == pytest.approx(104.72, abs=0.005)
+        assert len(notes) == told
+    assert notes[0].startswith("not used: drive_motor.speed = 78.5 rad/s (it is 104.72 there): ")
+    _, notes = started(rig, replace(asked, start=Start.REST))
+    assert notes == ()
+
+
 def test_offsets_are_added_to_the_equilibrium(rig, loaded):
     offsets = {"gear_mesh.der(angle)": 3.0, "drive_motor.speed": -1.0}
     plain, _ = started(rig, loaded)

@@ -174,3 +174,37 @@ def test_long_periods_are_told():
     rows = (Row("steady", "", {"period_meshes": 1.0}), Row("steady", "", {"period_meshes": 1633.0}))
     assert longest_period([Done(rows, {}, 1.0)]) == 1633.0
     assert longest_period([Done((Row("failed", "", {}),), {}, 1.0)]) == 0.0
+
+
+ONE_CHAIN = """
+import sys
+from pathlib import Path
+from support.studies import Cheap
+import herringbone as hb
+from herringbone.studies.working import so_far
+so_far._EVERY = 0.0
+hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0], workers=1,
+         evaluator=Cheap(deadly=500.0, log=sys.argv[2], mark=sys.argv[3]),
+         output=Path(sys.argv[1]))
+"""
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_a_chain_goes_on_where_it_was_killed(tmp_path, serial, half):
+    """Half: its last row had no time to come to its end; the point before is not lost by that."""
+    folder, log, mark = (str(tmp_path / name) for name in ("study", "log", "mark"))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    code = subprocess.run(
+        [sys.executable, "-c", ONE_CHAIN, folder, log, mark], env=environment, check=False
+    ).returncode
+    assert code == -signal.SIGKILL
+    if half:
+        (rows,) = Path(folder).glob("chains/*.rows")
+        with rows.open("a") as stream:
+            stream.write('[4, {"outcome": "compl')
+    Path(log).unlink()
+    found = swept(Path(folder), torque=[1.0], evaluator=Cheap(deadly=500.0, mark=mark, log=log))
+    assert found.table.equals(serial.iloc[:8])
+    computed = [float(line) for line in Path(log).read_text().split()]
+    assert computed == [*SPEEDS[:2], *SPEEDS[:2], *SPEEDS[4:]]  # the first ones tell the cost
+    assert [file.suffix for file in Path(folder, "chains").iterdir()] == [".json"]

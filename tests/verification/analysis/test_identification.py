@@ -12,7 +12,7 @@ from herringbone.analysis.stability.surrogates.identification import (
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED, Surrogate
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Laboratory
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
 
 LAG, INERTIA, STIFFNESS, DAMPING = 2e-3, 0.12, 8e4, 15.0
@@ -38,11 +38,11 @@ def step_of(h, rule):
     # Midpoints of exact pieces: inputs that are linear in time are met to the second order.
     piece = np.linalg.solve(A, expm(h / n * A) - np.eye(3))
     for t in times:
-        moved = {Given.MEAN: 0.0, Given.START: t, Given.END: t - h}[rule]
+        moved = {InputRule.MEAN: 0.0, InputRule.START: t, InputRule.END: t - h}[rule]
         held = np.eye(3)
         held[1, 2] = moved
         b += expm((h - t - 0.5 * h / n) * A) @ piece @ B @ held
-    if rule is Given.START:
+    if rule is InputRule.START:
         d[:, 2] += h * D[:, 1]
     return a, b, C @ a, C @ b + d
 
@@ -55,7 +55,7 @@ def markov_of(a, b, c, d, steps):
     return np.array(found)
 
 
-@pytest.mark.parametrize("rule", Given)
+@pytest.mark.parametrize("rule", InputRule)
 @pytest.mark.parametrize("h", [2e-5, 1.3e-4, 1.7e-3])
 def test_step_of_another_length(rule, h):
     """Trials of 1e-4 s; the drive's angle is held, runs on, or runs up."""
@@ -65,7 +65,10 @@ def test_step_of_another_length(rule, h):
     a, b, c, d = step_of(base, rule)
     scaled = a, b * scale_u, c / scale_y[:, None], d * scale_u / scale_y[:, None]
     found = realised(markov_of(*scaled, 1 + sum(blocks(inputs, outputs)))).reduced(3)
-    given, rates = (Given.MEAN, rule, Given.MEAN), (-1, 2 if rule is not Given.MEAN else -1, -1)
+    given, rates = (
+        (InputRule.MEAN, rule, InputRule.MEAN),
+        (-1, 2 if rule is not InputRule.MEAN else -1, -1),
+    )
     model = in_continuous_time(
         type(found)(
             found.a, found.b / scale_u, found.c * scale_y[:, None],
@@ -91,7 +94,7 @@ def test_a_delay_has_no_continuous_time():
     markov[2] = 1.0
     found = realised(markov)
     assert len(found.a) == 2
-    assert in_continuous_time(found, 1e-3, (Given.MEAN,), (-1,)) is None
+    assert in_continuous_time(found, 1e-3, (InputRule.MEAN,), (-1,)) is None
 
 
 def surrogate_of(file, step, used=None):

@@ -17,7 +17,6 @@ from herringbone.analysis.stability.atlas import scaled_bearings, two_rotors, un
 from herringbone.analysis.stability.diagnosis import diagnose
 from herringbone.analysis.stability.limits import stability
 from herringbone.analysis.stability.report import stability_text
-from herringbone.commands import chart as chart_command
 from herringbone.components.registry import COMPONENTS, component
 from herringbone.core import Component
 from herringbone.core.declaring.roles import Quantity, Role
@@ -26,6 +25,7 @@ from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting import PICTURES, overview
 from herringbone.running.api import run
+from herringbone.running.charting.measure import measure
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.reporting.summary import summary_text
 from herringbone.running.start import started
@@ -140,7 +140,7 @@ def stable(reference) -> str:
 
 
 def charted(reference) -> list[tuple]:
-    found = chart_command.measure(
+    found = measure(
         reference, algorithms=["li:degree=3"], steps=[4e-5], t_end=2e-3, fmu="in-process"
     )
     assert found.mode_count > 0

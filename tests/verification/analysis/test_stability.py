@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.parts import PROTOTYPE_HOUSING
+from support.housing import PROTOTYPE_HOUSING
 
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification

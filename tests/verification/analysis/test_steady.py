@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from support.own_pair import write_pair
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb
@@ -122,6 +123,22 @@ def test_run_outs_make_the_period_long():
     assert state.period == pytest.approx(3.0 * 0.06, rel=1e-9)  # three turns of the pinion
     for group in GROUPS:
         assert error(state, group, periods=2) < 1e-3
+
+
+def test_teeth_that_deviate_make_the_period_long(tmp_path):
+    """20 and 30 teeth of class 7, which open a mesh at rest: a march stays on the state."""
+    gear = tmp_path / "pair.toml"
+    text = write_pair(gear).read_text().replace("[23, 57]", "[20, 30]")
+    gear.write_text(text + "[deviations]\ngrade = 7\nseed = 1\n")
+    speed, values = 1000.0 * np.pi / 30.0, {**STILL, "gear_mesh.ramp_turns": 0.0}
+    state = hb.steady("test_rig", values=values, gear=gear, speed=speed, tolerance=1e-4)
+    assert state.converged
+    assert state.meshes == 60
+    for group in GROUPS:
+        assert error(state, group, periods=2) < 1e-4
+    # Once per turn of the pinion: pitch errors, which ideal teeth do not have.
+    orders = dict(zip(state.orders, np.abs(state.amplitudes("pinion_left.f_y")[0]), strict=True))
+    assert orders[1.0] > 1.0
 
 
 def test_sensitivities_are_differences():

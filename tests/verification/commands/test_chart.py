@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from herringbone.commands.chart import measure
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.housing import default_housing
+from herringbone.running.charting.measure import measure
 
 T_END = 0.005
 JACOBI_1, JACOBI_2, LI_3 = "jacobi:order=1", "jacobi:order=2", "li:degree=3"

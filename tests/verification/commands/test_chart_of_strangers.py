@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from herringbone.commands.chart import measure
 from herringbone.commands.main import main
 from herringbone.core import ParameterError
+from herringbone.running.charting.measure import measure
 
 CONNECTIONS = [["one.fo", "two.f"], ["two.x", "one.xo"], ["two.v", "one.vo"]]
 VALUES = {"one.k": 10.0, "one.ko": 100.0, "one.co": 0.01, "two.k": 1000.0, "one.v0": 1.0}

@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from support.parts import (
-    DISCARD,
+from support.parts.fakes import DISCARD, OK
+from support.parts.misbehaviour import fail_at
+from support.parts.running import columns, run_fmus_and_in_process
+from support.parts.two_masses import (
     MOTION,
-    OK,
     TWO_MASS_SYSTEM,
     Echo,
     Forgetful,
@@ -24,16 +25,13 @@ from support.parts import (
     Ramp,
     SpringDamper,
     TwoMass,
-    columns,
-    fail_at,
-    run_fmus_and_in_process,
 )
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.commands.main import main
 from herringbone.core import OutcomeKind, ParameterError
 from herringbone.cosim.algorithms import LI, with_tolerance
-from herringbone.cosim.loops.ladder import RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.ladder import RUNGS, TICKS
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system

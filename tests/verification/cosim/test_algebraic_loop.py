@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.parts import MOTION, TWO_MASS_SYSTEM, ResidualMass, TwoMass, columns
+from support.parts.running import columns
+from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, ResidualMass, TwoMass
 
 from herringbone.commands.main import main
 from herringbone.components.bearing_supports import BEARING_SUPPORTS

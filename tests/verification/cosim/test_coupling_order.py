@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 import pytest
-from support.parts import MOTION, TWO_MASS_SYSTEM, TwoMass, columns, slope
+from support.parts.running import columns, slope
+from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, TwoMass
 
 from herringbone.core import OutcomeKind
 from herringbone.cosim.algorithms import GaussSeidel, Jacobi

@@ -8,7 +8,9 @@ which are Hermite cubics then: their order is 4 at most. Inputs up to order q al
 import numpy as np
 import pytest
 from support.derivatives import DerivativeMass, without_nodes
-from support.parts import ERROR, MOTION, TwoMass, columns, open_in_process, slope
+from support.parts.fakes import ERROR
+from support.parts.running import columns, open_in_process, slope
+from support.parts.two_masses import MOTION, TwoMass
 from test_li_on_the_rig import BEARING, FINE, SEAT, rig
 
 from herringbone.analysis.accuracy.error import relative_error

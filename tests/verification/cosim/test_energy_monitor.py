@@ -10,7 +10,8 @@ from functools import cache
 import numpy as np
 import pytest
 from support.algorithms import variants
-from support.parts import TwoMass, open_in_process
+from support.parts.running import open_in_process
+from support.parts.two_masses import TwoMass
 
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.atlas import two_rotors

@@ -13,7 +13,8 @@ import math
 
 import numpy as np
 import pytest
-from support.parts import MOTION, Mass, TwoMass, columns, slope
+from support.parts.running import columns, slope
+from support.parts.two_masses import MOTION, Mass, TwoMass
 
 from herringbone.cosim.algorithms import LI, FixedPoint, Jacobi, Predict
 

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pandas as pd
 import pytest
-from support.parts import columns, open_in_process, run_fmus_and_in_process
+from support.parts.running import columns, open_in_process, run_fmus_and_in_process
 
 import herringbone as hb
 from herringbone.analysis.accuracy.error import relative_error

@@ -9,15 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.parts import (
-    ERROR,
-    MOTION,
-    TWO_MASS_SYSTEM,
-    TwoMass,
-    columns,
-    open_in_process,
-    run_fmus_and_in_process,
-)
+from support.parts.fakes import ERROR
+from support.parts.running import columns, open_in_process, run_fmus_and_in_process
+from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, TwoMass
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.twin.monolithic import Twin

@@ -6,10 +6,10 @@ Found by a critic who had the claim and not the code.
 import math
 
 import pytest
-from support.parts import OK, CallbackPart
+from support.parts.fakes import OK, CallbackPart
 
 from herringbone.cosim.signature import Kind
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.running.foreign.foreign_parts import signature_of
 
 
@@ -99,7 +99,7 @@ def test_an_integral_of_the_part_s_own_is_no_running_on():
     found = signature(Arm)
     assert found.kind is Kind.STATES_AND_FEEDTHROUGH
     assert found.feedthrough.tolist() == [[pytest.approx(1.0, rel=1e-9), 0.0]]
-    assert set(found.given) == {Given.MEAN}
+    assert set(found.given) == {InputRule.MEAN}
 
 
 def test_names_with_node_in_them_are_inputs():

@@ -11,7 +11,7 @@ from support.kinds import KINDS
 from herringbone.commands.main import main
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Answer, Kind
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.running.foreign.foreign_parts import signature_of
 
 ANSWERS = tomllib.loads((KINDS / "answers.toml").read_text(encoding="utf-8"))
@@ -118,9 +118,9 @@ def test_motor_and_vehicle(found):
 @pytest.mark.parametrize(
     ("name", "angle", "rule"),
     [
-        ("e_drive", "flange.phi", Given.MEAN),
-        ("road_vehicle", "gearbox.phi", Given.START),
-        ("c_e_drive", "flange.phi", Given.END),
+        ("e_drive", "flange.phi", InputRule.MEAN),
+        ("road_vehicle", "gearbox.phi", InputRule.START),
+        ("c_e_drive", "flange.phi", InputRule.END),
     ],
 )
 @pytest.mark.parametrize("step", [1e-5, 1e-4])

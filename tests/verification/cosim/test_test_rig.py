@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.parts import columns, open_in_process, run_in_process, slope
+from support.parts.running import columns, open_in_process, run_in_process, slope
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.equilibrium import equilibrium

@@ -15,13 +15,14 @@ from herringbone.core import Instance, ResourceError
 from herringbone.core.declaring.hosting import Wanted
 from herringbone.running.exporting.export import ready
 from herringbone.running.exporting.system_fmu import export_fmu
+from herringbone.running.prepared import Wishes
 
 FILE, GEAR_TEXT = "gear_data.csv", "tooth_deviations"
 
 
 @pytest.fixture(scope="module")
 def composite():
-    system, scene = ready("gearbox", None, None, None, None)
+    system, scene = ready("gearbox", None, Wishes())
     return make_hosted(system.with_values(scene.values), Wanted())
 
 
@@ -46,7 +47,7 @@ def spoilt(composite, folder, before, after):
 
 def test_each_table_is_that_of_its_own_file(composite):
     """The block has the tables of the pair as the part itself reads them from its files."""
-    system, _ = ready("gearbox", None, None, None, None)
+    system, _ = ready("gearbox", None, Wishes())
     component = next(i.component for i in make_instances(system) if GEAR_TEXT in i.texts)
     pair = Instance(component, "pair")
     pair.load_resources()

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.parts import OK, CallbackPart
+from support.parts.fakes import OK, CallbackPart
 
 from herringbone.analysis.housing import behaviour as housing_behaviour
 from herringbone.analysis.housing.behaviour import FORCES, POSITIONS, VELOCITIES, least_work

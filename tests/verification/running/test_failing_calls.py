@@ -36,6 +36,7 @@ def test_a_folder_without_descriptors(tmp_path, monkeypatch):
     [
         (MemoryError(), "there is no memory left"),
         (SystemError("<ufunc 'add'> returned NULL"), "there is no memory left"),
+        (ValueError("[digital envelope routines] initialization error"), "there is no memory left"),
         (OSError(errno.EMFILE, "Too many open files", "x.toml"), "x.toml: Too many open files"),
     ],
 )

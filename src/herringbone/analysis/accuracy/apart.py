@@ -83,9 +83,13 @@ def groups_of(result: Result, exchanged: Collection[str] = ()) -> dict[str, list
     for column in result.signals:
         wanted = column in exchanged or every
         if wanted and column not in taken:
-            unit = result.units[column] or "1"
-            groups.setdefault(f"outputs in {unit}", []).append(column)
+            groups.setdefault(outputs_in(result.units[column]), []).append(column)
     return {name: columns for name, columns in groups.items() if columns}
+
+
+def outputs_in(unit: str) -> str:
+    """What a group of outputs of a unit is called."""
+    return f"outputs in {unit}" if unit not in {"", "1"} else "outputs without unit"
 
 
 def _common(first: Result, second: Result) -> tuple[np.ndarray, np.ndarray]:

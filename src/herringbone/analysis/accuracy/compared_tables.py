@@ -12,6 +12,8 @@ import pandas as pd
 from herringbone.analysis.accuracy.apart import Apart, differences
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitudes_at_multiples
+from herringbone.analysis.figures.standstill import stands_still
+from herringbone.components.registry import COMPONENTS
 from herringbone.core.places.files import is_file
 from herringbone.core.reading.texts import read_text
 from herringbone.result.result import TIME, Result
@@ -58,7 +60,12 @@ def table_of_groups(
 
 
 def _level(result: Result, columns: Sequence[str]) -> float:
-    """Root mean square of the alternating parts over the steady part, of all columns together."""
+    """Root mean square of the alternating parts over the steady part, of all columns together.
+
+    0 where nothing turns: what alternates there is rounding.
+    """
+    if stands_still(result):
+        return 0.0
     values = result.data[list(columns)].to_numpy(float)[steady_part(result).rows]
     return float(np.sqrt(values.var(axis=0).mean()))
 
@@ -121,11 +128,26 @@ def _mesh_amplitudes(result: Result, mesh: float, columns: Sequence[str]) -> np.
 
 
 def changed_parameters(first: Result, second: Result) -> pd.DataFrame:
-    """One row per parameter whose values differ by more than rounding and iterations leave."""
+    """One row per parameter whose values differ by more than rounding and iterations leave.
+
+    Those that follow from the others, forces under which parts start at rest, are marked as
+    "computed" and come last.
+    """
     ours, theirs = first.info.parameters, second.info.parameters
     rows = [(n, ours.get(n, math.nan), theirs.get(n, math.nan)) for n in {**ours, **theirs}]
     apart = [row for row in rows if not math.isclose(*row[1:], rel_tol=_SAME_VALUE)]
-    return pd.DataFrame(apart, columns=["parameter", "first", "second"])
+    model = {**first.info.model, **second.info.model}
+    found = [(*row, _computed(row[0], model)) for row in apart]
+    found.sort(key=lambda row: row[3])
+    return pd.DataFrame(found, columns=["parameter", "first", "second", "computed"])
+
+
+def _computed(name: str, model: Mapping[str, str]) -> bool:
+    """True if a parameter is set together with the start, as nobody sets it by hand."""
+    parts = [part for part in model if name.startswith(f"{part}.")]
+    component = COMPONENTS.get(model[max(parts, key=len)]) if parts else None
+    declared = component.declaration.parameters if component else ()
+    return any(v.at_rest and name.endswith(f".{v.name}") for v in declared)
 
 
 def changed_resources(first: Result, second: Result) -> pd.DataFrame:

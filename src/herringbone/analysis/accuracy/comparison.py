@@ -25,8 +25,9 @@ from herringbone.analysis.accuracy.compared_tables import (
     table_of_orders,
 )
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
+from herringbone.analysis.figures.standstill import stands_still
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.result.folder.load import load
 from herringbone.result.result import TIME, Result
 
@@ -51,7 +52,7 @@ class Comparison(Facts):
         orders: one row per group and mesh order: "group", "unit", "order", "amplitude_first",
             "amplitude_second"; empty without steady mesh frequency in both.
         parameters: parameters that differ: "parameter", "first", "second"; NaN where a run has not
-            that one.
+            that one; "computed": it follows from the others.
         resources: files of components that differ: "resource", "first", "second", what tells them
             apart.
         notes: lines to read: what is compared at all, and what only one of them has.
@@ -121,6 +122,9 @@ def compare(first: Result | str | Path, second: Result | str | Path, *patterns: 
     if not shared:
         raise ParameterError(f"{ours.name} and {theirs.name} have no columns in common")
     times, values, notes = _at_common_times(ours, theirs, shared)
+    if stands_still(theirs.result):
+        values = values[0], np.tile(values[1].mean(axis=0), (len(times), 1))
+        notes += (f"nothing turns in {theirs.name}: no difference is over its alternating part",)
     groups = _groups(theirs.result, shared, patterns)
     notes += _only(ours, theirs, shared)
     units = theirs.result.units

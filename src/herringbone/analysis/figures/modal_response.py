@@ -1,11 +1,13 @@
 """Motion of a housing's oscillators under the bearing forces that a run has recorded."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
 from herringbone.analysis.asked import resource_file
 from herringbone.core import ParameterError
+from herringbone.core.anatomy import Anatomy
 from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.housing import SEAT_DOFS, ModalHousing, read_housing
@@ -42,8 +44,11 @@ def housing_of(result: Result, part: str = "") -> ModalHousing | None:
     """
     name = the_housing(result, part)
     modes, shapes = (resource_file(result, name, q) for q in (Quantity.MODES, Quantity.SHAPES))
-    if modes is None or shapes is None:
-        return None
+    return None if modes is None or shapes is None else housing_in(modes, shapes)
+
+
+def housing_in(modes: Path, shapes: Path) -> ModalHousing | None:
+    """The modal data of two files; None if they are not in the neutral format."""
     same_folder = modes.parent == shapes.parent and (modes.parent / HEAD).is_file()
     if not same_folder or (modes.name, shapes.name) != (MODES, SHAPES):
         return None
@@ -64,7 +69,9 @@ def seat_forces(result: Result, part: str = "") -> np.ndarray:
         ParameterError: there is no such housing, no bearing at a seat, or its force is not
             recorded.
     """
-    ports = _ports_at_seats(result, part)
+    known = result.info.anatomy
+    name = the_housing(result, part) if part or known.with_role(Role.HOUSING) else ""
+    ports = ports_at_seats(known, name)
     if missing := [seat for seat, _ in SEAT_DOFS if seat not in ports]:
         raise ParameterError(
             f"system '{result.info.system}' records no forces on the housing: no part is known as "
@@ -76,12 +83,10 @@ def seat_forces(result: Result, part: str = "") -> np.ndarray:
     return result.data[columns].to_numpy()
 
 
-def _ports_at_seats(result: Result, part: str) -> dict[str, str]:
-    """`part.port` of the bearings by seat."""
-    anatomy = result.info.anatomy
-    if part or anatomy.with_role(Role.HOUSING):
-        name = the_housing(result, part)
-        joined = {p.place: anatomy.joined(name, p.kind, p.place) for p in anatomy.parts[name].ports}
+def ports_at_seats(anatomy: Anatomy, part: str = "") -> dict[str, str]:
+    """`part.port` of the bearings by seat of a housing; without one, of all bearings."""
+    if part:
+        joined = {p.place: anatomy.joined(part, p.kind, p.place) for p in anatomy.parts[part].ports}
         return {seat: ".".join(ends[0]) for seat, ends in joined.items() if ends}
     return {
         port.place: f"{bearing}.{port.name}"

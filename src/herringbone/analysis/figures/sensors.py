@@ -89,7 +89,7 @@ def check_sensors(system: System) -> None:
         ParameterError: unknown parameter, or a value that is not allowed.
     """
     for name, spec in system.sensors.items():
-        _chain(name, spec)
+        chain_of(name, spec)
 
 
 def sensor_figures(
@@ -182,7 +182,7 @@ def _figures(
         raise ParameterError(
             f"the data of {spec.part} have no point {spec.point} along {spec.axis}"
         )
-    chain, first = _chain(name, spec)
+    chain, first = chain_of(name, spec)
     time = result.data[TIME].to_numpy()
     even, step = _even_times(time, chain, first)
     velocity = modal @ housing.shape(spec.point, spec.axis)
@@ -197,7 +197,7 @@ def _figures(
     return SensorFigures(spec, chain, at, record.velocity, steady, int(record.saturated), lines)
 
 
-def _chain(name: str, spec: SensorSpec) -> tuple[VelocitySensor, float]:
+def chain_of(name: str, spec: SensorSpec) -> tuple[VelocitySensor, float]:
     """The chain of a sensor, and the time of its first sample [s]."""
     declared = component_for(Role.SENSOR).declaration
     known: Mapping[str, float] = {v.name: v.start for v in declared.parameters}

@@ -36,8 +36,10 @@ def unsettled(result: Result) -> list[str]:
     name, change = max(found.items(), key=lambda item: item[1])
     if change <= _MUCH:
         return []
+    percent = 100.0 * change
+    shown = f"{percent:.0f}" if 10.0 <= percent < 1e6 else f"{percent:.2g}"
     return [
-        f"not settled: {name.replace('_', ' ')} changes by {100.0 * change:.2g} % of its "
+        f"not settled: {name.replace('_', ' ')} changes by {shown} % of its "
         "alternating part from the third to the last quarter of the run; use a longer --t-end"
     ]
 

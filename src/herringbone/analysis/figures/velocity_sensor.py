@@ -86,17 +86,31 @@ class VelocitySensor:
         Raises:
             ParameterError: the input is too coarse, or its rate no multiple of the sampling rate.
         """
-        from scipy.signal import sosfilt  # noqa: PLC0415 (lazy)
-
         velocity = np.asarray(velocity, dtype=float)
         every = self._every(step)
-        seen = velocity
-        for sections in self._filters(step):
-            seen = sosfilt(sections, seen, axis=0)
-        sampled = seen[::every]
+        sampled = self.filtered(velocity, step)[::every]
         saturated = (np.abs(sampled) > self.range).sum(axis=0)
         digits = np.vectorize(converted, otypes=[float])(sampled, self.range, self.bits)
         return SensorRecord(np.arange(len(sampled)) * every * step, digits, saturated)
+
+    def filtered(self, velocity: np.ndarray, step: float) -> np.ndarray:
+        """A vibration (n,) or (n, k) behind the filters [m/s], every `step` [s]."""
+        from scipy.signal import sosfilt  # noqa: PLC0415 (lazy)
+
+        for sections in self._filters(step):
+            velocity = sosfilt(sections, velocity, axis=0)
+        return velocity
+
+    def gain(self, frequency_hz: np.ndarray) -> np.ndarray:
+        """What the filters make of lines (k,), complex; in continuous time."""
+        from scipy.signal import butter, freqs_zpk  # noqa: PLC0415 (lazy)
+
+        found = np.ones(len(frequency_hz), dtype=complex)
+        for n, f, kind in self._wanted():
+            if f > 0.0:
+                zpk = butter(n, f, kind, analog=True, output="zpk")
+                found *= freqs_zpk(*zpk, worN=frequency_hz)[1]
+        return found
 
     def check_input(self, step: float) -> None:
         """Refuse an input that is too coarse for the sensor.
@@ -132,7 +146,13 @@ class VelocitySensor:
         from scipy.signal import butter  # noqa: PLC0415 (lazy)
 
         rate = 1.0 / step
-        wanted = (
+        return [
+            butter(n, f, kind, fs=rate, output="sos") for n, f, kind in self._wanted() if f > 0.0
+        ]
+
+    def _wanted(self) -> tuple[tuple[int, float, str], ...]:
+        """Order, corner [Hz] and kind of the filters; those of 0 Hz are not there."""
+        return (
             (2, self.high_pass_hz, "highpass"),
             (2, self.low_pass_hz, "lowpass"),
             (
@@ -141,7 +161,6 @@ class VelocitySensor:
                 "lowpass",
             ),
         )
-        return [butter(n, f, kind, fs=rate, output="sos") for n, f, kind in wanted if f > 0.0]
 
 
 def sensor_velocity(

@@ -13,7 +13,7 @@ import numpy as np
 from herringbone.analysis.flange.variables import Flange
 from herringbone.core import FmuError
 from herringbone.cosim.signature import Laboratory, Signature
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 
 Signal = Callable[[np.ndarray], np.ndarray]
 """An angle [rad], or a torque [N m], over time [s] since the start."""
@@ -102,13 +102,13 @@ class Bench:
         row, column = self.signature.outputs.index(output), self.signature.inputs.index(name)
         return int(self.signature.delay[row, column])
 
-    def given(self, flange: Flange) -> Given:
+    def given(self, flange: Flange) -> InputRule:
         """Which value of its angle the part is given for a step."""
         if not flange.phi or flange.takes_torque or not self.signature.given:
-            return Given.MEAN
+            return InputRule.MEAN
         return self.signature.given[self.signature.inputs.index(flange.phi)]
 
-    def with_rule(self, flange: Flange, rule: Given) -> "Bench":
+    def with_rule(self, flange: Flange, rule: InputRule) -> "Bench":
         """The bench as if the part took the angle of a flange by another rule."""
         given = list(self.signature.given)
         given[self.signature.inputs.index(flange.phi)] = rule
@@ -156,7 +156,7 @@ class Bench:
         """What the part sees of its inputs at the end of a step."""
         seen = held.copy()
         for flange in self.flanges:
-            if self.given(flange) is not Given.MEAN:
+            if self.given(flange) is not InputRule.MEAN:
                 column = self.signature.inputs.index(flange.phi)
                 seen[:, column] = ends[1:, column]
         return seen
@@ -191,7 +191,7 @@ class Bench:
             column = self.signature.inputs.index(flange.phi)
             rule = self.given(flange)
             values = angle(t)
-            places = {Given.START: values[:-1], Given.END: values[1:]}
+            places = {InputRule.START: values[:-1], InputRule.END: values[1:]}
             ends[:, column] += values
             held[:, column] += places[rule] if rule in places else _means(angle, t)
 

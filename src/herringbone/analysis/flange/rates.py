@@ -14,7 +14,7 @@ from herringbone.analysis.flange.bench import Bench
 from herringbone.analysis.flange.motions import burst, constant, turn
 from herringbone.analysis.flange.variables import Flange
 from herringbone.analysis.flange.work import CYCLES, periods
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import Refused
 
 TEST = "w = dphi/dt"
@@ -106,7 +106,7 @@ def _of_element(bench: Bench, flange: Flange) -> Finding:
     limit = f"1 +- {ADDED:g}"
     stiffness = bench.passes(flange, flange.tau, "phi")
     given = bench.given(flange)
-    if given is Given.MEAN or not stiffness or not np.isfinite(stiffness):
+    if given is InputRule.MEAN or not stiffness or not np.isfinite(stiffness):
         return not_tested(TEST, "its torque does not tell: it holds the angle during a step")
     column = bench.signature.inputs.index(flange.w)
     factor = flange.factors["w"]
@@ -118,7 +118,7 @@ def _of_element(bench: Bench, flange: Flange) -> Finding:
         row = bench.signature.outputs.index(flange.tau)
         found.append(float(apart[row]) * flange.factors["tau"])
     damping = bench.passes(flange, flange.tau, "w")
-    if given is Given.END:  # it goes back from the end value; only its states see w
+    if given is InputRule.END:  # it goes back from the end value; only its states see w
         return not_tested(TEST, "its torque hardly tells: it runs up to the angle given")
     whole, half = (found[0] - damping) / bench.step, 2.0 * (found[1] - damping) / bench.step
     r = (2.0 * half - whole) / stiffness

@@ -22,7 +22,7 @@ from herringbone.analysis.flange.motions import run_up, steady
 from herringbone.analysis.flange.rates import hint
 from herringbone.analysis.flange.variables import Flange
 from herringbone.cosim.signature import Kind
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import Refused
 
 STEPS = 8
@@ -31,9 +31,9 @@ BODY = 0.1
 SLOW = 1.0
 """Own speeds [rad/s] below which a flange is turned by as much more."""
 _RAW = {
-    Given.MEAN: "holds the angle during a step",
-    Given.START: "runs on with w from the angle given",
-    Given.END: "runs up to the angle given",
+    InputRule.MEAN: "holds the angle during a step",
+    InputRule.START: "runs on with w from the angle given",
+    InputRule.END: "runs up to the angle given",
 }
 _FIRST = (4.0, 1.0, 0.25, 0.0625)
 """H over the step of the bench."""
@@ -95,7 +95,7 @@ def _turned(bench: Bench, flange: Flange, more: float, speed: float) -> str:
     if late > 0:
         return f"it answers {late} steps late"
     first = _first_steps(bench)[-1]
-    running = bench.with_rule(flange, Given.START)
+    running = bench.with_rule(flange, InputRule.START)
     term = _h_term(running, {flange.name: steady(more)}, flange.tau, first)
     stiffness = bench.passes(flange, flange.tau, "phi")
     r = 1.0 + term / (stiffness * speed * first)

@@ -1,5 +1,6 @@
 """What a host sees of a gearbox: its flanges by their names, chosen outputs and parameters."""
 
+import re
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -64,6 +65,14 @@ class Boundary:
             if full.startswith(start):
                 return short + full[len(start) :]
         return full
+
+    def describe(self, full: str, text: str) -> str:
+        """What is said of a variable `instance.variable`: shafts end at flanges by their names."""
+        for f in self.flanges:
+            if f.shaft and full.startswith(f"{f.shaft}."):
+                text = re.sub(r"\b(flange|at|from|to) a\b", rf"\1 {f.name}", text)
+                return re.sub(r"\b(flange|at|from|to) b\b", rf"\1 the gear of {f.name}", text)
+        return text
 
     @cached_property
     def _shorter(self) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """A gearbox as one component for any host."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from types import ModuleType
 
 import numpy as np
@@ -26,9 +26,11 @@ from herringbone.analysis.hosted.declaration import (
     since,
 )
 from herringbone.analysis.hosted.gear_data import resources_with_gear_data
+from herringbone.analysis.hosted.misfits import misfits
 from herringbone.analysis.hosted.places import Places, coordinates
+from herringbone.analysis.hosted.remarks import remark_source, remarks_of
 from herringbone.analysis.hosted.source import own_lines
-from herringbone.analysis.hosted.step_limits import advice
+from herringbone.analysis.hosted.step_limits import advice, models_of
 from herringbone.analysis.twin.composite import Composite
 from herringbone.analysis.twin.composite_parts import (
     Parts,
@@ -106,6 +108,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         places.block_map(),
         own_lines(places.flanges(), places.start(guesses), places.starts()),
     )
+    status = work_places(form, first).status if form else None
+    source += remark_source(parts, declaration.first_table, status)
     core = None
     if form:
         inputs = tuple(inside for _, inside in places.block_map().inputs)
@@ -130,6 +134,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         hosting=Hosting(
             module.settle,
             _NOT_SETTLED,
+            remarks_of(parts, condensed=form is not None),
+            module.remark,
             tuple(
                 RunsOn(f"{f.name}.phi", f"{f.name}.w", since(f))
                 for f in boundary.flanges
@@ -138,9 +144,12 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
             TOLERANCE,
             EXPERIMENT,
             wanted.exchange,
-            lambda: advice(composite, boundary.flanges),
+            tuple(misfits(boundary, parts)),
+            lambda: {flange: model.as_lists() for flange, (_, model) in models().items()},
+            cache(lambda: advice(models())),
         ),
     )
+    models = cache(lambda: models_of(composite, boundary.flanges))
     composite = Composite(component, resources_with_gear_data(parts.instances, boundary.pair))
     return composite
 

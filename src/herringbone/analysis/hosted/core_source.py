@@ -103,7 +103,7 @@ def core_source(parts: Parts, start: StartPlaces, inputs: tuple[int, ...]) -> st
     names = {p: instances[p].component.name for p in laws}
     text = _KERNELS.format(
         first=start.first,
-        teeth=start.teeth,
+        teeth=start.teeth[0],
         speed=start.speed,
         turn=2.0 * math.pi,
         signals="".join(f"    blocks[{to}] = u[{values + k}]\n" for k, to in enumerate(inputs)),

@@ -136,8 +136,9 @@ def _of_parts(boundary: Boundary, parts: Parts) -> Iterator[Variable]:
     }
     for instance in parts.instances:
         declaration = instance.component.declaration
-        for v in declaration.variables:
-            full = full_name(instance, v.name)
+        for declared in declaration.variables:
+            full = full_name(instance, declared.name)
+            v = replace(declared, description=boundary.describe(full, declared.description))
             name = boundary.name(full)
             if v.causality is Causality.OUTPUT:
                 if boundary.wanted.internals or boundary.shows_output(full):

@@ -10,7 +10,7 @@ from herringbone.analysis.twin.composite import Composite
 from herringbone.core import ParameterError
 from herringbone.core.declaring.hosting import Given
 from herringbone.core.declaring.roles import GEARS, Quantity
-from herringbone.cosim.signature.rotation import Given as Rule
+from herringbone.cosim.signature.rotation import InputRule
 
 _SMALL = {"m": 1e-9, "m/s": 1e-6, "rad": 1e-8, "rad/s": 1e-5}
 _SMALL_VECTOR = 1e-9
@@ -92,7 +92,7 @@ def _linear(composite: Composite, block: np.ndarray, flange: HostFlange) -> Line
         given[live],
         whole[n:][:, live],
         given[n:],
-        (Rule.START,) * len(places),
+        (InputRule.START,) * len(places),
         (1, -1) if runs_on else (-1,),
     )
 

@@ -205,12 +205,12 @@ class Places:
             names = own_states(f)
             yield from (self.declaration.index[n] for n in names if n.endswith(".angle"))
 
-    def _teeth(self) -> int:
-        """Number of teeth of the pinion, in the blocks of the parts."""
+    def _teeth(self) -> tuple[int, int]:
+        """Numbers of teeth of pinion and wheel, in the blocks of the parts."""
         pair = next(i for i in self.parts.instances if i.name == self.boundary.pair)
         offered = pair.component.declaration.offered(Quantity.NUMBER_OF_TEETH)
-        (name,) = (v.name for v in offered if v.place == GEARS[0])
-        return self.inside[full_name(pair, name)]
+        of = {v.place: self.inside[full_name(pair, v.name)] for v in offered}
+        return of[GEARS[0]], of[GEARS[1]]
 
     def starts(self) -> str:
         """Calls of the parts' start kernels on their blocks."""

@@ -43,7 +43,7 @@ class StartPlaces:
             the states, and their usual sizes.
         turning: states that are angles which turn evenly.
         free: place of the angle among the coordinates if nothing holds it; else -1.
-        teeth: number of teeth that the angle is counted by, in the blocks of the parts.
+        teeth: numbers of teeth of pinion and wheel, in the blocks of the parts.
         speed: state of the pinion's speed.
         initial_speed: parameter; -1: the first shaft gives it.
         start_mode, flank, inner_step, step_start, stepping, degree: as in the declaration.
@@ -66,7 +66,7 @@ class StartPlaces:
     coordinate_sizes: tuple[float, ...]
     turning: tuple[int, ...]
     free: int
-    teeth: int
+    teeth: tuple[int, int]
     speed: int
     initial_speed: int
     start_mode: int

@@ -96,12 +96,12 @@ vibrate = periodic_motion(
 
 @kernel
 def vibrating(b: np.ndarray) -> int:
-    teeth, w = b[{first} + {teeth}], b[{speed}]
-    if w == 0.0 or teeth == 0.0:
+    teeth, w = (b[{first} + {teeth[0]}], b[{first} + {teeth[1]}]), b[{speed}]
+    if w == 0.0 or teeth[0] == 0.0:
         return SETTLED
     degree = b[{degree}]
     b[{stepping}], b[{degree}] = 1.0, 0.0
-    status = vibrate(b, TURN / abs(teeth * w))
+    status = vibrate(b, TURN / abs(teeth[0] * w), teeth)
     b[{stepping}], b[{degree}] = 0.0, degree
     return status
 

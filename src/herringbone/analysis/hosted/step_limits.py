@@ -16,6 +16,7 @@ import numpy as np
 from herringbone.analysis.flange.hosted_flange import Host, host_limits
 from herringbone.analysis.hosted.boundary import HostFlange
 from herringbone.analysis.hosted.flange_model import averaged, reduced, started
+from herringbone.analysis.stability.surrogates.identification import LinearModel
 from herringbone.analysis.twin.composite import Composite
 from herringbone.core.declaring.hosting import Given
 
@@ -30,10 +31,14 @@ _NARROW = 1.2
 _HEAD = ("flange", "host gives", "what the host has there", "held", "with derivatives")
 
 
-def advice(composite: Composite, flanges: tuple[HostFlange, ...]) -> list[tuple[str, ...]]:
+Models = dict[str, tuple[Given, LinearModel]]
+"""By flange: what the host gives, and the equations as the flange feels them."""
+
+
+def advice(models: Models) -> list[tuple[str, ...]]:
     """The limits as a table; see `Hosting.advice`."""
     rows: dict[tuple[str, ...], list[str]] = {}
-    for limit in step_limits(composite, flanges):
+    for limit in step_limits(models):
         there = f"{limit.inertia:g} kg.m2"
         if limit.given is Given.TORQUE:
             there += f" behind a shaft of {SHAFT[0]:g} N.m/rad, {SHAFT[1]:g} N.m.s/rad"
@@ -70,18 +75,22 @@ class StepLimit(NamedTuple):
     again: tuple[float, float]
 
 
-def step_limits(composite: Composite, flanges: tuple[HostFlange, ...]) -> list[StepLimit]:
-    """Limits at every flange, where the host evaluates its shaft at the communication points."""
+def models_of(composite: Composite, flanges: tuple[HostFlange, ...]) -> Models:
+    """The models at the start."""
     block = started(composite)
+    return {f.name: (f.given, reduced(averaged(composite, block, f))) for f in flanges}
+
+
+def step_limits(models: Models) -> list[StepLimit]:
+    """Limits at every flange, where the host evaluates its shaft at the communication points."""
     found = []
-    for flange in flanges:
-        model = reduced(averaged(composite, block, flange))
-        takes_torque = flange.given is Given.TORQUE
+    for name, (given, model) in models.items():
+        takes_torque = given is Given.TORQUE
         for inertia in INERTIAS:
             host = Host(inertia, *(SHAFT if takes_torque else (0.0, 0.0)))
             for limit in host_limits(model, host, takes_torque=takes_torque):
                 if not limit.parallel and limit.order <= 1:
-                    row = flange.name, flange.given, inertia, limit.order, limit.limit
+                    row = name, given, inertia, limit.order, limit.limit
                     found.append(StepLimit(*row, _again(limit.unstable_bands)))
     return found
 

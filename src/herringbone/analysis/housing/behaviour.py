@@ -38,6 +38,8 @@ LEAST_PROMPTNESS = 0.1
 """Share of the velocity after two steps that is there after one; 0 if the answer comes late."""
 _UNDAMPED, _GROWN = 0.9, 1.1
 """Vibration at the end over that at the start: next to no damping above, negative damping above."""
+OTHER_SIZE = 100.0
+"""Factor between the compliances of two housings of gearboxes that asks for a look at the units."""
 FEEDTHROUGH_RATIO = 0.75
 """Largest share of a step's deflection that half the step may give; a mass alone gives 1/4."""
 
@@ -147,6 +149,23 @@ class Behaviour:
         sign = "" if positive else ", not positive" if highest > 0.0 else ", forces backwards"
         shown = f"{what} {100 * error:.2g} %{sign}"
         return judged("static compliance", holds, shown, f"{100 * STATIC_ERROR:g} %, positive")
+
+    @property
+    def compliance(self) -> float:
+        """Largest static compliance of a seat, along the force [m/N]."""
+        return float(np.abs(_mean(self._unit_responses).diagonal()).max())
+
+    def size(self, usual: float | None) -> Finding:
+        """How far seats give way, against another housing [m/N]; wrong units show here."""
+        found = self.compliance
+        shown = f"at most {found:.3g} m/N"
+        if usual is None:
+            return judged("compliance", True, shown, "")
+        limit = f"{1 / OTHER_SIZE:g} to {OTHER_SIZE:g} times {usual:.3g} m/N, that of the usual one"
+        if usual / OTHER_SIZE <= found <= usual * OTHER_SIZE:
+            return judged("compliance", True, shown, limit)
+        times = f"{found / usual:.3g} times {usual:.3g} m/N"
+        return remark("compliance", f"{shown}, {times}: check units (m, m/s, N)", limit)
 
     def reciprocity(self) -> Finding:
         """A force at i moves j as the same force at j moves i."""

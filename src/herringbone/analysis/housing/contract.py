@@ -10,7 +10,7 @@ step of the force. Vibration must not grow; whether it dies out is told, not ask
 Behaviour is tested in `housing.behaviour`.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -21,12 +21,18 @@ from herringbone.analysis.housing.behaviour import (
     VELOCITIES,
     Behaviour,
 )
-from herringbone.core import ParameterError
+from herringbone.components.in_process import InProcessPart
+from herringbone.components.registry import component_for
+from herringbone.core import Instance, ParameterError
+from herringbone.core.declaring.roles import Role
 from herringbone.core.declaring.units import base_exponents
 from herringbone.core.part import Part
 
 STEP = 2e-5
 """Communication step size [s] of the tests; two-way coupling wants no larger one."""
+_VARIABLES = "variables"
+_ENERGY = {"passivity", "damping"}
+"""Tests that a housing fails which makes energy."""
 _UNITS = (
     dict.fromkeys(FORCES, "N") | dict.fromkeys(POSITIONS, "m") | dict.fromkeys(VELOCITIES, "m/s")
 )
@@ -36,6 +42,7 @@ def check_housing(
     open_part: Callable[[], Part],
     *,
     static: np.ndarray | None = None,
+    usual: float | None = None,
     step: float = STEP,
     progress: Report = lambda what: None,
 ) -> list[Finding]:
@@ -44,6 +51,8 @@ def check_housing(
     Args:
         open_part: makes a new instance, not yet initialised.
         static: (12, 12) compliance at the seats to compare with [m/N], if it is known.
+        usual: static compliance of a housing of this kind [m/N], see `compliance_of`; its size is
+            compared with that.
         step: communication step size [s].
         progress: called with what begins.
 
@@ -69,6 +78,7 @@ def check_housing(
         ("v = ds/dt", tests.velocities),
         ("zero stays zero", tests.zero),
         ("static compliance", lambda: tests.statics(static)),
+        ("compliance", lambda: tests.size(usual)),
         ("reciprocity", tests.reciprocity),
         ("superposition", tests.superposition),
         ("passivity", tests.passivity),
@@ -78,6 +88,30 @@ def check_housing(
         progress(what)
         findings.append(test())
     return findings
+
+
+def compliance_of(open_part: Callable[[], Part]) -> float:
+    """Largest static compliance of a seat of a housing, along the force [m/N].
+
+    Args:
+        open_part: makes a new instance, not yet initialised.
+    """
+    return Behaviour(open_part, STEP).compliance
+
+
+def usual_compliance() -> float:
+    """That of the component that is the housing if nothing else is said [m/N]."""
+    return compliance_of(lambda: InProcessPart(Instance(component_for(Role.HOUSING), "usual")))
+
+
+def looks_like_housing(part: Part) -> bool:
+    """True if a part has all variables of a housing."""
+    return all(finding.holds for finding in _declared(part) if finding.test == _VARIABLES)
+
+
+def of_energy(findings: Sequence[Finding]) -> list[Finding]:
+    """What says of a housing that was tested that it makes energy."""
+    return [finding for finding in findings if finding.test in _ENERGY and not finding.holds]
 
 
 def _declared(part: Part) -> Iterator[Finding]:
@@ -92,7 +126,7 @@ def _declared(part: Part) -> Iterator[Finding]:
     count = f"{len(wanted) - len(missing)} of {len(wanted)}"
     shown = f"{count}; missing: {', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
     limit = "12 inputs f, 12 outputs s, 12 outputs v"
-    yield judged("variables", not missing, shown if missing else count, limit)
+    yield judged(_VARIABLES, not missing, shown if missing else count, limit)
     present = [part.variables[name] for name in wanted if name not in missing]
     wrong = [
         f"{v.name} in {v.unit}"

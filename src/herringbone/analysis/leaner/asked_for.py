@@ -19,7 +19,9 @@ _OF_ROLES = {
     "mesh force": (Role.GEAR_PAIR, Quantity.MESH_FORCE),
     "torque": (Role.COUPLING, Quantity.TORQUE),
 }
-NAMES = (*_AT_PORTS, *_OF_ROLES)
+SENSOR, POWER = "sensor", "radiated power"
+"""What is made of outputs, see `views`: `sensor` or `sensor NAME`."""
+NAMES = (*_AT_PORTS, *_OF_ROLES, SENSOR, POWER)
 """Quantities that can be asked for by name; `transmission error` is the deflection of the meshes,
 load and given errors of the teeth included."""
 

@@ -24,7 +24,7 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
     sloped,
 )
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
-from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.harmonic_balance.orbit import Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import coefficients_of, of_rows
 from herringbone.analysis.steady.state import SteadyState
@@ -138,16 +138,17 @@ class Estimates:
             balance = Balance(structure.problem, self._period, state.motion)
             response, missing, _ = balance.missing(orbit)
             orders, known = response.orders, orbit.response.orders
-            own = on(known, missing[: structure.problem.values], orders)
-            step = on(orders, own, known)
-            step[self._found.unknown] = on(orders, self._inverse(own[self._found.unknown]), known)
+            step = missing[: structure.problem.values].copy()
+            there, unknown = np.isin(orders, known), self._found.unknown
+            solved = on(orders, self._inverse(on(known, step[unknown], orders)), known)
+            step[np.ix_(unknown, there)] = solved[:, there]  # lines that are new are as they come
             given = on(orders, orbit.channels, known)
             given[: len(step)] += step
             wanted = _wanted(structure, tuple(self._place))
             q, rows = response.coordinates(given), alternating_rows(wanted)
-            values = on(known, response.outputs(rows, q, given), orders)
+            values = response.outputs(rows, q, given)
             values[:, 0] += wanted.rows.still
-            return self._apart(values, wanted)
+            return self._apart(values, wanted, orbit._replace(response=response))
 
     @property
     def _period(self) -> Period:
@@ -170,15 +171,19 @@ class Estimates:
         still = response.coordinates(self._still)  # a rotation that nothing drives has its speed
         return by - response.outputs(self._rows, still, self._still)
 
-    def _apart(self, rows: np.ndarray, wanted: Wanted | None = None) -> dict[str, Apart]:
-        """Errors by question of coefficients (rows, harmonics) of all affine rows."""
-        state = self._state
-        own = of_rows(state.structure, state.orbit, wanted or self._wanted, rows).coefficients
+    def _apart(
+        self, rows: np.ndarray, wanted: Wanted | None = None, orbit: Orbit | None = None
+    ) -> dict[str, Apart]:
+        """Errors by question of coefficients (rows, harmonics of an orbit) of all affine rows."""
+        state, orbit = self._state, orbit or self._state.orbit
+        own = of_rows(state.structure, orbit, wanted or self._wanted, rows).coefficients
         found = {}
         for question in self._questions:
             theirs = self._lines[question.name]
             values = own[[self._place[name] for name in question.columns]]
-            ours = Lines(values, state.orbit.response.orders, theirs.meshes, theirs.frequency)
+            orders = orbit.response.orders
+            made = question.lines(values, orders, theirs.frequency)
+            ours = Lines(made, orders, theirs.meshes, theirs.frequency)
             found[question.name] = apart(question, ours, theirs)
         return found
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.leaner.form import Form
+from herringbone.analysis.leaner.views import View
 from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.outputs import harmonics
 from herringbone.analysis.steady.state import SteadyState
@@ -26,6 +27,7 @@ class Question:
         tolerance: over the size of all columns together.
         band: end of a spectrum [Hz].
         orders: mesh orders, of amplitudes.
+        view: what is made of the columns and asked for; None: they themselves.
     """
 
     name: str
@@ -34,6 +36,16 @@ class Question:
     tolerance: float
     band: float = np.inf
     orders: tuple[float, ...] = ()
+    view: View | None = None
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of what is asked for."""
+        return self.columns if self.view is None else self.view.names
+
+    def lines(self, given: np.ndarray, orders: np.ndarray, frequency: float) -> np.ndarray:
+        """Coefficients (outputs, harmonics) of those of the columns; the period's frequency."""
+        return given if self.view is None else self.view.lines(given, orders * frequency)
 
 
 class Lines(NamedTuple):
@@ -77,7 +89,8 @@ def lines_of(state: SteadyState, question: Question) -> Lines:
     """Harmonics of what is asked for."""
     with one_blas_thread():
         found = harmonics(state.structure, state.orbit, question.columns)
-    return Lines(found.coefficients, found.orders, state.meshes, state.frequency)
+    own = question.lines(found.coefficients, found.orders, state.frequency)
+    return Lines(own, found.orders, state.meshes, state.frequency)
 
 
 def apart(question: Question, ours: Lines, theirs: Lines) -> Apart:
@@ -92,7 +105,7 @@ def apart(question: Question, ours: Lines, theirs: Lines) -> Apart:
     single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
     worst = int(single.argmax())
     error = float(np.linalg.norm(off)) / whole if whole else 0.0
-    return Apart(error, question.columns[worst], float(single[worst]))
+    return Apart(error, question.outputs[worst], float(single[worst]))
 
 
 def _asked(
@@ -101,6 +114,8 @@ def _asked(
     """Rows (columns, n) whose differences count."""
     kept = (orders > 0) & (orders * lines.frequency <= question.band)
     if question.form is Form.LEVEL:
+        if question.view is not None and question.view.adds:
+            return coefficients[:, kept].sum(axis=1, keepdims=True)
         return np.linalg.norm(coefficients[:, kept], axis=1, keepdims=True)
     if question.form is Form.ORDER:
         mesh = orders / lines.meshes

@@ -42,13 +42,14 @@ class Reactions:
     def __init__(self, state: SteadyState, names: Sequence[str], found: Bent, rows: Rows) -> None:
         problem, orbit = state.structure.problem, state.orbit
         modes = state.structure.core.condensed.modes
-        known = {name: k for k, name in enumerate(state_names(state.structure.core.twin))}
+        every_state = state_names(state.structure.core.twin)
+        known = {name: k for k, name in enumerate(every_state)}
         wanted = [known[name] for name in names]
         rates = _rates(state.structure.core.condensed.equations, wanted)
         own = [k for k in wanted if modes.back[:, k].any() and rates.get(k) not in wanted]
         position = {rate: k for k, rate in rates.items()}
         places = [position.get(k, k) for k in own]
-        self.places = {state_names(state.structure.core.twin)[k]: at for at, k in enumerate(own)}
+        self.places = {every_state[k]: at for at, k in enumerate(own)}
         self.start: np.ndarray = state.structure.core.twin.state[places]
         orders, self._count = orbit.response.orders, problem.inputs.shape[1]
         extended = replace(

@@ -132,7 +132,7 @@ def _of_wav(path: Path, full_scale: float | None) -> _Channels:
             rate, samples = wavfile.read(io.BytesIO(content))
     except Exception as error:  # struct, value and other errors, by what is damaged
         raise ResourceError(f"{path}: it is no whole WAV file of PCM or float samples") from error
-    samples = samples.reshape(len(samples), -1)
+    samples = samples[:, np.newaxis] if samples.ndim == 1 else samples
     numbers = _as_shares(samples) * full_scale
     return {str(k): column for k, column in enumerate(numbers.T, 1)}, float(rate)
 

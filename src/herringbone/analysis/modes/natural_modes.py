@@ -28,8 +28,8 @@ from scipy.linalg import eig, matrix_balance
 from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.modes.linearised import Linearised, linearised, seen_row
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.facts import Facts
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 

@@ -10,7 +10,7 @@ from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Pe
 from herringbone.analysis.steady.marched import March, marched
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ParameterError
 
 LONG = 200
 """Meshes of a period of which lines alone are looked at."""
@@ -21,10 +21,15 @@ _SLOW, _THIN, _SAME = 6, 1e-3, 1e-2
 SETTLING = 0.3
 """Length of a march that is to settle [s]; at least some periods."""
 _FEWEST = 8
-
+_R_MIN = 30.0 / np.pi
+_RAMP = 1.0
+"""Turns of the first pinion over which deviations come in that part teeth at rest."""
 
 _SHORTEST, _LONGEST = 1e-7, 100.0
 """Periods [s] that a march follows."""
+_FASTEST = 1e6
+"""Mesh frequency [Hz] beyond which no body of a tooth is left that could be elastic: in a period
+sound in steel goes 5 mm."""
 
 
 class Guess(NamedTuple):
@@ -41,6 +46,18 @@ class Guess(NamedTuple):
     per_mesh: int
 
 
+class Neighbour(NamedTuple):
+    """What an iteration at a point nearby begins from.
+
+    Attributes:
+        guess: its laws' values.
+        meshes: of its period.
+    """
+
+    guess: Guess
+    meshes: int
+
+
 def several(motion: Motion, times: int) -> Motion:
     """The same motion, repeating after some periods."""
     return motion._replace(turn=times * motion.turn, frequency=motion.frequency / times)
@@ -52,6 +69,26 @@ def standing(structure: Structure, motion: Motion) -> Orbit:
     return still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
 
 
+def _followed(
+    structure: Structure, motion: Motion, still: Orbit, periods: float, places: int, kept: float
+) -> March | None:
+    """A march from equilibrium, else from that of ideal teeth; None if both fail.
+
+    Deviations may part teeth at rest, and what a march then begins with is no equilibrium.
+    """
+    try:
+        return marched(structure, motion, still, periods, places, kept)
+    except HerringboneError:
+        balance = Balance(structure.ideal, Period(0, 1), motion)
+        ideal = balance.solve(structure.ideal_start, np.zeros(1, dtype=int), _SAME)
+    if not turns(ideal):
+        return None
+    try:
+        return marched(structure, motion, ideal, periods, places, kept, ramp=_RAMP)
+    except HerringboneError:
+        return None
+
+
 def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> Guess:
     """Equilibrium; of a period of many meshes the slow motion of their run-outs.
 
@@ -59,10 +96,13 @@ def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> 
     run-outs would open the teeth, unless their shaft follows them.
     """
     values, meshes = structure.problem.values, structure.meshes
-    if meshes == 1 or not _can_be_marched(still):
-        return Guess(still.channels[:values], still.response.orders, per_mesh)
+    at_rest = Guess(still.channels[:values], still.response.orders, per_mesh)
+    if meshes == 1 or not turns(still):
+        return at_rest
     places = 1 << int(np.ceil(np.log2(_SLOW * meshes)))  # they meet the mesh at ever new phases
-    rough = marched(structure, motion, still, 1, places).harmonics(1)
+    if (march := _followed(structure, motion, still, 1.0, places, 1.0)) is None:
+        return at_rest
+    rough = march.harmonics(1)
     slow = Balance(structure.problem, Period(0, places, meshes, _THIN), motion)
     found = slow.solve(rough, np.arange(rough.shape[1]), _SAME)
     return Guess(found.channels[:values], found.response.orders, per_mesh)
@@ -75,41 +115,52 @@ def begun_shortly(
     meshes = structure.meshes
     slow = [base for base in structure.bases if base < meshes]
     periods = _TURNS / min(slow, default=1)
-    if meshes < LONG or periods >= 1.0 or not _can_be_marched(still):
+    if meshes < LONG or periods >= 1.0 or not turns(still):
         return None
     lines = lines_between(structure.bases, meshes, 0, 1, meshes)
-    try:
-        march = marched(structure, motion, still, periods, _SLOW * meshes, kept=_SETTLED * periods)
-    except HerringboneError:
-        return None
-    return None if lines is None else Guess(march.lines(lines), lines, per_mesh)
+    kept = _SETTLED * periods
+    march = _followed(structure, motion, still, periods, _SLOW * meshes, kept)
+    return None if march is None or lines is None else Guess(march.lines(lines), lines, per_mesh)
 
 
 def settling(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> March | None:
     """The last periods of a march from equilibrium; None if it fails, or of a long period."""
-    if structure.meshes >= LONG or not _can_be_marched(still):
+    if structure.meshes >= LONG or not turns(still):
         return None
-    periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
     places = structure.meshes * per_mesh
-    try:
-        return marched(structure, motion, still, periods, places, kept=_FEWEST)
-    except HerringboneError:
-        return None
+    periods = max(_FEWEST, int(np.ceil(SETTLING / still.period)))
+    return _followed(structure, motion, still, periods, places, _FEWEST)
 
 
-def _can_be_marched(still: Orbit) -> bool:
-    """False at the speeds that no rotor has, which what was asked for may lead to."""
+def turns(still: Orbit) -> bool:
+    """False at speeds that no rotor has, which what was asked for may lead to."""
     return _SHORTEST <= still.period <= _LONGEST
 
 
+def _check_speed(structure: Structure, speed: float) -> None:
+    most = 2.0 * np.pi * _FASTEST * structure.turns_of_pinion / structure.meshes
+    if abs(speed) > most:
+        raise ParameterError(
+            f"speed = {speed:g} rad/s ({speed * _R_MIN:g} r/min): at most {most:.4g} rad/s "
+            f"({most * _R_MIN:.4g} r/min), where teeth mesh {_FASTEST:g} times a second and sound "
+            "goes through a tooth but once; ask for a lower speed"
+        )
+
+
 def motion_at(structure: Structure, point: Point) -> Motion:
-    """What is given of the motion at an operating point."""
+    """What is given of the motion at an operating point.
+
+    Raises:
+        ParameterError: teeth cannot mesh so fast.
+    """
     condensed, problem = structure.core.condensed, structure.problem
     signals = structure.points.signals(condensed, structure.signals, point)
     given = np.append(signals, 1.0)[:, None].astype(complex)
     speed = 0.0
     if problem.free is not None:
         speed = float((problem.turns @ condensed.modes.start).real)
-        if point.speed is not None:
+    if point.speed is not None:
+        _check_speed(structure, point.speed)
+        if problem.free is not None:
             speed = point.speed * structure.turn / (2.0 * np.pi * structure.turns_of_pinion)
     return Motion(given, structure.turn, speed, angle=float(condensed.modes.angles[0]))

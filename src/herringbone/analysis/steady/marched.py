@@ -25,9 +25,15 @@ _MOST_TIMES = 4
 
 @dataclass(frozen=True)
 class Held(Condensed):
-    """A condensed system after all ramps, with constant signals (signals,)."""
+    """A condensed system after all ramps, with constant signals (signals,).
+
+    Attributes:
+        constant: these signals.
+        ramp: turns over which what comes in over an angle still does.
+    """
 
     constant: np.ndarray
+    ramp: float = 0.0
 
     def signals(self, t: float) -> np.ndarray:
         """Signals of the sources at a time [s]."""
@@ -46,7 +52,10 @@ class Held(Condensed):
         for p in self.equations.laws:
             laws = laws_of(self.twin.instances[p])
             assert laws is not None
-            laws.settle(found.blocks[first[p] : first[p + 1]])
+            block = found.blocks[first[p] : first[p + 1]]
+            laws.settle(block)
+            if self.ramp:
+                laws.ramp(block, self.ramp)
         return found
 
 
@@ -122,6 +131,7 @@ def marched(
     periods: float,
     places: int,
     kept: float = 1.0,
+    ramp: float = 0.0,
 ) -> March:
     """March for a while.
 
@@ -132,14 +142,16 @@ def marched(
         periods: its length.
         places: points in time of a period.
         kept: periods that are kept.
+        ramp: turns of the first pinion, before all that, over which deviations come in.
 
     Raises:
         CoreStopped: the march fails.
     """
     condensed, values = structure.core.condensed, structure.problem.values
     held = Held(
-        condensed.twin, condensed.equations, condensed.modes, motion.given[:-1, 0].real.copy()
+        condensed.twin, condensed.equations, condensed.modes, motion.given[:-1, 0].real.copy(), ramp
     )
+    periods += ramp / abs(structure.turns_of_pinion)
     run = Solution(held, _DEGREE, _CLOSE, lean=True)
     own = start_of(begin)
     run.state.q[: own.size] = own

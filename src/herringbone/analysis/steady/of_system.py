@@ -1,5 +1,6 @@
 """The problem of harmonic balance of a condensed system."""
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -23,16 +24,20 @@ class SystemLaws:
     Args:
         system: whose laws.
         late: time [s] after which no signal changes.
+        ideal: without what comes in over an angle, for ever.
     """
 
-    def __init__(self, system: Condensed, late: float) -> None:
+    def __init__(self, system: Condensed, late: float, *, ideal: bool = False) -> None:
         self._calls, self._late = system.calls(), late
         twin = system.twin
         first = twin.layout.block_first
         for p in system.equations.laws:
             laws = laws_of(twin.instances[p])
             assert laws is not None
-            laws.settle(self._calls.blocks[first[p] : first[p + 1]])
+            block = self._calls.blocks[first[p] : first[p + 1]]
+            laws.settle(block)
+            if ideal:
+                laws.ramp(block, math.inf)
         self._room: dict[int, Samples] = {}
 
     def __call__(self, z: np.ndarray) -> Samples:

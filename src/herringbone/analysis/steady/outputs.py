@@ -10,6 +10,9 @@ from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.wanted import Wanted
 
+_AT_ONCE = 1 << 22
+"""Harmonics times places that are held at once."""
+
 
 class Harmonics(NamedTuple):
     """Outputs over a period: slope t + the sum of coefficients exp(i k w t) over all k.
@@ -28,8 +31,12 @@ class Harmonics(NamedTuple):
         """Values (times, columns) at times [s], for w [rad/s]."""
         k = self.orders
         weights = np.where(k > 0, 2.0, 1.0)
-        turning = np.exp(1j * np.outer(times * frequency, k)) * weights
-        return (turning @ self.coefficients.T).real + np.outer(times, self.slope)
+        many = max(1, _AT_ONCE // k.size)
+        parts = [
+            ((np.exp(1j * np.outer(own, k)) * weights) @ self.coefficients.T).real
+            for own in np.split(times * frequency, range(many, times.size, many))
+        ]
+        return np.concatenate(parts) + np.outer(times, self.slope)
 
 
 def harmonics(structure: Structure, orbit: Orbit, columns: Sequence[str]) -> Harmonics:

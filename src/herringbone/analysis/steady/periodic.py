@@ -10,7 +10,7 @@ import pandas as pd
 from herringbone.analysis.steady.outputs import Harmonics, level_of
 from herringbone.analysis.twin.fused.core import endings_of
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.names import matches_any
 
 if TYPE_CHECKING:
@@ -36,6 +36,11 @@ class PeriodicMotion(Facts):
     @abstractmethod
     def converged(self) -> bool:
         """True if the motion was found, as exactly as was asked for."""
+
+    @property
+    def found(self) -> bool:
+        """True if there is a motion, how exactly ever: else it has no figures."""
+        return True
 
     @property
     @abstractmethod

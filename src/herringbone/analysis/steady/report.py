@@ -30,12 +30,12 @@ def per_second(speed: float) -> float:
 
 def steady_summary(state: SteadyState | SettledState) -> dict:
     """Figures of a state, for JSON; SI units, None where something is not known."""
-    levels = {group: state.level(group) for group in state.channels}
+    levels = {group: state.level(group) for group in state.channels} if state.found else {}
     known = {
         "system": state.system_name,
         "converged": state.converged,
-        "speed": _known(state.speed),
-        "period": _known(state.period),
+        "speed": _known(state.speed) if state.found else None,
+        "period": _known(state.period) if state.found else None,
         "meshes": state.meshes or None,
         "tolerance": state.tolerance,
     }
@@ -47,7 +47,7 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
             "change": dict(state.errors.change),
             "iterations": state.orbit.iterations,
             "places": state.orbit.places,
-            "drift": state.drift,
+            "drift": state.drift if state.found else None,
             "largest_multiplier": state.multipliers.largest if _are_cheap(state) else None,
             "bends": list(state.bends),
         }
@@ -65,6 +65,8 @@ def _are_cheap(state: SteadyState) -> bool:
 
 def steady_text(state: SteadyState | SettledState) -> list[str]:
     """Lines for people."""
+    if not state.found:
+        return [f"Steady state of {state.system_name}: none was found, no figures"]
     lines = _of_run(state) if isinstance(state, SettledState) else _of_balance(state)
     for group in state.channels:
         lines += ["", *_group(state, group)]
@@ -146,12 +148,16 @@ def sensitivity_text(found: Mapping[str, Mapping[str, Sensitivity]]) -> list[str
 def write_steady(state: SteadyState | SettledState, folder: Path) -> list[Path]:
     """Write `orders.csv`, one row per output and harmonic, and `steady.json`; returns their names.
 
+    Of a state that was not found the second one alone.
+
     Amplitudes have the unit of their row.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    with replacing(folder / SUMMARY) as file:
+        file.write(json.dumps(steady_summary(state), indent=1) + "\n")
+    if not state.found:
+        return [folder / SUMMARY]
     table = state.table()
     with replacing(folder / ORDERS) as file:
         write_csv(file, list(table.columns), pieces_of(table))
-    with replacing(folder / SUMMARY) as file:
-        file.write(json.dumps(steady_summary(state), indent=1) + "\n")
     return [folder / ORDERS, folder / SUMMARY]

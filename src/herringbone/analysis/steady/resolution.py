@@ -13,6 +13,10 @@ _THIN = 0.05
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3
+_FAR = 0.3
+"""Error from which on lines alone miss what fills the spectrum, as deviations of teeth do."""
+_EVERY = 10_000
+"""So far aside that no line is left out."""
 SIDES = 3
 """How far aside lines are looked for in long periods, at first."""
 
@@ -47,6 +51,8 @@ class Resolution(NamedTuple):
         """What makes the largest part of the errors smaller."""
         if errors.by_thinning:
             return self._replace(thin=self.thin * _THINNER * tolerance / errors.worst)
+        if errors.worst > _FAR and self.sides < _EVERY:
+            return self._replace(sides=_EVERY)
         if errors.by_sides:
             return self._replace(sides=2 * self.sides)
         return self._replace(per_mesh=2 * self.per_mesh)

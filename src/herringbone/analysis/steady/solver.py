@@ -11,12 +11,14 @@ from herringbone.analysis.steady.guess import (
     LONG,
     SETTLING,
     Guess,
+    Neighbour,
     begun,
     begun_shortly,
     motion_at,
     settling,
     several,
     standing,
+    turns,
 )
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
@@ -40,6 +42,12 @@ _TRIED, _REPEATS = 2, 0.1
 """
 _STEPS, _NEUTRAL = 256, 1e-3
 """Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
+
+
+_NO_ROTATION = (
+    "no steady rotation: what drives and what loads balance at no speed; look for a load "
+    "beyond what the drive gives"
+)
 
 
 class Found(NamedTuple):
@@ -100,7 +108,9 @@ class SteadySolver:
             found._structure = self._structure.leaner(lean)
         return found
 
-    def solve(self, point: Point = AS_IT_IS, near: SteadyState | None = None) -> SteadyState:
+    def solve(
+        self, point: Point = AS_IT_IS, near: SteadyState | Neighbour | None = None
+    ) -> SteadyState:
         """The steady state at an operating point.
 
         Args:
@@ -115,6 +125,7 @@ class SteadySolver:
                 could repeat.
         """
         point.check()
+        near = near.neighbour if isinstance(near, SteadyState) else near
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             given = motion_at(structure, point)
@@ -130,7 +141,7 @@ class SteadySolver:
         return self._structure
 
     def _found(
-        self, structure: Structure, motion: Motion, near: SteadyState | None
+        self, structure: Structure, motion: Motion, near: Neighbour | None
     ) -> tuple[Found, tuple[str, ...]]:
         """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
         unstable = None
@@ -140,10 +151,14 @@ class SteadySolver:
                 if not (bending_parts(structure, found.orbit) and found.grows(structure, times)):
                     return found, _told(times)
                 unstable = unstable or found
+            elif structure.meshes >= LONG and not found.orbit.resolved.bases:
+                break  # places of the whole period take long, and know no better from elsewhere
         still = standing(structure, motion)
+        if not turns(still):
+            return found, (_NO_ROTATION,)
         march = settling(structure, motion, still, _PLACES)
         if march is None:
-            return unstable or found, (*_grows(unstable), _not_marched(structure))
+            return unstable or found, (*_grows(unstable), _not_marched(structure, found))
         for times in march.likely(_REPEATS)[:_TRIED]:
             values = march.harmonics(times)
             guess = Guess(values, np.arange(values.shape[1]), _PLACES)
@@ -158,13 +173,11 @@ class SteadySolver:
 
     @staticmethod
     def _guesses(
-        structure: Structure, motion: Motion, near: SteadyState | None
+        structure: Structure, motion: Motion, near: Neighbour | None
     ) -> Iterator[tuple[int, Guess]]:
         """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
         if near is not None and near.meshes % structure.meshes == 0:
-            values = near.orbit.channels[: structure.problem.values]
-            guess = Guess(values, near.orbit.response.orders, near.orbit.resolved.per_mesh)
-            yield near.meshes // structure.meshes, guess
+            yield near.meshes // structure.meshes, near.guess
         still = standing(structure, motion)
         if shortly := begun_shortly(structure, motion, still, _PLACES):
             yield 1, shortly
@@ -191,13 +204,16 @@ def _grows(unstable: Found | None) -> tuple[str, ...]:
     return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
 
 
-def _not_marched(structure: Structure) -> str:
+def _not_marched(structure: Structure, found: Found) -> str:
     """Why there is no march that could be followed to a motion."""
     if structure.meshes < LONG:
         return "a march from equilibrium fails, too"
+    off = found.errors.worst if found.orbit.converged else found.orbit.residual
+    missed = "harmonics miss" if found.orbit.converged else "Newton's method stops at"
     return (
-        f"its period of {structure.meshes} meshes is too long for a march that settles; set the "
-        "run-outs to 0, or ask for a larger tolerance"
+        f"its period of {structure.meshes} meshes is too long for a march that settles, and "
+        f"{missed} {100.0 * off:.2g} %; set run-outs and deviations to 0, ask for a larger "
+        "tolerance or torque, or run it"
     )
 
 

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
@@ -57,9 +58,22 @@ class SteadyState(PeriodicMotion):
         return self.orbit.converged and self.errors.worst <= self.tolerance
 
     @property
+    def found(self) -> bool:
+        """True if the iteration has come to a motion."""
+        return self.orbit.converged
+
+    @property
     def error(self) -> float:
         """What harmonics that are left out would add, of the worst group of channels."""
         return self.errors.worst
+
+    @property
+    def neighbour(self) -> Neighbour:
+        """From which a point nearby begins."""
+        orbit = self.orbit
+        values = orbit.channels[: self.structure.problem.values]
+        guess = Guess(values, orbit.response.orders, orbit.resolved.per_mesh)
+        return Neighbour(guess, self.meshes)
 
     @property
     def period(self) -> float:
@@ -137,6 +151,12 @@ class SteadyState(PeriodicMotion):
         return harmonics(self.structure, self.orbit, columns)
 
     def _facts(self) -> dict[str, str]:
+        if not self.found:
+            return {
+                "system": self.system_name,
+                "outcome": "not found",
+                "why": "; ".join(self.notes),
+            }
         return {
             "system": self.system_name,
             "speed": f"{self.speed * R_MIN:.6g} r/min",

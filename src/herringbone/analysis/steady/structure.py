@@ -11,7 +11,7 @@ from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.frozen import FrozenLaws, tangents_of
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Rows
-from herringbone.analysis.steady.of_system import problem_of, turns_of
+from herringbone.analysis.steady.of_system import SystemLaws, problem_of, turns_of
 from herringbone.analysis.steady.set_points import SetPoints
 from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.analysis.twin.condensed.wanted import Wanted
@@ -82,7 +82,7 @@ class Structure:
             StructureError: it names what is not there.
         """
         found = copy(self)
-        for name in ("groups", "signals", "indicators", "start", "_kept"):
+        for name in ("groups", "signals", "indicators", "start", "ideal", "ideal_start", "_kept"):
             found.__dict__.pop(name, None)  # cached
         found.core = self.core.leaner(lean)
         found.problem = found._problem()
@@ -149,9 +149,23 @@ class Structure:
         return self.core.condensed.calls().indicator
 
     @cached_property
+    def ideal(self) -> Problem:
+        """The problem without what comes in over an angle, as deviations of teeth."""
+        laws = SystemLaws(self.core.condensed, self.late, ideal=True)
+        return replace(self.problem, laws=laws)
+
+    @cached_property
     def start(self) -> np.ndarray:
         """Laws' values less mean tangents (values, 1) at the start values of the system."""
-        modes, problem = self.core.condensed.modes, self.problem
+        return self._start(self.problem)
+
+    @cached_property
+    def ideal_start(self) -> np.ndarray:
+        """The same of the laws of `ideal`."""
+        return self._start(self.ideal)
+
+    def _start(self, problem: Problem) -> np.ndarray:
+        modes = self.core.condensed.modes
         channels = np.concatenate([np.zeros(problem.values), self.signals, [1.0]])
         z = (modes.arguments @ modes.start).real + modes.of_channels @ channels
         z += modes.of_angles @ modes.angles

@@ -22,7 +22,8 @@ from herringbone.analysis.twin.composite_parts import (
     texts_of,
     vectors_of,
 )
-from herringbone.analysis.twin.composite_source import BlockMap, composite_source
+from herringbone.analysis.twin.composite_source import BlockMap, OwnLines, composite_source
+from herringbone.analysis.twin.condensed.lean import names_of_states
 from herringbone.analysis.twin.source import twin_source
 from herringbone.core import Component, Declaration, Instance, Kernels, Variable, parameter
 from herringbone.core.caching.generated import load_generated
@@ -53,12 +54,15 @@ class Composite:
     resources: Mapping[str, Path]
 
 
-def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
+def make_composite(
+    system: System, outside: tuple[str, ...] = (), held: tuple[str, ...] = ()
+) -> Composite:
     """Make one component of a system.
 
     Args:
         system: its parts are all components of this package; their values become start values.
         outside: instances that stay outside; what they feed becomes inputs.
+        held: states that keep their start values.
 
     Raises:
         StructureError: a part is a foreign FMU or does not exist, nothing is left, a part takes
@@ -76,6 +80,7 @@ def make_composite(system: System, outside: tuple[str, ...] = ()) -> Composite:
         layout.block_first,
         layout.state_first,
         places,
+        OwnLines(rates=_still(parts, held)),
     )
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
@@ -130,6 +135,12 @@ def _declaration(system: System, parts: Parts) -> Declaration:
         tables=sum(i.component.declaration.size for i in instances),
         work=steppers.body_work(layout.state_first[-1], len(parts.open_inputs)),
     )
+
+
+def _still(parts: Parts, held: tuple[str, ...]) -> str:
+    """Lines that take away the rates of states that are held."""
+    names = names_of_states(parts.instances)
+    return "".join(f"    dx[{names.index(name)}] = 0.0\n" for name in held)
 
 
 def _block_map(

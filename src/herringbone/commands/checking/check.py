@@ -2,13 +2,20 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from herringbone.commands.options import add_cells
 from herringbone.commands.output import show
 from herringbone.core import FmuError, ParameterError
 
+if TYPE_CHECKING:
+    from herringbone.core.part import Part
+
 _ROLES = ["housing", "motor", "load", "coupling"]
 
+_SHORTER = (1e-4, 2e-5, 5e-6)
+"""Steps of further trials [s] while something is not clear: an FMU of a gearbox proposes 1 ms, and
+vibrates at kilohertz."""
 _USABLE = (
     "its description departs from FMI as above, which is up to the tool that made it; it loads and "
     "steps, and may be used here"
@@ -36,7 +43,10 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="start value for the test of a role, as its speed; may be repeated",
     )
     sub.add_argument(
-        "--step", type=float, help="of the trials that tell what it is [s]; the FMU's, or 1e-4"
+        "--step",
+        type=float,
+        help="of the trials that tell what it is [s]; that of the FMU, and shorter ones where that "
+        "leaves something open",
     )
     sub.add_argument("--json", action="store_true", help="the contract's tests as JSON")
     add_cells(sub)
@@ -66,6 +76,18 @@ def run(options: argparse.Namespace) -> int:
     for line in (*usable, *_remarks(options.fmu), *signature):
         show(f"  {line}")
     return 1 if problems else 0
+
+
+def _asked_as(part: "Part", fmu: Path) -> list[str]:
+    """The role that an FMU's variables are those of, and how it is tested."""
+    from herringbone.analysis.housing.contract import looks_like_housing  # noqa: PLC0415 (numba)
+
+    if not looks_like_housing(part):
+        return []
+    return [
+        "it has the variables of a housing; what it must do as one is tested by 'herringbone check "
+        f"{fmu} --as housing'"
+    ]
 
 
 def _remarks(fmu: Path) -> list[str]:
@@ -99,8 +121,10 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
     """What the FMU is in a coupling; nothing if it cannot be used at all, which is said already."""
     from herringbone.cosim.fmu.opening import many_of  # noqa: PLC0415
     from herringbone.cosim.signature.text import described  # noqa: PLC0415
-    from herringbone.running.foreign.foreign_parts import signature_of  # noqa: PLC0415 (numba)
+    from herringbone.running.foreign.foreign_parts import clearest_signature  # noqa: PLC0415 (numba)
     from herringbone.running.foreign.started import own_step  # noqa: PLC0415
+
+    steps = own_step(fmu) if step is None else step, *(() if step else _SHORTER)
 
     try:
         with many_of(fmu.stem, fmu) as make:
@@ -108,7 +132,8 @@ def _signature(fmu: Path, step: float | None) -> list[str]:
             part.enter_initialization(0.0, 1.0)
             part.exit_initialization()  # pythonfmu does not survive freeing what was not
             try:
-                return described(signature_of(part, make, own_step(fmu) if step is None else step))
+                found = clearest_signature(part, make, steps)
+                return [*described(found), *_asked_as(part, fmu)]
             finally:
                 part.close()
     except FmuError:

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from herringbone.analysis.finding import Finding, Report, Verdict
 from herringbone.analysis.flange.contract import check_flanges
-from herringbone.analysis.housing.contract import STEP, check_housing
+from herringbone.analysis.housing.contract import STEP, check_housing, usual_compliance
 from herringbone.commands.options import assignments
 from herringbone.commands.output import show
 from herringbone.core.declaring.roles import Role
@@ -46,8 +46,10 @@ def check_command(options: argparse.Namespace) -> int:
         show(json.dumps({**found, "tests": rows}, indent=1))
         return 1 if failed else 0
     show(f"{options.fmu} as {options.role}, steps of {1e6 * step:g} us:\n{_table(findings)}")
+    remarks = sum(finding.verdict is Verdict.REMARK for finding in findings)
     said = f"{failed} test(s) fail" if failed else "nothing fails" if untested else "all tests hold"
-    show(f"{said}, {untested} not possible" if untested else said)
+    said = f"{said}, {untested} not possible" if untested else said
+    show(f"{said}; {remarks} remark(s)" if remarks else said)
     return 1 if failed else 0
 
 
@@ -59,7 +61,9 @@ def _tested(options: argparse.Namespace, progress: Report) -> tuple[list[Finding
         if role is Role.HOUSING:
             step = options.step or STEP
             static = None if options.against is None else _static(options.against)
-            return check_housing(make, static=static, step=step, progress=progress), step
+            usual = usual_compliance()
+            found = check_housing(make, static=static, usual=usual, step=step, progress=progress)
+            return found, step
         step = options.step or own_step(fmu)
         flanges = options.flange or ()
         return check_flanges(make, role, step=step, flanges=flanges, progress=progress), step

@@ -102,7 +102,10 @@ def _text(found: "HostedFlange") -> str:
         "and 3 points"
         + ("" if found.takes_derivatives else "; this FMU takes no input derivatives"),
         f"the FMU as a linear system of order {found.order} by trial steps of {found.base:g} s; on "
-        f"other trials, at the limits, it misses by {100.0 * found.residual:.2g} %",
+        f"other trials, at the limits, it misses by {100.0 * found.residual:.2g} %"
+        if found.base
+        else f"by linear equations of order {found.order} that the FMU carries: those of its start "
+        "as it was exported, averaged over a mesh period",
     ]
     if not found.promised:
         said.append(

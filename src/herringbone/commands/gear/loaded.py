@@ -53,7 +53,7 @@ def loaded_rows(loaded: Loaded) -> list[tuple[str, str]]:
 def _teeth_rows(teeth: DeviatingLoad | None) -> list[tuple[str, str]]:
     if teeth is None:
         return []
-    heading = f"Over a turn of the wheel, coupled slices: {teeth.deviations}"
+    heading = f"Over a turn of the wheel, coupled slices: {teeth.deviations}, drive flanks"
     peaks = np.ptp(teeth.transmission_error, axis=1).tolist()
     return [
         (heading, ""),

@@ -6,11 +6,11 @@ from dataclasses import asdict
 
 from herringbone.commands.gear.loaded import loaded_json, loaded_rows
 from herringbone.gears.geometry.corner_contact import Impact
-from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.geometry.modification import Modification
 from herringbone.gears.job import GearJob
 from herringbone.gears.load.figures import Loaded
 from herringbone.gears.load.impact import impact_at
+from herringbone.gears.pair_values import USUAL_BACKLASH, backlash_of
 from herringbone.gears.stiffness.mesh_stiffness import MeshStiffness
 
 _RPM = math.pi / 30.0
@@ -42,7 +42,7 @@ _PAIR_FIGURES = (
 def gear_tables(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> str:
     """Tables of geometry, forces, mesh stiffness, load and meshing impact, with units."""
     return "\n\n".join([
-        _aligned([*_geometry(job.pair), *_modification(job.modification), *_forces(job)]),
+        _aligned([*_geometry(job), *_modification(job.modification), *_forces(job)]),
         _stiffness_table(stiffness, loaded),
         _aligned([*loaded_rows(loaded), *_impact_rows(job, stiffness, loaded)]),
     ])  # fmt: skip
@@ -58,6 +58,7 @@ def gear_figures(job: GearJob, stiffness: MeshStiffness, loaded: Loaded) -> dict
     forces = pair.tooth_forces(job.pinion_torque)
     return {
         "pair": {name: getattr(pair, name) for name in _PAIR_FIGURES},
+        "backlash_in_runs": backlash_of(job) if pair.halves == 2 else None,
         "iso6336_stiffness": asdict(pair.iso6336_stiffness()),
         "pinion_torque": job.pinion_torque,
         "forces": asdict(forces),
@@ -86,7 +87,8 @@ def _pair(values: Sequence[float], factor: float, digits: int) -> str:
     return " ".join(f"{factor * value:{_COLUMN}.{digits}f}" for value in values)
 
 
-def _geometry(pair: GearPair) -> list[_Row]:
+def _geometry(job: GearJob) -> list[_Row]:
+    pair = job.pair
     points, stiffness = pair.path_of_contact, pair.iso6336_stiffness()
     rows = [
         ("Geometry (ISO 21771; pinion   wheel)", ""),
@@ -110,7 +112,8 @@ def _geometry(pair: GearPair) -> list[_Row]:
     rows += [
         ("tip clearance", f"{_pair(pair.tip_clearance, 1e3, 4)} mm"),
         ("tooth thickness at the tip", f"{_pair(pair.tip_tooth_thickness, 1e3, 4)} mm"),
-        ("normal backlash", f"{round(1e6 * pair.normal_backlash, 1) + 0.0:.1f} um"),
+        ("normal backlash by geometry", f"{round(1e6 * pair.normal_backlash, 1) + 0.0:.1f} um"),
+        *_backlash(job),
         ("length of the path of contact", f"{1e3 * points.length:.4f} mm"),
         ("transverse base pitch", f"{1e3 * pair.transverse_base_pitch:.4f} mm"),
         ("transverse contact ratio", f"{pair.transverse_contact_ratio:.4f}"),
@@ -126,6 +129,18 @@ def _geometry(pair: GearPair) -> list[_Row]:
         ("inertia", f"{_pair([body.inertia for body in pair.half_body], 1.0, 6)} kg m2"),
     ]
     return rows
+
+
+def _backlash(job: GearJob) -> list[_Row]:
+    """The backlash that runs take, which double-helical pairs alone have, and where it is from."""
+    if job.pair.halves == 1:
+        return []
+    taken, geometric = backlash_of(job), job.pair.normal_backlash
+    if job.mesh.backlash is not None:
+        source = "[mesh] backlash"
+    else:
+        source = "the same" if taken == geometric else f"assumed, {USUAL_BACKLASH:g} of the module"
+    return [("normal backlash in runs", f"{1e6 * taken:.1f} um ({source})")]
 
 
 def _modification(modification: Modification) -> list[_Row]:

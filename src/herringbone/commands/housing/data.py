@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
 from herringbone.core.declaring.roles import Role
 from herringbone.housing import ModalHousing, read_housing, write_housing
+from herringbone.housing.files.file_format import DATA
 from herringbone.housing.importers import import_housing
 from herringbone.housing.reduction.error import drive_point_errors
 from herringbone.housing.reduction.reduced_housing import certified_bound, reduce_housing
@@ -32,6 +34,9 @@ def reduce_command(options: argparse.Namespace) -> int:
         raise HerringboneError(f"-o {output} would overwrite the full data; choose another place")
     check_writable(_folder(output))
     reduced = reduce_housing(full, band_hz=band, tolerance=options.tolerance)
+    if reduced.frequency_hz.size < full.frequency_hz.size:
+        of = {DATA: str(options.data.resolve())}
+        reduced = replace(reduced, certificate={**reduced.certificate, **of})
     frequency_hz = band * np.logspace(-_DECADES, 0.0, _POINTS)
     errors = drive_point_errors(full, reduced, frequency_hz)
     static = np.diag(full.static_compliance())

@@ -54,7 +54,9 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
         ParameterError: it is asked over a range.
         HerringboneError: see `running.steady`.
     """
-    from herringbone.running.operating.steady import steady  # noqa: PLC0415 (numba)
+    from herringbone.analysis.steady.state import SteadyState  # noqa: PLC0415 (numba)
+    from herringbone.running.operating.questions import answers  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415
 
     at = found.scene.operating
     state = steady(
@@ -66,6 +68,9 @@ def run_steady(options: argparse.Namespace, found: Plan) -> OutcomeKind:
     )
     for note in state.notes:
         say(note)
+    if isinstance(state, SteadyState) and state.converged:
+        for line in answers(state, found.scene.asks):
+            say(line)
     tell(state, {}, options.output, as_json=options.json)
     return OutcomeKind.COMPLETED if state.converged else OutcomeKind.DIVERGED
 

@@ -99,7 +99,7 @@ def tell(
     )
 
     written = write_steady(state, folder) if folder else []
-    if folder:
+    if folder and state.found:
         from herringbone.plotting.studies.pictures import (  # noqa: PLC0415 (matplotlib: lazy)
             write_steady_pictures,
         )
@@ -122,7 +122,7 @@ def _sensitivities(
     from herringbone.analysis.steady.sensitivity import sensitivities  # noqa: PLC0415
     from herringbone.analysis.steady.settled import UNTOLD, SettledState  # noqa: PLC0415
 
-    if options.sensitivities is None:
+    if options.sensitivities is None or not state.found:
         return {}
     if isinstance(state, SettledState):
         say(UNTOLD)

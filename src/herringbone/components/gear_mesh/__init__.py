@@ -170,6 +170,7 @@ import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
+from herringbone.components.gear_mesh.beyond import BEYOND
 from herringbone.components.gear_mesh.frozen import freeze_mesh
 from herringbone.components.gear_mesh.laws import LAWS
 from herringbone.components.gear_mesh.loading import LOADER
@@ -225,4 +226,5 @@ GEAR_MESH = Component(
     freeze=freeze_mesh,
     of_pair=of_pair,
     laws=LAWS,
+    beyond=BEYOND,
 )

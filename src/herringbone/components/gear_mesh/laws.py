@@ -12,7 +12,8 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.contact import derive, meshes
-from herringbone.components.gear_mesh.period import settle, turns
+from herringbone.components.gear_mesh.period import ramp, settle, turns
+from herringbone.components.gear_mesh.toothed_mesh import SOFT
 from herringbone.components.resources import tooth_deviations
 from herringbone.core import Laws
 from herringbone.core.declaring.roles import GEARS
@@ -67,7 +68,9 @@ def _tangent(b: np.ndarray, side: int, flank: int, carries: bool) -> tuple[float
     g *= g * (3.0 - 2.0 * g)
     if b[at.GATE] == 0.0:
         g = 1.0
-    return stiffness, 2.0 * g * b[at.ZETA] * math.sqrt(stiffness * b[at.PATH_MASS]), past
+    # Of teeth that touch by an edge alone the spline's tangent may lie below zero.
+    damping = 2.0 * g * b[at.ZETA] * math.sqrt(max(stiffness, SOFT) * b[at.PATH_MASS])
+    return stiffness, damping, past
 
 
 @kernel
@@ -182,4 +185,5 @@ LAWS = Laws(
     fine=_phases,
     periods=_periods,
     settle=settle,
+    ramp=ramp,
 )  # fmt: skip

@@ -30,6 +30,11 @@ def settle(block: np.ndarray) -> None:
     block[at.RAMP_TURNS] = 0.0
 
 
+def ramp(block: np.ndarray, turns: float) -> None:
+    """Let deviations come in over so many turns of the pinion."""
+    block[at.RAMP_TURNS] = turns
+
+
 def _run_outs(block: np.ndarray) -> Iterator[tuple[int, int]]:
     """Gear and order of moving apexes of the chevrons."""
     if block[at.F_A] != 0.0:

@@ -14,7 +14,7 @@ from herringbone.kernels.compiling.jit import rare
 
 OPEN = 1e-12
 """Depth [m] at which flanks that are open have their tangent stiffness."""
-_SOFT = 1e-3
+SOFT = 1e-3
 """Least tangent stiffness [N/m] whose root is taken."""
 
 
@@ -60,7 +60,7 @@ def _pressure(
     if b[at.GATE] == 0.0:
         table = at.TABLE[0] + side * force_law.TABLE_SIZE
         _, tangent, _ = force_law.law(b, table, phase, max(depth, OPEN))
-    damping = 2.0 * b[at.ZETA] * math.sqrt(max(tangent, _SOFT) * b[at.PATH_MASS])
+    damping = 2.0 * b[at.ZETA] * math.sqrt(max(tangent, SOFT) * b[at.PATH_MASS])
     g = max(0.0, min(1.0, x * b[at.PER_TRANSITION]))
     g *= g * (3.0 - 2.0 * g)
     if b[at.IMPACT] > 0.0 and (f > 0.0) == (b[at.FLANK] >= 0.0):

@@ -33,6 +33,19 @@ class Kernels(NamedTuple):
     out: Callable[[np.ndarray, float], None]
 
 
+class Beyond(NamedTuple):
+    """Where a component leaves what its data were made for.
+
+    Attributes:
+        kernel: beyond(b, which, report) -> int, after `out`: 1 where that line holds, with its
+            numbers in the report, else 0.
+        lines: formats with %g conversions for the report.
+    """
+
+    kernel: Callable[[np.ndarray, int, np.ndarray], int]
+    lines: tuple[str, ...]
+
+
 OfPair = Callable[[PairValues, Mapping[str, float]], dict[str, float]]
 Commanded = Callable[[np.ndarray, Quantity, float], dict[str, float]]
 Freeze = Callable[["Instance", Callable[[np.ndarray], float]], None]
@@ -99,6 +112,7 @@ class Component:
             breakpoints, at most 2; None: they are not, or it is no source.
         laws: its scalar laws, apart from the linear rest; None: the component is linear, or what it
             has is not of that form.
+        beyond: where it leaves what its data were made for; None: nowhere.
         folder: where script, README and golden result lie, and `resources`; that of its name if
             not given.
     """
@@ -123,6 +137,7 @@ class Component:
     hosting: Hosting | None = None
     curve: int | None = None
     laws: "Laws | None" = None
+    beyond: Beyond | None = None
     folder: Path = field(default=Path())
 
     def __post_init__(self) -> None:

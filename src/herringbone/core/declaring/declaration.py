@@ -35,6 +35,11 @@ def is_node(name: str) -> bool:
     return bool(_NODE.search(name))
 
 
+def signal_of(name: str) -> str:
+    """Name of the signal whose value at a node this is; any other name itself."""
+    return _NODE.sub("", name)
+
+
 class Declaration:
     """What a component is, without how it is computed.
 

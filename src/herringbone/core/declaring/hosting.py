@@ -51,6 +51,18 @@ class RunsOn(NamedTuple):
     since: str
 
 
+class Remark(NamedTuple):
+    """What the wrapper logs once, as soon as it holds.
+
+    Attributes:
+        format: of the line; has %g conversions for the numbers of a report.
+        warning: it is a warning; otherwise a matter of course.
+    """
+
+    format: str
+    warning: bool = True
+
+
 class Experiment(NamedTuple):
     """FMI's default experiment.
 
@@ -73,17 +85,26 @@ class Hosting:
         settle: kernel settle(b, t) -> int that makes the states at the start time from parameters
             and inputs; 0: as it was asked for. Otherwise the wrapper logs a line of `not_settled`.
         not_settled: by status, from 1: what was looked for in vain, and what is done instead.
+        remarks: what may be told after a step, or at the end of initialisation.
+        remark: kernel remark(b, w, which, report) -> int, on block and work space: 1 where the
+            remark holds, with its numbers in the report (`REPORT` of them), else 0.
         runs_on: inputs that run on.
         tolerance: name of the local that the wrapper sets to the host's tolerance.
         experiment: the default experiment.
         exchange: model exchange is offered.
+        notes: lines on what lies inside that its maker should read.
+        models: by flange, the linear equations that this was found with, as JSON may hold them.
         advice: what is known of communication steps, as rows of a table; the first one is its head.
     """
 
     settle: Callable[[np.ndarray, float], int]
     not_settled: tuple[str, ...]
+    remarks: tuple[Remark, ...]
+    remark: Callable[[np.ndarray, np.ndarray, int, np.ndarray], int]
     runs_on: tuple[RunsOn, ...]
     tolerance: str
     experiment: Experiment
     exchange: bool
+    notes: tuple[str, ...]
+    models: Callable[[], dict[str, dict[str, list]]]
     advice: Callable[[], list[tuple[str, ...]]]

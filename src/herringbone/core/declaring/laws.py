@@ -29,6 +29,10 @@ def _evenly(block: np.ndarray) -> tuple[tuple[int, Fraction], ...]:
     return ()
 
 
+def _at_once(block: np.ndarray, turns: float) -> None:
+    del block, turns
+
+
 def common_period(periods: Iterable[Fraction]) -> Fraction:
     """The smallest turn that all of the periods, at least one, divide; they are positive."""
     found = list(periods)
@@ -69,6 +73,7 @@ class Laws:
         periods: arguments that are angles, and the turn after which the values repeat, in whole
             turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
         settle: ends in a block what comes in over a time or an angle, as ramps do.
+        ramp: brings in over so many turns, after `settle`, what comes in over an angle; inf: never.
     """
 
     arguments: tuple[str, ...]
@@ -88,3 +93,4 @@ class Laws:
     refusal: Callable[[np.ndarray], str] = _nothing
     periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly
     settle: Callable[[np.ndarray], None] = unchanged
+    ramp: Callable[[np.ndarray, float], None] = _at_once

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from herringbone.core import ParameterError
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
@@ -21,27 +20,27 @@ from herringbone.cosim.layouts.adaptive import (
     MISSED,
     MISSED_NOW,
     NEEDED,
-    NONE,
     OWN,
     ROWS,
     SCALED,
     USED,
     WANTED,
     Adaptive,
+    new_adaptive,
 )
 from herringbone.cosim.layouts.layout import Chunk
-from herringbone.cosim.layouts.nodes import Buffers, Control
-from herringbone.cosim.loops.adaptive import STEP_LIMIT, run_adaptive
-from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
-from herringbone.cosim.loops.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
-from herringbone.cosim.loops.nodes import REFRESH
-from herringbone.cosim.loops.step_error import (
+from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
+from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
+from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
+from herringbone.cosim.loops.adaptive_step.step_error import (
     COUPLING,
     INNER_STEPS,
     LARGEST,
     ORDER,
     update_scale,
 )
+from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
+from herringbone.cosim.loops.nodes import REFRESH
 from herringbone.cosim.rows.record import Grid, GrowingRecord
 from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
@@ -50,23 +49,22 @@ RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
 MEMORY = 100.0
 """Over which the mean of the forces is taken, in largest steps."""
-_STATE = 10
 
 
-def check_sources(name: str, network: Network) -> None:
-    """Check that a step can be taken back with its sources, too.
+def fitted(known: Mapping[int, np.ndarray], rung: int) -> np.ndarray:
+    """S(h) = a h + b h^2 through the nearest rungs with a Jacobian; b h^2 through one.
 
-    Raises:
-        ParameterError: one cannot be restored.
+    Args:
+        known: Jacobians (unknowns p, unknowns p) by rung; at least one.
+        rung: that has none.
     """
-    unable = [
-        network.parts[p].name for p in network.sources if not network.parts[p].addresses.can_restore
-    ]
-    if unable:
-        raise ParameterError(
-            f"{name} takes whole steps back, but {', '.join(unable)} cannot save and restore its "
-            "state; leave the tolerance out"
-        )
+    near = sorted(known, key=lambda k: abs(k - rung))[:2]
+    h = RUNGS[rung]
+    if len(near) == 1:
+        return (h / RUNGS[near[0]]) ** 2 * known[near[0]]
+    one, two = (RUNGS[k] for k in near)
+    first, second = (known[k] / RUNGS[k] for k in near)
+    return h * (first + (h - one) / (two - one) * (second - first))
 
 
 class PreparedAdaptive(PreparedNodes):
@@ -178,7 +176,6 @@ class PreparedAdaptive(PreparedNodes):
     def _make_adaptive(self, buffers: Buffers) -> Adaptive:
         nodes = self.nodes
         sources = [self.jacobian.owners[i] for i in nodes.unknown]
-        groups = int(nodes.group.max(initial=-1)) + 1
         held_by = {
             (c.source, c.output)
             for c in self.network.connections
@@ -186,36 +183,21 @@ class PreparedAdaptive(PreparedNodes):
             and self.input_degree(c.target) < nodes.degree
             and not self.layout.at_end[c.target]
         }
-        rungs, size = len(RUNGS), nodes.degree * nodes.unknown.size
-        adaptive = Adaptive(
-            self.tolerance,
-            self._last,
+        adaptive = new_adaptive(
+            nodes,
             np.array(RUNGS, dtype=np.int64),
-            np.zeros((rungs, size, size)),
-            np.full(rungs, NONE, dtype=np.int64),
-            np.zeros(rungs, dtype=np.int64),
-            np.zeros(rungs, dtype=np.int64),
-            np.zeros(rungs, dtype=np.int64),
-            np.array([source in held_by for source in sources], dtype=np.int64),
-            np.zeros((2, groups)),
-            np.zeros((2, groups)),
-            np.zeros(1),
-            np.zeros((5, max(nodes.unknown.size, groups))),
-            np.zeros(4),
-            MEMORY * TICKS * self._tick,
-            self.inner_step,
-            np.zeros(1),
-            np.zeros(_STATE, dtype=np.int64),
-            np.zeros((nodes.degree + 1, nodes.unknown.size)),
-            self._record.row_times,
+            held=np.array([source in held_by for source in sources], dtype=np.int64),
+            tolerance=self.tolerance,
+            last=self._last,
+            memory=MEMORY * TICKS * self._tick,
+            inner_step=self.inner_step,
+            times=self._record.row_times,
         )
         first = self._first_rung()
         adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
         adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
         buffers.nodes[:] = buffers.history[0]
-        update_scale(
-            nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, adaptive.memory, 0.0
-        )
+        update_scale(nodes, buffers, adaptive.moments, adaptive.covered, adaptive.memory, 0.0)
         return adaptive
 
     def saved(self) -> Arrays:
@@ -244,7 +226,7 @@ class PreparedAdaptive(PreparedNodes):
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run up to the end of the chunk, which counts ticks; see `loops.stages.run_stages`."""
         if self._buffers is None or self._adaptive is None:
-            self._buffers = self._make_buffers(history)
+            self._buffers = new_buffers(self.nodes, self.network.parts, history)
             self._adaptive = self._make_adaptive(self._buffers)
             status = self._correct(self._buffers, self._adaptive, chunk.start, chunk.h)
             if status != DONE:
@@ -286,7 +268,7 @@ class PreparedAdaptive(PreparedNodes):
             if own:
                 self._sensitivities[rung] = self._measured(buffers, adaptive, rung, t, h)
                 adaptive.owed[rung] = 0
-            found = self._sensitivities[rung] if own else self._fitted(rung)
+            found = self._sensitivities[rung] if own else fitted(self._sensitivities, rung)
             adaptive.corrections[rung] = correction_matrix(found, t, h)
         except StepRefusedError as error:
             if rung == 0:
@@ -308,16 +290,6 @@ class PreparedAdaptive(PreparedNodes):
         buffers.spacing[:] = adaptive.state[[BEFORE, BEFORE_THAT]] / RUNGS[rung]
         size = np.maximum(adaptive.moments[LARGEST, self.nodes.group], SMALLEST)
         return self.jacobian.measure(buffers, size, t, h, int(adaptive.state[ACCEPTED]) + 1)
-
-    def _fitted(self, rung: int) -> np.ndarray:
-        """S(h) = a h + b h^2 through the nearest rungs with a Jacobian; b h^2 through one."""
-        near = sorted(self._sensitivities, key=lambda k: abs(k - rung))[:2]
-        h = RUNGS[rung]
-        if len(near) == 1:
-            return (h / RUNGS[near[0]]) ** 2 * self._sensitivities[near[0]]
-        one, two = (RUNGS[k] for k in near)
-        first, second = (self._sensitivities[k] / RUNGS[k] for k in near)
-        return h * (first + (h - one) / (two - one) * (second - first))
 
     def _loosened(self, t: float) -> int:
         """Go on with twice the tolerance, as with a fixed step; a status of the loop."""

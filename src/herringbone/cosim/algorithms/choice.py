@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from herringbone.core.part import Part
 from herringbone.cosim.algorithms.base import Algorithm
-from herringbone.cosim.algorithms.iterated import answers_again
 from herringbone.cosim.algorithms.jacobi import Jacobi
 from herringbone.cosim.algorithms.li import LI
+from herringbone.cosim.structure.repeating import answers_again
 
 AUTO = "auto"
 

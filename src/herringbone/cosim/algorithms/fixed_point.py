@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from herringbone.cosim.algorithms.base import Algorithm, option
-from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
+from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.repeating import check_rollback
 
 _MOST = 50
 _ORDERS = {1: 2, 2: 4, 3: 4, 4: 6}

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from herringbone.core import ParameterError
-from herringbone.core.part import Part, of_parts
+from herringbone.core.part import of_parts
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, solved_growth
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.jacobian import (
@@ -17,12 +16,18 @@ from herringbone.cosim.algorithms.jacobian import (
 )
 from herringbone.cosim.algorithms.node_signals import fmi_derivatives, node_degrees
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
-from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs, node_references
-from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
+from herringbone.cosim.layouts.layout import Chunk, build_layout, connected_outputs
+from herringbone.cosim.layouts.nodes import (
+    Buffers,
+    Control,
+    NodeLayout,
+    lay_out_nodes,
+    new_buffers,
+)
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
 from herringbone.cosim.structure.network import Network
-from herringbone.cosim.structure.rates import rate_of
+from herringbone.cosim.structure.repeating import answers_again, explicit_note, explicit_parts
 
 REST = 1e-6
 """Residual, relative to the largest signal of the same unit, that asks for more corrections."""
@@ -37,47 +42,6 @@ MOST_SWEEPS = 1000
 """Sweeps of a fixed point over an algebraic loop at the most."""
 PATIENCE = 50
 """Macro steps between two Jacobians at the least."""
-
-
-def answers_again(part: Part) -> bool:
-    """True if a part takes a step once, and answers corrections of it by a surrogate."""
-    return bool(getattr(part, "answers_again", False))
-
-
-def explicit_parts(network: Network) -> tuple[int, ...]:
-    """Parts with inputs that cannot repeat a step: they step once, first, on predicted inputs."""
-    return tuple(
-        p
-        for p, part in enumerate(network.parts)
-        if network.inputs(p)
-        and p not in network.slow
-        and not (part.addresses.can_restore or answers_again(part))
-    )
-
-
-def check_rollback(name: str, network: Network, *, of_all: bool = False) -> None:
-    """Check that parts with inputs can restore their state: one of them, or all.
-
-    Raises:
-        ParameterError: they cannot.
-    """
-    unable = explicit_parts(network)
-    if of_all:
-        unable += tuple(p for p, part in enumerate(network.parts) if answers_again(part))
-    able = any(network.inputs(p) and p not in unable for p in range(len(network.parts)))
-    if unable and (of_all or not able):
-        names = ", ".join(network.parts[p].name for p in unable)
-        raise ParameterError(
-            f"{name} repeats steps, but {names} cannot save and restore its state; "
-            "use jacobi, gauss_seidel or predict"
-        )
-
-
-def _explicit_note(network: Network, part: int) -> str:
-    return (
-        f"{network.parts[part].name} cannot repeat a step: it takes each one once, on predicted "
-        "inputs, which makes the coupling there explicit, of third order in the step at most"
-    )
 
 
 class PreparedNodes(PreparedRun):
@@ -106,20 +70,22 @@ class PreparedNodes(PreparedRun):
         self.corrections, self.most = corrections, most
         degrees, notes = node_degrees(network, degree)
         explicit = explicit_parts(network)
-        self._first = (*network.sources, *explicit)
-        self._bodies = tuple(p for p in network.bodies if p not in explicit)
-        self._elements = tuple(p for p in network.elements if p not in explicit)
+        first = (*network.sources, *explicit)
+        bodies = tuple(p for p in network.bodies if p not in explicit)
+        elements = tuple(p for p in network.elements if p not in explicit)
         self.degree = tuple(degrees)
-        self._downgrades = (*notes, *(_explicit_note(network, p) for p in explicit))
-        stages = [s for s in (self._first, self._bodies) if s]
-        stages += [(e,) for e in self._elements]
+        self._downgrades = (*notes, *(explicit_note(network, p) for p in explicit))
+        stages = [s for s in (first, bodies) if s] + [(e,) for e in elements]
         derivatives = fmi_derivatives(network, degree, degrees)
         self.layout = build_layout(
             network, stages, degrees, parallel=False, per=degree, derivatives=derivatives
         )
-        self._outputs = connected_outputs(network)
-        self.nodes: NodeLayout = self._node_layout(degree)
-        self.jacobian = InterfaceJacobian(network, self.layout, self.nodes, self._outputs)
+        outputs = connected_outputs(network)
+        given = [0 if p in network.slow else d for p, d in enumerate(degrees)]
+        self.nodes: NodeLayout = lay_out_nodes(
+            network, self.layout, degree, given, outputs, (first, bodies, elements)
+        )
+        self.jacobian = InterfaceJacobian(network, self.layout, self.nodes, outputs)
         self._buffers: Buffers | None = None
         self._correction = np.empty((0, 0))
         self._slow = SLOW_OF_PARTS if any(map(of_parts, network.parts)) else SLOW
@@ -127,56 +93,6 @@ class PreparedNodes(PreparedRun):
         self.jacobians = 0
         self._corrected = False
         self.problem = ""
-
-    def _node_layout(self, degree: int) -> NodeLayout:
-        network, parts = self.network, self.network.parts
-        node_degrees = [0 if p in network.slow else d for p, d in enumerate(self.degree)]
-        unknown = np.unique(self.layout.input_source[self.layout.input_fresh == 0])
-        state = np.array([part.addresses[4:7] for part in parts], dtype=np.int64)
-        return NodeLayout(
-            degree,
-            unknown,
-            np.array(network.by_answer(self._bodies), dtype=np.int64),
-            np.array(self._elements, dtype=np.int64),
-            np.array(self._first, dtype=np.int64),
-            *node_references(parts, self._outputs, node_degrees),
-            state[:, 0].copy(),
-            state[:, 1].copy(),
-            state[:, 2].copy(),
-            self._groups(unknown),
-            self._rates(unknown),
-            self._settled(unknown),
-        )
-
-    def _groups(self, unknown: np.ndarray) -> np.ndarray:
-        """Numbers the units of the unknowns."""
-        units = [
-            str(part.variables[n].unit)
-            for part, names in zip(self.network.parts, self._outputs, strict=True)
-            for n in names
-        ]
-        return np.unique(np.array(units)[unknown], return_inverse=True)[1].astype(np.int64)
-
-    def _rates(self, unknown: np.ndarray) -> np.ndarray:
-        """Rates among the outputs of unknowns that parts step on once, as numbers; else -1."""
-        parts = self.network.parts
-        keys = [(p, name) for p, names in enumerate(self._outputs) for name in names]
-        wanted = {
-            (c.source, c.output)
-            for c in self.network.connections
-            if answers_again(parts[c.target]) or c.target in self._first
-        }
-        found = np.full(unknown.size, -1, dtype=np.int64)
-        for i, (p, name) in enumerate(keys[k] for k in unknown):
-            rate = (p, rate_of(parts[p], name) or "")
-            if (p, name) in wanted and rate in keys:
-                found[i] = keys.index(rate)
-        return found
-
-    def _settled(self, unknown: np.ndarray) -> np.ndarray:
-        """1 for unknowns of parts that step before the passes: no correction reaches them."""
-        owners = [p for p, names in enumerate(self._outputs) for _ in names]
-        return np.array([owners[k] in self._first for k in unknown], dtype=np.int64)
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
@@ -223,24 +139,6 @@ class PreparedNodes(PreparedRun):
         """State restores."""
         return int(self._buffers.counts[0]) if self._buffers else 0
 
-    def _make_buffers(self, history: np.ndarray) -> Buffers:
-        p, outputs, unknowns = self.nodes.degree, history.shape[1], self.nodes.unknown.size
-        parts = self.network.parts
-        return Buffers(
-            history,
-            np.zeros((p + 1, outputs)),
-            np.zeros((p, unknowns)),
-            np.zeros((p, unknowns)),
-            np.ones(unknowns),
-            np.zeros(max(1, p) * max(1, outputs)),
-            np.array([part.new_state() for part in parts], dtype=np.int64),
-            np.zeros(len(parts), dtype=np.int64),
-            np.zeros(3, dtype=np.int64),
-            np.zeros(2),
-            np.array([np.inf, 1.0]),  # nothing is known before the start
-            np.full((2, outputs), np.nan),
-        )
-
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth after the loop has been solved in every step: by the Jacobian, or by sweeps.
 
@@ -271,7 +169,7 @@ class PreparedNodes(PreparedRun):
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""
         if self._buffers is None:
-            self._buffers = self._make_buffers(history)
+            self._buffers = new_buffers(self.nodes, self.network.parts, history)
             if chunk.start > 0:  # the history holds equidistant points before the first step
                 self._buffers.spacing[0] = 1.0
             self._buffers.scale[:] = SMALLEST

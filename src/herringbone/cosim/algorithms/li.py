@@ -20,10 +20,11 @@ with inner nodes.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from herringbone.cosim.algorithms.adaptive import PreparedAdaptive, check_sources
+from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, option
-from herringbone.cosim.algorithms.iterated import PreparedNodes, check_rollback
+from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.repeating import check_rollback, check_sources
 from herringbone.cosim.tolerance import SMALLEST_TOLERANCE, check_tolerance
 
 _MOST = 6

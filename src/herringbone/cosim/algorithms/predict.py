@@ -32,11 +32,9 @@ from herringbone.cosim.layouts.layout import (
     connected_outputs,
     node_references,
 )
-from herringbone.cosim.loops.predict import NODES, Prediction, run_predicted
+from herringbone.cosim.loops.predict import FORCE, NO_RATE, NODES, Prediction, run_predicted
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.rates import rate_of, rates
-
-_FORCE = -2
 
 
 @dataclass(frozen=True)
@@ -98,31 +96,31 @@ class PreparedPrediction(PreparedRun):
         elements = set(network.elements)
         place = {(p, n): k for k, (p, n) in enumerate(
             (p, n) for p, names in enumerate(outputs) for n in names)}  # fmt: skip
-        rate, second = (np.full(len(place), -1, dtype=np.int64) for _ in range(2))
+        rate, second = (np.full(len(place), NO_RATE, dtype=np.int64) for _ in range(2))
         for (p, name), k in place.items():
             first = rate_of(network.parts[p], name)
             if p in elements:
-                rate[k] = _FORCE
+                rate[k] = FORCE
             elif first and (p, first) in place:
                 rate[k] = place[p, first]
-                second[k] = place.get((p, rate_of(network.parts[p], first) or ""), -1)
+                second[k] = place.get((p, rate_of(network.parts[p], first) or ""), NO_RATE)
         moved = {place[c.source, c.output] for c in network.connections if c.target in elements}
         blind = [f"{network.parts[p].name}.{n}" for (p, n), k in place.items()
-                 if k in moved and rate[k] == -1]  # fmt: skip
+                 if k in moved and rate[k] == NO_RATE]  # fmt: skip
         if blind:
             self.notes += (f"{', '.join(blind)}: no rate is known; extrapolated instead",)
         degrees = [NODES if p in elements else 0 for p in range(len(outputs))]
         node_first, node_reference = node_references(network.parts, outputs, degrees)
         return Prediction(
-            rate,
-            second,
-            np.array(network.elements, dtype=np.int64),
-            np.array(network.bodies, dtype=np.int64),
-            int(bool(network.sources)),
-            node_first,
-            node_reference,
-            np.zeros((NODES + 1, len(place))),
-            np.zeros(max(1, int(np.diff(node_first).max()))),
+            rate=rate,
+            second=second,
+            elements=np.array(network.elements, dtype=np.int64),
+            bodies=np.array(network.bodies, dtype=np.int64),
+            sources=int(bool(network.sources)),
+            node_first=node_first,
+            node_reference=node_reference,
+            forces=np.zeros((NODES + 1, len(place))),
+            values=np.zeros(max(1, int(np.diff(node_first).max()))),
         )
 
     def kept_order(self, part: int) -> int:

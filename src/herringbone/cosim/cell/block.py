@@ -7,8 +7,13 @@ import numpy as np
 LINE = 64
 """Bytes of a cache line: words that different processes write lie on different lines."""
 REQUEST, ANSWER, MASTER_SLEEPS, CELL_SLEEPS, SPIN, HEADER = (LINE * k for k in range(6))
-"""Places of the counters (int32) of requests and answers, of the marks (int32) that who waits for
-them sleeps, of the time to spin (int32) [ns], 0: not at all, and of the header."""
+"""Places in the block, in bytes; all but the header are one int32.
+
+    REQUEST, ANSWER              counters of messages, and of answers to them
+    MASTER_SLEEPS, CELL_SLEEPS   1 while who waits for the other one sleeps in the kernel
+    SPIN                         time to spin before that [ns]; 0: not at all
+    HEADER                       of the message, see `HEADER_TYPE`
+"""
 HEADER_TYPE = np.dtype(
     [
         ("kind", np.int64),
@@ -22,9 +27,18 @@ HEADER_TYPE = np.dtype(
         ("more", np.int64),
     ]
 )
-"""kind of the message; number of the instance; words of the operations; worst FMI status; the call
-in which the cell is; time of the last step [s]; number of values in the answer; bytes of text, and
-whether more follows."""
+"""What a message or its answer is.
+
+    kind       OPERATIONS, CONTROL or MORE
+    instance   number of the instance
+    words      of the operations
+    status     worst FMI status of the operations
+    where      operation in which the cell is, SET ... GET_DERIVATIVES; 0: in none
+    time       of the last step [s]
+    values     number of values in the answer
+    text       bytes of text
+    more       1 if more text follows
+"""
 OPERATIONS, CONTROL, MORE = 1, 2, 3
 """Kinds of messages: operations of the compiled loop; text for Python; the rest of an answer."""
 SET, GET, STEP, SAVE, RESTORE, FREE, SET_DERIVATIVES, GET_DERIVATIVES = range(1, 9)
@@ -92,13 +106,20 @@ SIDE = np.dtype(
 )  # fmt: skip
 """What one side of a block knows, of the whole cell.
 
-Addresses of the block, its words and values, and their number; of the C functions syscall,
-clock_gettime and poll; of a timespec to read the clock into, and of the one that sleep is limited
-to; of the pollfd by which the master sees the cell end; number of the process whose child the cell
-is; time to wait for an answer [ns], 0: without end; why the cell is lost; waits in a row that
-spinning did not shorten; waits that do not spin; address of the instance whose message is under
-way, 0: none is; of a timespec to nap for; mean time until a message comes [ns], and by which a nap
-ends earlier.
+    block, words, values      addresses of the block, its operations and its values
+    capacity                  how many words, and values, there is room for
+    syscall, clock, poll      addresses of the C functions syscall, clock_gettime and poll
+    now, timeout              addresses of a timespec to read the clock into; that limits sleep
+    watched                   address of the pollfd by which the master sees the cell end
+    parent                    number of the process whose child the cell is
+    deadline                  time to wait for an answer [ns]; 0: without end
+    lost                      why the cell is lost, ALIVE ... LATE
+    misses                    waits in a row that spinning did not shorten
+    rest                      waits that do not spin
+    flying                    address of the instance whose message is under way; 0: none is
+    nap                       address of a timespec to nap for
+    interval                  mean time until a message comes [ns]
+    lead                      time by which a nap ends earlier than that [ns]
 """
 ALIVE, DIED, LATE = 0, 1, 2
 """Why a cell is lost: it ended; it did not answer in time."""
@@ -115,15 +136,25 @@ INSTANCE = np.dtype(
 )  # fmt: skip
 """What the master's adapters know of one instance.
 
-Address of the cell's side; number of the instance; address of the operations that are collected,
-and how many words they are; address of marks of the kinds of operations that were accepted once
-(uint8), and of the states that are in use (uint8). References (uint32), number and values of the
-outputs that were read so far, whether these values are still those of the FMU, and status; the same
-of the derivatives that were read last, with their orders (int32). Steps that wait to be sent; 1 if
-outputs were read since the last step. Steps since outputs were read, and how many there were
-between the last two times; batch: 1 if no step is sent until `calls.finish`. flight: 1 if a message
-is under way; came: worst status of messages that has not been told; reads: what they ask for, and
-address of where that goes (int64), see `messages`.
+    side                        address of the cell's side
+    number                      of the instance
+    words, used                 address of the operations that are collected; words of them
+    known                       address of marks (uint8) of the kinds that were accepted once
+    slots                       address of marks (uint8) of the states that are in use
+    references, count, found    of the outputs that were read so far: address of the value
+                                references (uint32), number, address of the values
+    valid, status               1 while these values are still those of the FMU; FMI status
+    rates, orders, rate_count, rate_found, rate_valid, rate_status
+                                the same of the derivatives that were read last, and address of
+                                their orders (int32)
+    waiting                     steps that wait to be sent
+    read                        1 if outputs were read since the last step
+    steps, steps_read           steps since outputs were read, and between the last two times
+    batch                       1 if no step is sent until `calls.finish`
+    flight                      1 if a message is under way
+    came                        worst status of messages that has not been told
+    reads, wanted               what the message asks for, and address of where that goes (int64),
+                                see `messages`
 """
 FUNCTIONS = np.dtype(
     [

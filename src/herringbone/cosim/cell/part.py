@@ -9,12 +9,12 @@ import numpy as np
 from fmpy.model_description import ModelDescription
 
 from herringbone.core import FmuError, HerringboneError
-from herringbone.core.part import STRUCTURE, Addresses, Given, PartVariable, Value
+from herringbone.core.part import STRUCTURE, Addresses, PartVariable, Value, ValueOrArray
 from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.cell.block import INSTANCE, KINDS, READS, STATES, fits
 from herringbone.cosim.cell.calls import derivatives, signals, states
-from herringbone.cosim.cell.housing import give_back
 from herringbone.cosim.cell.policy import Remark, policy
+from herringbone.cosim.cell.pool import give_back
 from herringbone.cosim.cell.process import Cell, CellLost
 from herringbone.cosim.fmu.variables import read_variables, resized
 
@@ -121,7 +121,7 @@ class CellPart:
             raise FmuError(f"{self.name} refuses a step, a value or a state: {said}")
         return self._cell.ask(call, self._number, *arguments)
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """See `FmuPart.set`."""
         self._ask("set", name, value)
         known = self.variables.get(name)

@@ -39,7 +39,7 @@ class Remark:
 
 @dataclass(frozen=True)
 class Policy:
-    """How foreign FMUs are housed.
+    """Where foreign FMUs run: each in a cell, or in this process.
 
     Attributes:
         in_process: in this process, as those that were built here.
@@ -63,10 +63,10 @@ def policy() -> Policy:
 
 
 @contextmanager
-def housing_of_strangers(
+def foreign_fmu_policy(
     *, in_process: bool | None = None, deadline: float | None = None
 ) -> Iterator[Policy]:
-    """Context in which foreign FMUs are opened so.
+    """Context in which foreign FMUs run so.
 
     Args:
         in_process: in this process; None: as around this context, or else in cells.

@@ -78,28 +78,28 @@ _ROUNDING = 1e-6
 def _write_end(monitor: EnergyMonitor, values: np.ndarray) -> None:
     """Velocities v at the end of the step less their common mean, C v, and sizes of terms."""
     state = monitor.state
-    for i in range(monitor.force.size):
-        state[SPEED_AT_END, i] = values[monitor.velocity[i]] - state[COMMON, i]
+    for i in range(monitor.places.force.size):
+        state[SPEED_AT_END, i] = values[monitor.places.velocity[i]] - state[COMMON, i]
         state[DRAG_AT_END, i] = state[TERMS, i] = 0.0
     for k in range(monitor.row.size):
         i, j = monitor.row[k], monitor.column[k]
         state[DRAG_AT_END, i] += monitor.damping[k] * state[SPEED_AT_END, j]
-        state[TERMS, i] += abs(monitor.damping[k] * values[monitor.velocity[j]])
-        if monitor.position[j] >= 0:
-            state[TERMS, i] += abs(monitor.stiffness[k] * values[monitor.position[j]])
+        state[TERMS, i] += abs(monitor.damping[k] * values[monitor.places.velocity[j]])
+        if monitor.places.position[j] >= 0:
+            state[TERMS, i] += abs(monitor.stiffness[k] * values[monitor.places.position[j]])
 
 
 @inlined
 def _update_common(monitor: EnergyMonitor, steps: int) -> None:
     """Mean common velocity of the pairs of an element, from its sum over so many steps."""
     state, rigid = monitor.state, monitor.rigid
-    for i in range(monitor.force.size):
+    for i in range(monitor.places.force.size):
         before = state[COMMON, i]
         state[COMMON, i] = 0.0
-        for j in range(monitor.force.size):
+        for j in range(monitor.places.force.size):
             state[COMMON, i] += rigid[i, j] * state[TOTAL, j] / steps
         state[SPEED, i] += before - state[COMMON, i]
-    for i in range(monitor.force.size):
+    for i in range(monitor.places.force.size):
         state[TOTAL, i] = 0.0
 
 
@@ -115,8 +115,8 @@ def _end_becomes_start(monitor: EnergyMonitor, i: int, elastic: float) -> None:
 def _write_start(monitor: EnergyMonitor, values: np.ndarray) -> None:
     """A step starts with these outputs, which belong together."""
     _write_end(monitor, values)
-    for i in range(monitor.force.size):
-        elastic = values[monitor.force[i]] + monitor.state[DRAG_AT_END, i]
+    for i in range(monitor.places.force.size):
+        elastic = values[monitor.places.force[i]] + monitor.state[DRAG_AT_END, i]
         _end_becomes_start(monitor, i, elastic)
 
 
@@ -125,8 +125,8 @@ def begin_step(monitor: EnergyMonitor, start: np.ndarray, end: np.ndarray, toget
     """Get ready for a step between these outputs; those at its start may belong together."""
     state = monitor.state
     if monitor.counts[SAMPLES] == 0:
-        for i in range(monitor.force.size):
-            state[TOTAL, i] = start[monitor.velocity[i]]
+        for i in range(monitor.places.force.size):
+            state[TOTAL, i] = start[monitor.places.velocity[i]]
         _update_common(monitor, 1)
     if monitor.counts[STEPS] == 1 or (together and monitor.stride > 1):
         _write_start(monitor, start)
@@ -139,7 +139,7 @@ def is_watched(monitor: EnergyMonitor, h: float) -> bool:
 
     That is every sample, and the step before it if elements are late: at its end begins the sample.
     """
-    if monitor.force.size == 0:
+    if monitor.places.force.size == 0:
         return False
     monitor.clock[TIME] += h
     monitor.counts[STEPS] += 1
@@ -163,8 +163,8 @@ def finish_pair(
         heat: energy that dampers take [J].
         h: macro step [s].
     """
-    state, count = monitor.state, monitor.force.size
-    if monitor.fast[i]:
+    state, count = monitor.state, monitor.places.force.size
+    if monitor.places.fast[i]:
         monitor.now[i] += work + heat
         way = h * max(abs(state[SPEED, i]), abs(state[SPEED_AT_END, i]))
         monitor.now[count + ROUNDED] += _EPSILONS * state[TERMS, i] * way
@@ -198,13 +198,13 @@ def book_step(monitor: EnergyMonitor, history: np.ndarray, h: float) -> None:
     if late:
         _shift_forces(monitor)
     sample = monitor.counts[STEPS] % monitor.stride == 0
-    for i in range(monitor.force.size):
-        s, v0, v1 = monitor.position[i], state[SPEED, i], state[SPEED_AT_END, i]
+    for i in range(monitor.places.force.size):
+        s, v0, v1 = monitor.places.position[i], state[SPEED, i], state[SPEED_AT_END, i]
         d = 0.5 * h * (v0 + v1)
         if s >= 0:
             d = history[0, s] - history[1, s] - h * state[COMMON, i]
         drag0, drag1 = state[DRAG, i], state[DRAG_AT_END, i]
-        elastic = history[0, monitor.force[i]] + drag1
+        elastic = history[0, monitor.places.force[i]] + drag1
         if late:
             elastic += monitor.shift[i]
             monitor.shift[i] = 0.0
@@ -225,7 +225,7 @@ def end_step(monitor: EnergyMonitor, h: float) -> None:
     """Book the length of a step; judge when a slice of time is full."""
     counts, clock = monitor.counts, monitor.clock
     counts[SAMPLES] += 1
-    monitor.now[monitor.force.size + LENGTH] += h
+    monitor.now[monitor.places.force.size + LENGTH] += h
     if clock[TIME] >= (counts[SLICES] + 1.0 - _ROUNDING) * monitor.slice:
         _close_slice(monitor)
 
@@ -233,7 +233,8 @@ def end_step(monitor: EnergyMonitor, h: float) -> None:
 @inlined
 def _judge(monitor: EnergyMonitor) -> None:
     """Set the flags."""
-    counts, clock, sums, count = monitor.counts, monitor.clock, monitor.sums, monitor.force.size
+    counts, clock, sums = monitor.counts, monitor.clock, monitor.sums
+    count = monitor.places.force.size
     window = monitor.slices.shape[0]
     added = -sums[count + ROUNDED]
     for i in range(count):

@@ -25,8 +25,6 @@ SLICES_IN_WINDOW = 20
 _EXTRA_POINTS = 2
 """Points of quadrature in a macro step beyond the degree p of its signals: exact for the power of a
 force of degree p at a velocity of degree 2 p."""
-
-
 _RIGID = 1e-9
 """Force on a motion, relative to the largest, that counts as none."""
 
@@ -68,8 +66,8 @@ def _slope(at: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return powers * at[:, None] ** np.maximum(powers - 1, 0)
 
 
-class EnergyMonitor(NamedTuple):
-    """Pairs of force and velocity at the ports of bodies, and what the loop writes about them.
+class PairPlaces(NamedTuple):
+    """Where the pairs of force and velocity at the ports of bodies are; arrays (pairs,).
 
     Attributes:
         force, position, velocity: outputs of each pair; none if nothing is watched. The position
@@ -80,26 +78,6 @@ class EnergyMonitor(NamedTuple):
         held: 1 for bodies that hold their inputs over a step.
         fast: 0 for slow bodies: their motion counts, but not the forces that are fitted for them.
         unknown: place of each force among the unknowns of an iterated algorithm, or -1.
-        stride: macro steps per sample.
-        late: 1 if elements may not see the motion that a step ends with.
-        row, column: pairs of an element that act on each other.
-        stiffness, damping: -d force / d position and velocity for these [N/m, N.s/m, ...].
-        rigid: projector of velocities onto those that cause no force, (pairs, pairs).
-        rule: integration over a step, of an iterated algorithm.
-        slice: length of a slice of time [s].
-        slices: ring of energies in slices of time, (slices, pairs + 3): added by each pair [J];
-            taken by the dampers [J]; length [s]; work that rounding of the forces can do [J].
-        now: of the present slice, likewise.
-        sums: of `slices`, likewise.
-        at_flag: sums when instability was flagged.
-        state: see `COMMON`.
-        taken: polynomial on c of the force that each body takes, (3, pairs).
-        slip: position and velocity that an element saw at the end of a step less those that it
-            ended with, (2, pairs).
-        shift: what such a slip took from each force.
-        points: room for the motion of a pair at the nodes.
-        speed: (pairs, points) velocities less their common mean.
-        counts, clock: see `STEPS`, `TIME`.
     """
 
     force: np.ndarray
@@ -112,6 +90,36 @@ class EnergyMonitor(NamedTuple):
     held: np.ndarray
     fast: np.ndarray
     unknown: np.ndarray
+
+
+class EnergyMonitor(NamedTuple):
+    """Pairs of force and velocity at the ports of bodies, and what the loop writes about them.
+
+    Attributes:
+        places: where the pairs are.
+        stride: macro steps per sample.
+        late: 1 if elements may not see the motion that a step ends with.
+        row, column: pairs of an element that act on each other.
+        stiffness, damping: -d force / d position and velocity for these [N/m, N.s/m, ...].
+        rigid: projector of velocities onto those that cause no force, (pairs, pairs).
+        rule: integration over a step, of an iterated algorithm.
+        slice: length of a slice of time [s].
+        slices: ring of energies in slices of time, (slices, pairs + 3): added by each pair [J];
+            taken by the dampers [J]; length [s]; work that rounding of the forces can do [J].
+        now: of the present slice, likewise.
+        sums: of `slices`, likewise.
+        at_flag: sums when instability was flagged.
+        state: (8, pairs), see `COMMON`.
+        taken: polynomial on c of the force that each body takes, (3, pairs).
+        slip: position and velocity that an element saw at the end of a step less those that it
+            ended with, (2, pairs).
+        shift: what such a slip took from each force.
+        points: room for the motion of a pair at the nodes.
+        speed: (pairs, points) velocities less their common mean.
+        counts, clock: see `STEPS`, `TIME`.
+    """
+
+    places: PairPlaces
     stride: int
     late: int
     row: np.ndarray
@@ -135,23 +143,8 @@ class EnergyMonitor(NamedTuple):
     clock: np.ndarray
 
 
-class Watched(NamedTuple):
-    """The part of an `EnergyMonitor` that says where the pairs are; see there."""
-
-    force: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    force_input: np.ndarray
-    position_input: np.ndarray
-    velocity_input: np.ndarray
-    element: np.ndarray
-    held: np.ndarray
-    fast: np.ndarray
-    unknown: np.ndarray
-
-
 def energy_monitor(
-    watched: Watched,
+    places: PairPlaces,
     late: bool,
     stiffness: np.ndarray,
     damping: np.ndarray,
@@ -162,39 +155,39 @@ def energy_monitor(
     """A monitor that has seen nothing.
 
     Args:
-        watched: pairs.
+        places: of the pairs.
         late: elements may not see the motion that a step ends with.
         stiffness, damping: -d force / d position and velocity, (pairs, pairs).
         window: length [s], of as many steps as slices at least.
         step: macro step, the largest one if it adapts itself [s].
         degree: of signals with nodes; 1 without.
     """
-    count = watched.force.size
+    count = places.force.size
     row, column = np.nonzero((stiffness != 0.0) | (damping != 0.0))
     rule = integration_rule(degree)
     return EnergyMonitor(
-        *watched,
-        max(1, round(window / step) // SAMPLES_IN_WINDOW) if step else 1,
-        int(late),
-        row.astype(np.int64),
-        column.astype(np.int64),
-        stiffness[row, column],
-        damping[row, column],
-        rigid_motion(stiffness, damping),
-        rule,
-        window / SLICES_IN_WINDOW,
-        np.zeros((SLICES_IN_WINDOW, count + 3)),
-        np.zeros(count + 3),
-        np.zeros(count + 3),
-        np.zeros(count + 3),
-        np.zeros((8, count)),
-        np.zeros((3, count)),
-        np.zeros((2, count)),
-        np.zeros(count),
-        np.zeros(2 * degree + 2),
-        np.zeros((count, rule.weight.size)),
-        np.zeros(5, dtype=np.int64),
-        np.array([0.0, np.nan, np.nan, np.inf]),
+        places=places,
+        stride=max(1, round(window / step) // SAMPLES_IN_WINDOW) if step else 1,
+        late=int(late),
+        row=row.astype(np.int64),
+        column=column.astype(np.int64),
+        stiffness=stiffness[row, column],
+        damping=damping[row, column],
+        rigid=rigid_motion(stiffness, damping),
+        rule=rule,
+        slice=window / SLICES_IN_WINDOW,
+        slices=np.zeros((SLICES_IN_WINDOW, count + 3)),
+        now=np.zeros(count + 3),
+        sums=np.zeros(count + 3),
+        at_flag=np.zeros(count + 3),
+        state=np.zeros((TERMS + 1, count)),
+        taken=np.zeros((3, count)),
+        slip=np.zeros((2, count)),
+        shift=np.zeros(count),
+        points=np.zeros(2 * degree + 2),
+        speed=np.zeros((count, rule.weight.size)),
+        counts=np.zeros(INACCURATE_FOR + 1, dtype=np.int64),
+        clock=np.array([0.0, np.nan, np.nan, np.inf]),
     )
 
 
@@ -208,7 +201,7 @@ def rigid_motion(stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
 
 _NONE = np.zeros(0, dtype=np.int64)
 NOTHING_WATCHED = energy_monitor(
-    Watched(*(_NONE for _ in Watched._fields)),
+    PairPlaces(*(_NONE for _ in PairPlaces._fields)),
     late=False,
     stiffness=np.zeros((0, 0)),
     damping=np.zeros((0, 0)),

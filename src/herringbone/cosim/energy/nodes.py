@@ -16,7 +16,7 @@ from herringbone.kernels.compiling.jit import inlined, kernel
 @inlined
 def _write_speed(monitor: EnergyMonitor, nodes: np.ndarray, i: int, h: float) -> None:
     """Velocities of pair i at the points, less their common mean."""
-    count, s, v = nodes.shape[0], monitor.position[i], monitor.velocity[i]
+    count, s, v = nodes.shape[0], monitor.places.position[i], monitor.places.velocity[i]
     points, common, rule = monitor.points, monitor.state[COMMON, i], monitor.rule
     for k in range(count):
         points[count + k] = h * (nodes[k, v] - common)
@@ -39,7 +39,7 @@ def _taken_force(
     monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, i: int, values: np.ndarray
 ) -> float:
     """Force on the body of pair i at the nodes, into `values`; its mean over the step."""
-    f, unknown, mean = monitor.force[i], monitor.unknown[i], 0.0
+    f, unknown, mean = monitor.places.force[i], monitor.places.unknown[i], 0.0
     for k in range(nodes.shape[0]):
         at_node = k > 0 and unknown >= 0
         values[k] = trial[k - 1, unknown] if at_node else nodes[k, f]
@@ -56,7 +56,7 @@ def _work(
     mean, work = _taken_force(monitor, nodes, trial, i, values), 0.0
     for q in range(rule.weight.size):
         force = mean
-        if not monitor.held[i]:
+        if not monitor.places.held[i]:
             force = 0.0
             for k in range(nodes.shape[0]):
                 force += rule.force[q, k] * values[k]
@@ -68,7 +68,7 @@ def _work(
 def _write_heat(monitor: EnergyMonitor, h: float) -> None:
     """Energy that the dampers take at each pair, into `taken[0]`."""
     speed, weight, heat = monitor.speed, monitor.rule.weight, monitor.taken
-    for i in range(monitor.force.size):
+    for i in range(monitor.places.force.size):
         heat[0, i] = 0.0
     for k in range(monitor.row.size):
         total, i, j = 0.0, monitor.row[k], monitor.column[k]
@@ -89,11 +89,11 @@ def watch_nodes(monitor: EnergyMonitor, nodes: np.ndarray, trial: np.ndarray, h:
     """
     state, end = monitor.state, nodes[nodes.shape[0] - 1]
     begin_step(monitor, nodes[0], end, True)
-    for i in range(monitor.force.size):
+    for i in range(monitor.places.force.size):
         _write_speed(monitor, nodes, i, h)
     _write_heat(monitor, h)
-    for i in range(monitor.force.size):
-        elastic = end[monitor.force[i]] + state[DRAG_AT_END, i]
+    for i in range(monitor.places.force.size):
+        elastic = end[monitor.places.force[i]] + state[DRAG_AT_END, i]
         work = _work(monitor, nodes, trial, i, 0.5 * (state[ELASTIC, i] + elastic), h)
         finish_pair(monitor, i, elastic, work, monitor.taken[0, i], h)
     end_step(monitor, h)

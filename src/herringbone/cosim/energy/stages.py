@@ -13,13 +13,13 @@ def _write_forces(
     input_fresh: np.ndarray, monitor: EnergyMonitor, history: np.ndarray, order: int, known: int
 ) -> None:
     """The polynomials that `loops.common.set_inputs` gave the bodies, in powers of c."""
-    taken = monitor.taken
-    for i in range(monitor.force.size):
-        f, fresh = monitor.force[i], input_fresh[monitor.force_input[i]]
+    taken, places = monitor.taken, monitor.places
+    for i in range(places.force.size):
+        f, fresh = places.force[i], input_fresh[places.force_input[i]]
         q = min(order, known - 1 + fresh)
         newest = 1 - fresh
         taken[0, i], taken[1, i], taken[2, i] = history[1, f], 0.0, 0.0
-        if monitor.held[i]:
+        if places.held[i]:
             taken[0, i] = history[newest, f]
         elif q >= 1:
             taken[1, i] = history[newest, f] - history[newest + 1, f]
@@ -48,13 +48,13 @@ def _write_slips(
     known: int,
 ) -> None:
     """Slips of the motions that elements saw."""
-    slip = monitor.slip
-    for i in range(monitor.force.size):
-        s, v, end = monitor.position[i], monitor.velocity[i], at_end[monitor.element[i]]
-        fresh, slip[0, i] = input_fresh[monitor.position_input[i]], 0.0
+    slip, places = monitor.slip, monitor.places
+    for i in range(places.force.size):
+        s, v, end = places.position[i], places.velocity[i], at_end[places.element[i]]
+        fresh, slip[0, i] = input_fresh[places.position_input[i]], 0.0
         if s >= 0:
             slip[0, i] = _slip(history, s, fresh, end, order, known)
-        fresh = input_fresh[monitor.velocity_input[i]]
+        fresh = input_fresh[places.velocity_input[i]]
         slip[1, i] = _slip(history, v, fresh, end, order, known)
 
 

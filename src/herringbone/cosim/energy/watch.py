@@ -24,7 +24,7 @@ from herringbone.cosim.energy.monitor import (
     ROUNDED,
     SLICES_IN_WINDOW,
     UNSTABLE_AT,
-    Watched,
+    PairPlaces,
     energy_monitor,
 )
 from herringbone.cosim.layouts.layout import connected_outputs
@@ -142,21 +142,21 @@ class EnergyWatch:
             nodes.degree if nodes else 1,
         )
 
-    def _places(self) -> Watched:
+    def _places(self) -> PairPlaces:
         pairs, prepared = self._pairs, self._prepared
         forces = [self._output(pair.force) for pair in pairs]
         unknown = prepared.nodes.unknown.tolist() if prepared.nodes else []
-        return Watched(
-            _integers(forces),
-            _integers(self._output(p.position) if p.position else -1 for p in pairs),
-            _integers(self._output(p.velocity) for p in pairs),
-            _integers(self._input(p.force) for p in pairs),
-            _integers(self._input(p.position) if p.position else -1 for p in pairs),
-            _integers(self._input(p.velocity) for p in pairs),
-            _integers(p.force.source for p in pairs),
-            _integers(prepared.input_degree(p.force.target) == 0 for p in pairs),
-            _integers(p.force.target not in self._network.slow for p in pairs),
-            _integers(unknown.index(f) if f in unknown else -1 for f in forces),
+        return PairPlaces(
+            force=_integers(forces),
+            position=_integers(self._output(p.position) if p.position else -1 for p in pairs),
+            velocity=_integers(self._output(p.velocity) for p in pairs),
+            force_input=_integers(self._input(p.force) for p in pairs),
+            position_input=_integers(self._input(p.position) if p.position else -1 for p in pairs),
+            velocity_input=_integers(self._input(p.velocity) for p in pairs),
+            element=_integers(p.force.source for p in pairs),
+            held=_integers(prepared.input_degree(p.force.target) == 0 for p in pairs),
+            fast=_integers(p.force.target not in self._network.slow for p in pairs),
+            unknown=_integers(unknown.index(f) if f in unknown else -1 for f in forces),
         )
 
     def _output(self, c: Connection) -> int:

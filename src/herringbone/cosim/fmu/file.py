@@ -48,6 +48,7 @@ def read_fmu(file: str | Path) -> ModelDescription:
     _check_version(root, file)
     try:
         model = read_model_description(_repacked(root), validate=False)
+        _check_names(model)
         _check_numbers(model)
     except Exception as error:  # fmpy raises bare Exception for every defect of the XML
         raise FmuError(
@@ -88,6 +89,13 @@ def _repacked(root: Element) -> io.BytesIO:
         archive.writestr(_DESCRIPTION, tostring(root, encoding="utf-8"))
     packed.seek(0)
     return packed
+
+
+def _check_names(model: ModelDescription) -> None:
+    """Each variable, and each alias of one, has a name; raises ValueError."""
+    for variable in model.modelVariables:
+        if not variable.name:
+            raise ValueError(f"the variable of reference {variable.valueReference} has no name")
 
 
 def _check_numbers(model: ModelDescription) -> None:

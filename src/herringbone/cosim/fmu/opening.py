@@ -9,10 +9,10 @@ from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
 from herringbone.core.places.temporary import remove_temporary_folder
-from herringbone.cosim.cell.housing import applied as applied_in_cell
-from herringbone.cosim.cell.housing import cell_for, give_back
 from herringbone.cosim.cell.part import CellPart
 from herringbone.cosim.cell.policy import Remark, cells_work, policy
+from herringbone.cosim.cell.pool import applied as applied_in_cell
+from herringbone.cosim.cell.pool import cell_for, give_back
 from herringbone.cosim.cell.process import Cell
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.instance import new_part

@@ -12,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription, ModelVariable
 
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.part import Addresses, Given, PartVariable, Value
+from herringbone.core.part import Addresses, PartVariable, Value, ValueOrArray
 from herringbone.core.places.temporary import remove_temporary_folder
 from herringbone.cosim.fmu.file import extract_fmu, read_fmu
 from herringbone.cosim.fmu.float_modes import keeping_modes
@@ -129,7 +129,7 @@ class FmuPart(ABC):
         """0: the FMU allocates its states."""
         return 0
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable before or during initialisation; an array takes all its values.
 
         Raises:

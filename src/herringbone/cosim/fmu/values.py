@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core import ParameterError
 from herringbone.core.names import shown
-from herringbone.core.part import Given, Value
+from herringbone.core.part import Value, ValueOrArray
 
 INTEGERS = {
     "Integer": np.dtype(np.int32),
@@ -115,7 +115,7 @@ def _no_bytes() -> bytes:
 
 
 def as_values(
-    kind: str, given: Given, count: int, what: str, items: Sequence[tuple[str, int]] = ()
+    kind: str, given: ValueOrArray, count: int, what: str, items: Sequence[tuple[str, int]] = ()
 ) -> list[Value]:
     """Values of all elements of an array; a text of numbers is split at its blanks.
 
@@ -128,7 +128,7 @@ def as_values(
     return [as_value(kind, value, what, items) for value in found]
 
 
-def _listed(kind: str, given: Given, what: str) -> list[Value]:
+def _listed(kind: str, given: ValueOrArray, what: str) -> list[Value]:
     if isinstance(given, str) and kind != "String":
         given = given.split()
         if kind in REALS or kind in INTEGERS:

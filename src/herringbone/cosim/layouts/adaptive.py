@@ -4,9 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.cosim.layouts.nodes import NodeLayout
+
 (WANTED, USED, ACCEPTED, ROWS, CULPRIT, BEFORE, BEFORE_THAT, MISSED, MISSED_NOW,
  TAKEN_BACK) = range(10)  # fmt: skip
-"""Places in `Adaptive.state`."""
+"""Places in `Adaptive.state`: rung wanted; rung in use; macro steps accepted; rows recorded;
+unknown that errs most; lengths of the last two macro steps in ticks; steps that erred too much and
+could not be smaller, in all and in a row; 1 after a step that was taken back."""
 NONE, NEEDED, SCALED, OWN = range(4)
 """Where a rung's correction stands: none yet; a Jacobian of its own is wanted; derived from other
 rungs; from a Jacobian of its own."""
@@ -28,12 +32,10 @@ class Adaptive(NamedTuple):
         errors: (2, groups): the integrals of these over time.
         far: (1,) error of the run so far.
         moments, covered: of the forces, and times: see `step_error.update_scale`.
-        memory: over which the forces' mean is taken [s].
+        memory: time over which the forces are taken about a straight line [s].
         inner_step: longest of the bodies [s]; 0 if they make none.
         sharpness: (1,) largest error over ticks^order of the last steps.
-        state: rung wanted; rung in use; macro steps accepted; rows recorded; unknown that errs
-            most; lengths of the last two macro steps in ticks; steps that erred too much and could
-            not be smaller, in all and in a row; 1 after a step that was taken back.
+        state: (10,), see `WANTED`.
         before: (p + 1, unknowns): values at the nodes of the last step.
         times: of the rows [s].
     """
@@ -58,3 +60,46 @@ class Adaptive(NamedTuple):
     state: np.ndarray
     before: np.ndarray
     times: np.ndarray
+
+
+def new_adaptive(
+    nodes: NodeLayout,
+    rungs: np.ndarray,
+    *,
+    held: np.ndarray,
+    tolerance: float,
+    last: int,
+    memory: float,
+    inner_step: float,
+    times: np.ndarray,
+) -> Adaptive:
+    """Step control of a run that has not begun.
+
+    Args:
+        nodes: the layout of passes.
+        rungs, held, tolerance, last, memory, inner_step, times: see `Adaptive`.
+    """
+    unknowns, groups = nodes.unknown.size, int(nodes.group.max(initial=-1)) + 1
+    size = nodes.degree * unknowns
+    return Adaptive(
+        tolerance=tolerance,
+        last=last,
+        rungs=rungs,
+        corrections=np.zeros((rungs.size, size, size)),
+        ready=np.full(rungs.size, NONE, dtype=np.int64),
+        owed=np.zeros(rungs.size, dtype=np.int64),
+        taken=np.zeros(rungs.size, dtype=np.int64),
+        rejected=np.zeros(rungs.size, dtype=np.int64),
+        held=held,
+        squares=np.zeros((2, groups)),
+        errors=np.zeros((2, groups)),
+        far=np.zeros(1),
+        moments=np.zeros((5, max(unknowns, groups))),
+        covered=np.zeros(4),
+        memory=memory,
+        inner_step=inner_step,
+        sharpness=np.zeros(1),
+        state=np.zeros(TAKEN_BACK + 1, dtype=np.int64),
+        before=np.zeros((nodes.degree + 1, unknowns)),
+        times=times,
+    )

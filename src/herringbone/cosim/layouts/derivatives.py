@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import invpascal, pascal
 
+from herringbone.cosim.layouts.offsets import offsets
 from herringbone.cosim.structure.network import Network
 
 
@@ -86,15 +87,23 @@ def lay_out_derivatives(
     flat = [entry for row in entries for entry in row]
     pure = [p in network.elements and p not in network.mixed for p in range(len(parts))]
     return Derivatives(
-        np.array(order, dtype=np.int64),
-        np.isin(np.arange(len(parts)), rated).astype(np.int64),
-        np.array([part.addresses.set_derivatives for part in parts], dtype=np.int64),
-        np.array([part.addresses.get_derivatives for part in parts], dtype=np.int64),
-        np.array([input_fit(degree, q, at_end=end) for q, end in zip(order, pure, strict=True)]),
-        np.zeros(degree + 1),
-        np.concatenate(([0], np.cumsum([len(row) for row in entries]))).astype(np.int64),
-        np.array([reference for reference, _ in flat], dtype=np.uint32),
-        np.array([k for _, k in flat], dtype=np.int32),
-        np.zeros(len(flat)),
-        np.ones(max((len(part.variables) for part in parts), default=0), dtype=np.int32),
+        order=np.array(order, dtype=np.int64),
+        rated=np.isin(np.arange(len(parts)), rated).astype(np.int64),
+        set_derivatives=np.array(
+            [part.addresses.set_derivatives for part in parts], dtype=np.int64
+        ),
+        get_derivatives=np.array(
+            [part.addresses.get_derivatives for part in parts], dtype=np.int64
+        ),
+        fit=np.array(
+            [input_fit(degree, q, at_end=end) for q, end in zip(order, pure, strict=True)]
+        ),
+        samples=np.zeros(degree + 1),
+        first=offsets([len(row) for row in entries]),
+        reference=np.array([reference for reference, _ in flat], dtype=np.uint32),
+        input_order=np.array([k for _, k in flat], dtype=np.int32),
+        value=np.zeros(len(flat)),
+        output_order=np.ones(
+            max((len(part.variables) for part in parts), default=0), dtype=np.int32
+        ),
     )

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.core.declaring.declaration import node_name
-from herringbone.core.part import Part
+from herringbone.core.part import Part, is_signal_node
 from herringbone.cosim.energy.monitor import NOTHING_WATCHED, EnergyMonitor
 from herringbone.cosim.layouts.derivatives import Derivatives
+from herringbone.cosim.layouts.offsets import offsets
 from herringbone.cosim.layouts.slow import Slow, lay_out_slow
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -22,6 +23,26 @@ class Layout(NamedTuple):
     """Parts, signals and stages as arrays; all offsets are CSR (first[i] ... first[i + 1]).
 
     Inputs of a part are set in one call: all inputs at node 0, then all at node 1, ...
+
+    Attributes:
+        component, set_real, get_real, do_step: addresses of each part's instance and functions.
+        degree: nodes of each part's inputs in a macro step; 0 holds.
+        at_end: 1 for pure elements: their inputs are taken at the end of the macro step.
+        input_first: offsets of each part's connected inputs in the next two.
+        input_source: the output that feeds an input.
+        input_fresh: 1 if that output's part is stepped before the input's part in a macro step, or
+            the input's part is slow.
+        set_first: offsets of each part's values in the next two.
+        set_reference: value references of the inputs, node by node.
+        set_value: room for the values that are set there.
+        output_first: offsets of each part's connected outputs in the next two, and in the history.
+        output_reference: their value references.
+        output_record: column of the records in which each stands.
+        record_first, record_reference: offsets, and value references, of each part's recorded
+            outputs.
+        stage_first, stage_part: parts that step together, stage by stage.
+        slow: bodies that step once in several macro steps; None if there are none.
+        derivatives: parts that take and give FMI derivatives; None if there are none.
     """
 
     component: np.ndarray
@@ -29,21 +50,16 @@ class Layout(NamedTuple):
     get_real: np.ndarray
     do_step: np.ndarray
     degree: np.ndarray
-    """Nodes of a part's inputs in a macro step; 0 holds."""
     at_end: np.ndarray
-    """1 for pure elements: inputs are taken at the end of the macro step."""
     input_first: np.ndarray
     input_source: np.ndarray
-    """Index of the output that feeds an input."""
     input_fresh: np.ndarray
-    """1 if that output's part is stepped before this part in a macro step, or this part is slow."""
     set_first: np.ndarray
     set_reference: np.ndarray
     set_value: np.ndarray
     output_first: np.ndarray
     output_reference: np.ndarray
     output_record: np.ndarray
-    """Column of the records in which a connected output stands."""
     record_first: np.ndarray
     record_reference: np.ndarray
     stage_first: np.ndarray
@@ -82,14 +98,10 @@ def record_names(network: Network) -> list[list[str]]:
         [
             name
             for name, v in part.variables.items()
-            if v.causality == "output" and v.is_real and ".node" not in name
+            if v.causality == "output" and v.is_real and not is_signal_node(part, name)
         ]
         for part in network.parts
     ]
-
-
-def _offsets(counts: Sequence[int]) -> np.ndarray:
-    return np.concatenate(([0], np.cumsum(counts, dtype=np.int64))).astype(np.int64)
 
 
 def _references(rows: Sequence[Sequence[int]]) -> np.ndarray:
@@ -123,7 +135,7 @@ def node_references(
         ]
         for part, names, degree in zip(parts, outputs, degrees, strict=True)
     ]
-    return _offsets([len(row) for row in rows]), _references(rows)
+    return offsets([len(row) for row in rows]), _references(rows)
 
 
 def connected_outputs(
@@ -205,7 +217,7 @@ def build_layout(
         for part, row, nodes in zip(parts, inputs, degree, strict=True)
     ]
     set_first, output_first, record_first = (
-        _offsets([len(row) for row in rows]) for rows in (set_references, outputs, records)
+        offsets([len(row) for row in rows]) for rows in (set_references, outputs, records)
     )
     sources = [(c.source, c.output) for row in inputs for c in row]
     read = [(p, name) for p, row in enumerate(outputs) for name in row]
@@ -217,7 +229,7 @@ def build_layout(
         do_step=addresses[:, 3].copy(),
         degree=np.array(degree, dtype=np.int64),
         at_end=_at_end(network, parallel),
-        input_first=_offsets([len(row) for row in inputs]),
+        input_first=offsets([len(row) for row in inputs]),
         input_source=_places(sources, outputs, output_first),
         input_fresh=_fresh(network, inputs, stages),
         set_first=set_first,
@@ -228,7 +240,7 @@ def build_layout(
         output_record=_places(read, records, record_first),
         record_first=record_first,
         record_reference=_named_references(parts, records),
-        stage_first=_offsets([len(stage) for stage in stages]),
+        stage_first=offsets([len(stage) for stage in stages]),
         stage_part=np.array([p for stage in stages for p in stage], dtype=np.int64),
         slow=lay_out_slow(network, outputs, degree, per),
         derivatives=derivatives,

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.core.part import has_nodes
+from herringbone.cosim.layouts.offsets import offsets
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.rates import rate_of
 
@@ -86,10 +87,6 @@ def fit_matrix(samples: int, degree: int) -> np.ndarray:
     return at_nodes @ np.linalg.solve(basis.T * weight @ basis, basis.T * weight)
 
 
-def _offsets(sizes: Sequence[int]) -> np.ndarray:
-    return np.concatenate(([0], np.cumsum(sizes, dtype=np.int64))).astype(np.int64)
-
-
 def lay_out_slow(
     network: Network, outputs: Sequence[Sequence[str]], degree: Sequence[int], per: int
 ) -> Slow | None:
@@ -106,7 +103,7 @@ def lay_out_slow(
     if not network.slow:
         return None
     parts = list(network.slow)
-    first = _offsets([len(names) for names in outputs])
+    first = offsets([len(names) for names in outputs])
     own = [
         (k, name, first[p] + i) for k, p in enumerate(parts) for i, name in enumerate(outputs[p])
     ]
@@ -119,17 +116,17 @@ def lay_out_slow(
     taken = np.full(len(network.parts), -1, dtype=np.int64)
     taken[parts] = 0
     return Slow(
-        np.array(parts, dtype=np.int64),
-        np.array([network.slow[p] for p in parts], dtype=np.int64),
-        np.zeros(len(network.parts), dtype=np.int64),
-        taken,
-        np.array([i for _, _, i in own], dtype=np.int64),
-        np.array([k for k, _, _ in own], dtype=np.int64),
-        np.array(rate, dtype=np.int64),
-        np.array([rate[r] if r >= 0 else -1 for r in rate], dtype=np.int64),
-        np.zeros((3, len(own))),
-        _offsets(traces),
-        np.zeros(sum(traces)),
-        _offsets([fit.size for fit in fits]),
-        np.concatenate([fit.ravel() for fit in fits]),
+        parts=np.array(parts, dtype=np.int64),
+        multiple=np.array([network.slow[p] for p in parts], dtype=np.int64),
+        waiting=np.zeros(len(network.parts), dtype=np.int64),
+        taken=taken,
+        output=np.array([i for _, _, i in own], dtype=np.int64),
+        owner=np.array([k for k, _, _ in own], dtype=np.int64),
+        rate=np.array(rate, dtype=np.int64),
+        second=np.array([rate[r] if r >= 0 else -1 for r in rate], dtype=np.int64),
+        past=np.zeros((3, len(own))),
+        trace_first=offsets(traces),
+        trace=np.zeros(sum(traces)),
+        fit_first=offsets([fit.size for fit in fits]),
+        fit=np.concatenate([fit.ravel() for fit in fits]),
     )

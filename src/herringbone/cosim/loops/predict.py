@@ -32,6 +32,8 @@ from herringbone.kernels.compiling.jit import inlined, kernel
 
 NODES = 3
 """Degree at which elements take motions and give forces."""
+NO_RATE, FORCE = -1, -2
+"""In `Prediction.rate`: of outputs whose rate is not known, and of the elements' forces."""
 
 
 class Prediction(NamedTuple):
@@ -39,7 +41,7 @@ class Prediction(NamedTuple):
 
     Attributes:
         rate, second: for each output, the outputs that are its first and second time derivative;
-            -1 if there is none.
+            NO_RATE if there is none. The rate of an element's output is FORCE.
         elements, bodies: parts.
         sources: 1 if the layout's first stage holds the sources.
         node_first, node_reference: outputs of each element at its three nodes, node by node.
@@ -124,7 +126,7 @@ def _body_input(
 ) -> float:
     """Input i at c of the macro step: the quadratic through an element's three nodes."""
     source = layout.input_source[i]
-    if prediction.rate[source] != -2:
+    if prediction.rate[source] != FORCE:
         return signal(history, source, layout.input_fresh[i], 2, known, c)
     # Lagrange weights of the nodes 1/3, 2/3, 1
     w1 = 4.5 * (c - 2.0 / 3.0) * (c - 1.0)
@@ -202,16 +204,16 @@ def _watch(
 ) -> None:
     """Account for the energy of one macro step; arguments as of `energy.stages.watch_stages`."""
     forces, taken = prediction.forces, monitor.taken
-    for i in range(monitor.force.size):
-        f, s = monitor.force[i], monitor.position[i]
+    for i in range(monitor.places.force.size):
+        f, s = monitor.places.force[i], monitor.places.position[i]
         start = 3.0 * (forces[1, f] - forces[2, f]) + forces[3, f]
         bend = 4.5 * (forces[1, f] - 2.0 * forces[2, f] + forces[3, f])
         rise = forces[3, f] - start - bend
-        if monitor.held[i]:
+        if monitor.places.held[i]:
             start, rise, bend = start + 0.5 * rise + 0.25 * bend, 0.0, 0.0
         taken[0, i], taken[1, i], taken[2, i] = start, rise, bend
         monitor.slip[0, i] = _slip(prediction, history, s, known, h) if s >= 0 else 0.0
-        monitor.slip[1, i] = _slip(prediction, history, monitor.velocity[i], known, h)
+        monitor.slip[1, i] = _slip(prediction, history, monitor.places.velocity[i], known, h)
     book_step(monitor, history, h)
 
 

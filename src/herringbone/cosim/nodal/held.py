@@ -18,11 +18,11 @@ import numpy as np
 from numba import carray
 
 from herringbone.cosim.loops.calls import at_address, exchange_reals
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate
 
-_START, _END = int(Given.START), int(Given.END)
+_START, _END = int(InputRule.START), int(InputRule.END)
 
 
 @allocating

@@ -62,29 +62,54 @@ MEMORY = np.dtype(
         ("missed", np.int64),
     ]
 )
-"""What an adapter knows.
+"""What an adapter knows; what has a shape is the address of an array, of float64 if not said.
 
-component, and the addresses of the part's functions, see `Addresses`; pending: 1 if the outputs of
-a step have not come yet; read: 1 if outputs were read since the last step; pending_time,
-pending_step: of that step [s]; numbers of inputs n and outputs m; degree of
-the signals; pieces: steps from node to node, 1 or 2; at_end: 1 for a part without memory; stepped:
-1 after the first step. Addresses: value references of the part's inputs and outputs (uint32);
-given: signals of the inputs (n, STRIDE); driven: 1 for inputs that were set (int64); coefficients
-(n, STRIDE); order (n, int64): of the inputs, those that are rates first; held (2, n): in each
-piece, and raw (m): outputs of the part, at the present node, of all_held (STRIDE, 2, n) and
-all_raw (STRIDE, m); packed and packed_references: of driven inputs; values: signals
-of the outputs (m, STRIDE); feedthrough (m, n); place (n, int64): see `Given`; rate (n, int64):
-number of an input's rate, or -1.
+    component ... finish            the part, and the addresses of its functions, see `Addresses`
+    pending                         1 if the outputs of a step have not come yet
+    read                            1 if outputs were read since the last step
+    pending_time, pending_step      of the step whose outputs have not come [s]
+    inputs, outputs                 numbers n and m
+    degree                          of the signals
+    pieces                          steps from node to node, 1 or 2
+    at_end                          1 for a part without memory
+    stepped                         1 after the first step
+    input_references (n), output_references (m)
+                                    value references (uint32)
+    given (n, STRIDE)               signals of the inputs
+    driven (n)                      1 for inputs that were set (int64)
+    coefficients (n, STRIDE)        of the polynomials of the inputs
+    order (n)                       of the inputs, those that are rates first (int64)
+    all_held (STRIDE, 2, n)         what the inputs are held at, by node and piece
+    held (2, n)                     of it, at the present node
+    all_raw (STRIDE, m)             outputs of the part, by node
+    raw (m)                         of it, at the present node
+    packed, packed_references       values and references of driven inputs, for one call
+    values (m, STRIDE)              signals of the outputs
+    feedthrough (m, n)              D
+    place (n)                       rule by which an input is given, see `InputRule` (int64)
+    rate (n)                        number of an input's rate, or -1 (int64)
 
-For `nodal.watch`: watched: 1 if D is; suspected: 1 if it is to be measured; resting: steps without
-a measurement; state_time, saved_time: of the part and its saved state [s]; seen_time, seen_step,
-seen_piece: of the last step and its pieces [s]. Addresses:
-seen_held (STRIDE, 2, n), seen_raw (STRIDE, m): at its nodes; answer (m, n): what states answer in a
-piece; changes (n): of the inputs in trials; responses (5, m): room; trial_state: handle of a state.
+For `nodal.watch`:
 
-For `nodal.once`: once: 1 if the part cannot repeat a step; taken_time, taken_step: of the last step
-[s]. Addresses: taken (n, STRIDE): inputs of that step; answers (m, STRIDE): outputs; missed (n):
-mean of what its inputs became after it.
+    watched, suspected              1 if D is watched; 1 if it is to be measured
+    resting                         steps without a measurement
+    state_time, saved_time          of the part and of its saved state [s]
+    seen_time, seen_step, seen_piece
+                                    of the last step and its pieces [s]
+    seen_held (STRIDE, 2, n), seen_raw (STRIDE, m)
+                                    as all_held and all_raw, of the last step
+    answer (m, n)                   what states answer in a piece
+    changes (n)                     of the inputs in trials
+    responses (5, m)                room for what trials give
+    trial_state                     address of the handle of a state
+
+For `nodal.once`:
+
+    once                            1 if the part cannot repeat a step
+    taken_time, taken_step          of the last step [s]
+    taken (n, STRIDE)               inputs of that step
+    answers (m, STRIDE)             outputs of that step
+    missed (n)                      mean of what its inputs became after it
 """
 
 MEMORY_POINTER = types.CPointer(from_dtype(MEMORY))

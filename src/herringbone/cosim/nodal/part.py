@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
 from herringbone.core.declaring.variable import NODES
-from herringbone.core.part import Addresses, Given, Part, PartVariable
+from herringbone.core.part import Addresses, Part, PartVariable, ValueOrArray
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.nodal import calls
 from herringbone.cosim.nodal.memory import MEMORY
@@ -126,7 +126,7 @@ class NodalPart(PartAdapter):
         found = Addresses(self._memory.ctypes.data, *(f.address for f in functions))
         return found._replace(answers_later=int(self.part.addresses.finish != 0))
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable of the part, or the degree of the signals."""
         if name == INTERFACE_DEGREE:
             self._memory["degree"] = int(float(value))  # type: ignore[arg-type]  # a number

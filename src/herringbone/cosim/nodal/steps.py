@@ -9,11 +9,11 @@ from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.cosim.nodal.held import give, hold
 from herringbone.cosim.nodal.once import make_up, remember
 from herringbone.cosim.nodal.watch import compare
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.signals import STRIDE, evaluate, monomial
 
-_START = int(Given.START)
+_START = int(InputRule.START)
 _BYTES = 8
 
 

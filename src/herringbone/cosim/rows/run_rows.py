@@ -3,8 +3,8 @@
 import numpy as np
 
 from herringbone.core import Outcome, OutcomeKind
-from herringbone.core.declaring.table import KeptRows
 from herringbone.core.part import column
+from herringbone.core.run_table import KeptRows
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.divergence import is_sudden
 from herringbone.cosim.layouts.layout import record_names

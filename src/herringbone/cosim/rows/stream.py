@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.core.declaring.table import RowSink, TableColumns
 from herringbone.core.part import PartVariable
+from herringbone.core.run_table import RowSink, TableColumns
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Record, window_rows

@@ -11,14 +11,14 @@ from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
 from herringbone.cosim.signature.rates import rates_of
-from herringbone.cosim.signature.rotation import Given, pairs, rule_of
+from herringbone.cosim.signature.rotation import InputRule, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
 from herringbone.cosim.signature.ticks import tick_of
 from herringbone.cosim.signature.trial import Refused
 
 _MOVES = {
-    Given.START: "runs on inside a step, with",
-    Given.END: "runs up to its value inside a step, with",
+    InputRule.START: "runs on inside a step, with",
+    InputRule.END: "runs up to its value inside a step, with",
 }
 _SHORT = 1.001
 _LOUDER = 5
@@ -80,7 +80,7 @@ def _by_trials(
     rates = rates_of(lab, variables, changes, feedthrough)
     _note_answers(lab, pulse, found)
     for number, rule in enumerate(given):
-        if rule is not Given.MEAN:
+        if rule is not InputRule.MEAN:
             found.note(f"{lab.inputs[number]} {_MOVES[rule]} {lab.inputs[rate[number]]}")
     if not valid:
         found.note("its outputs are not valid before the first step")
@@ -133,9 +133,9 @@ def _signature(
 
 def _rules(
     lab: Laboratory, changes: np.ndarray, feedthrough: np.ndarray, together: tuple[int, ...]
-) -> tuple[tuple[Given, ...], tuple[int, ...]]:
+) -> tuple[tuple[InputRule, ...], tuple[int, ...]]:
     """Which value of each input the part is given for a step, and the number of its rate or -1."""
-    given, rate = [Given.MEAN] * len(lab.inputs), [-1] * len(lab.inputs)
+    given, rate = [InputRule.MEAN] * len(lab.inputs), [-1] * len(lab.inputs)
     known = np.nan_to_num(feedthrough)
     for number, other in pairs(lab.inputs, together):
         if known[:, number].any():

@@ -24,8 +24,8 @@ _BETTER = 4.0
 """How much smaller the dependence on H must be than by the rule that needs no knowledge."""
 
 
-class Given(IntEnum):
-    """Which value of an input a part is given for a step."""
+class InputRule(IntEnum):
+    """Which value of an input a part is to be given for a step: the rules above."""
 
     MEAN = 0
     START = 1
@@ -48,7 +48,9 @@ def pairs(inputs: tuple[str, ...], together: tuple[int, ...]) -> list[tuple[int,
     return found
 
 
-def rule_of(lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray) -> Given:
+def rule_of(
+    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray
+) -> InputRule:
     """The rule that a part follows with an input and its rate; raises Refused.
 
     Args:
@@ -57,13 +59,13 @@ def rule_of(lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: n
         speed: of the trial, added to the rate's start.
         feedthrough: (m, n) D, 0 where it is unknown.
     """
-    off = [_dependence(lab, pair, speed, feedthrough, rule) for rule in Given]
+    off = [_dependence(lab, pair, speed, feedthrough, rule) for rule in InputRule]
     best = int(np.argmin(off))
-    return Given(best) if _BETTER * off[best] < off[Given.MEAN] else Given.MEAN
+    return InputRule(best) if _BETTER * off[best] < off[InputRule.MEAN] else InputRule.MEAN
 
 
 def _dependence(
-    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray, rule: Given
+    lab: Laboratory, pair: tuple[int, int], speed: float, feedthrough: np.ndarray, rule: InputRule
 ) -> float:
     """How much outputs at a fixed time depend on the step, by a rule."""
     ends = [
@@ -81,7 +83,7 @@ def _end(
     pair: tuple[int, int],
     speed: float,
     feedthrough: np.ndarray,
-    rule: Given,
+    rule: InputRule,
     h: float,
     steps: int,
 ) -> np.ndarray:
@@ -92,8 +94,8 @@ def _end(
     for n in range(steps):
         values = lab.start.copy()
         values[rate] += speed
-        place = {Given.MEAN: n + 0.5, Given.START: n, Given.END: n + 1.0}[rule]
+        place = {InputRule.MEAN: n + 0.5, InputRule.START: n, InputRule.END: n + 1.0}[rule]
         values[angle] += turning * place * h
         inputs.append(values)
-    missing = {Given.MEAN: 0.5, Given.START: 0.0, Given.END: 0.0}[rule] * turning * h
+    missing = {InputRule.MEAN: 0.5, InputRule.START: 0.0, InputRule.END: 0.0}[rule] * turning * h
     return lab.run(inputs, h)[-1] + feedthrough[:, angle] * missing

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 
 
 class Kind(StrEnum):
@@ -84,7 +84,7 @@ class Signature:
     restores: bool | None = None
     repeats: bool = True
     tick: float = 0.0
-    given: tuple[Given, ...] = ()
+    given: tuple[InputRule, ...] = ()
     rate_inputs: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.names import shown
-from herringbone.core.part import Part
+from herringbone.core.part import Part, is_signal_node
 from herringbone.core.places.part_path import PartPath, find_part
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.roles import find_roles
@@ -125,12 +125,12 @@ def build_network(system: System, parts: Sequence[Part]) -> Network:
     targets = {c.target for c in connections}
     sources = tuple(i for i in range(len(parts)) if i not in targets)
     return Network(
-        tuple(parts),
-        tuple(connections),
-        roles.elements,
-        sources,
-        roles.mixed,
-        (*notes, *roles.notes),
+        parts=tuple(parts),
+        connections=tuple(connections),
+        elements=roles.elements,
+        sources=sources,
+        mixed=roles.mixed,
+        notes=(*notes, *roles.notes),
         feedthrough=roles.feedthrough,
         undeclared=roles.undeclared,
         others=others,
@@ -195,8 +195,8 @@ def _element_pairs(
 
 
 def _ports(part: Part) -> list[str]:
-    real = {n: v for n, v in part.variables.items() if v.causality in {"input", "output"}}
-    return sorted({n.rpartition(".")[0] for n in real if "." in n and ".node" not in n})
+    names = [n for n, v in part.variables.items() if v.causality in {"input", "output"}]
+    return sorted({n.rpartition(".")[0] for n in names if "." in n and not is_signal_node(part, n)})
 
 
 def _pairs(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from herringbone.core import StructureError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.names import check_name, shown
 from herringbone.core.places.files import as_texts
 from herringbone.core.places.part_path import PartPath, find_part, split_variable

@@ -61,12 +61,14 @@ def is_value(value: object, *, arrays: bool = False) -> bool:
 
 
 def find_system(reference: str | Path) -> Path:
-    """Folder of a system, by the name of a shipped one or by its path.
+    """Folder of a system, by the name of a shipped one, by its path, or by that of its file.
 
     Raises:
         StructureError: there is no such system.
     """
-    for folder in (systems_folder() / reference, Path(reference)):
+    path = Path(reference)
+    own = path.parent if path.name == FILE_NAME else path
+    for folder in (systems_folder() / reference, own):
         if is_file(folder / FILE_NAME):
             return folder
     shipped = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))

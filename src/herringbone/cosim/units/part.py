@@ -8,7 +8,7 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.declaring.units import si_name
-from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
+from herringbone.core.part import Addresses, Part, PartVariable, Value, ValueOrArray
 from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.units import calls
 
@@ -93,7 +93,7 @@ class SiPart(PartAdapter):
         }
         return Addresses(self._memory.ctypes.data, **found, answers_later=has.answers_later)
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable; signals in SI units."""
         if isinstance(value, float | int) and name in self._rules:
             value = self._own(name, value)

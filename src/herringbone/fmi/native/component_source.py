@@ -2,7 +2,7 @@
 
 import math
 import string
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
@@ -25,6 +25,7 @@ int32_t hb_load(const double *values, const int64_t *shape, double *b, double *s
                 double *report);
 int32_t hb_verify(double *b, double *report);
 int32_t hb_settle(double *b, double t);
+int32_t hb_remark(double *b, double *w, int32_t which, double *report);
 void hb_tangent(double *b, double t, double *d, double *dx);
 void hb_indicators(double *b, double t, double *z);
 """
@@ -57,10 +58,29 @@ def component_source(used: UsedStates) -> str:
         *_grammars(declaration.texts),
         _array("HbRunsOn runs_on", _runs_on(component)),
         _array("char *const not_settled", map(_string, hosting.not_settled if hosting else ())),
+        _array("HbRemark remarks", _remarks(component)),
         _array("HbText texts", _text_entries(declaration.texts)),
         _array("HbRefusal refusals", (f"{{{r.text}, {_string(r.format)}}}" for r in refusals)),
     ]
-    entries = {
+    entries = _entries(used, states, loader, len(refusals))
+    rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
+    return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])
+
+
+def _entries(
+    used: UsedStates, states: Mapping[int, Variable], loader: ResourceLoader | None, refusals: int
+) -> dict[str, object]:
+    """The members of `hb_component`, in the order of component.h.
+
+    Args:
+        used: the component, and the states that its FMU shows.
+        states: those of them that are scalars, by index in the block.
+        loader: of the component's resources; None without.
+        refusals: how many reasons it has to refuse them.
+    """
+    component, declaration = used.component, used.component.declaration
+    hosting = component.hosting
+    return {
         "name": _string(component.name),
         "token": _string(identifier(component, used.built_with)),
         "sources": _string(sources_key()),
@@ -92,11 +112,14 @@ def component_source(used: UsedStates) -> str:
         "verify": "hb_verify" if loader and loader.check else "NULL",
         "settle": "hb_settle" if hosting else "NULL",
         "not_settled": "not_settled",
+        "remarks_count": len(hosting.remarks) if hosting else 0,
+        "remarks": "remarks",
+        "remark": "hb_remark" if hosting else "NULL",
         "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,
-        "refusals_count": len(refusals),
+        "refusals_count": refusals,
         "refusals": "refusals",
         "exchanged_count": len(states),
         "exchanged": "exchanged",
@@ -106,8 +129,6 @@ def component_source(used: UsedStates) -> str:
         "indicators": "hb_indicators" if component.indicators else "NULL",
         "tangent": "hb_tangent",
     }
-    rows = "".join(f"    .{name} = {value},\n" for name, value in entries.items())
-    return "\n".join([*parts, f"const HbComponent hb_component = {{\n{rows}}};\n"])
 
 
 def _array(name: str, entries: Iterable[object]) -> str:
@@ -164,6 +185,11 @@ def _runs_on(component: Component) -> Iterable[str]:
     index = component.declaration.index
     for which in component.hosting.runs_on if component.hosting else ():
         yield f"{{{', '.join(str(index[name]) for name in which)}}}"
+
+
+def _remarks(component: Component) -> Iterable[str]:
+    for remark in component.hosting.remarks if component.hosting else ():
+        yield f"{{{_string(remark.format)}, {int(remark.warning)}}}"
 
 
 def _nodes(declaration: Declaration) -> dict[int, int]:

@@ -84,6 +84,13 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     def settle(b, t):  # noqa: ANN001, ANN202
         return types.int32(kernels_settle(carray(b, (block,)), t))
 
+    def remark(b, w, which, report):  # noqa: ANN001, ANN202
+        return types.int32(
+            kernels_remark(
+                carray(b, (block,)), carray(w, (work,)), which, carray(report, (REPORT,))
+            )
+        )
+
     kernels_step, kernels_rhs, kernels_out = kernels
     kernels_start = of.start
     kernels_indicators: Any = of.indicators  # not used if it is None
@@ -108,6 +115,8 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     if of.hosting is not None:
         kernels_settle = of.hosting.settle
         found["hb_settle"] = (types.int32(_REALS, _TIME), settle)
+        kernels_remark = of.hosting.remark
+        found["hb_remark"] = (types.int32(_REALS, _REALS, types.int32, _REALS), remark)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
     return {symbol: c_code(signature, function) for symbol, (signature, function) in found.items()}

@@ -11,7 +11,11 @@ from herringbone.fmi.model_description import model_description
 from herringbone.fmi.model_description_3 import model_description_3
 from herringbone.fmi.native.model import Model
 from herringbone.fmi.native.platforms import Platform
-from herringbone.fmi.packed.documentation import documentation, licence
+from herringbone.fmi.packed.documentation import (
+    communication_steps,
+    documentation,
+    licence,
+)
 from herringbone.fmi.packed.icon import icon
 from herringbone.fmi.packed.terminals import terminals_and_icons
 
@@ -45,6 +49,7 @@ def pack_native(model: Model, libraries: Mapping[Platform, Path], fmi: int, fmu:
         "terminalsAndIcons/terminalsAndIcons.xml": _xml(terminals_and_icons(component.declaration)),
         **binaries,
         **resources,
+        **communication_steps(component),
     }
     write_archive(fmu, content)
     return fmu

@@ -1,6 +1,7 @@
 """Documentation of an FMU: equations, signs, variables and their ranges."""
 
 import html
+import json
 import math
 from collections.abc import Iterable
 from importlib.metadata import distribution
@@ -11,6 +12,8 @@ from herringbone.core.declaring.variable import Variability
 from herringbone.fmi import interface
 from herringbone.fmi.native.platforms import Platform
 
+FLANGE_MODELS = "extra/herringbone/flange_models.json"
+"""Place in an FMU of its linear equations as its flanges feel them, by flange."""
 _UNTESTED = "built, not run"
 _HEAD = ("name", "causality", "unit", "start", "range", "description")
 _SIGNS = (
@@ -50,7 +53,9 @@ def documentation(component: Component, platforms: Iterable[Platform]) -> bytes:
     )
     hosted = ""
     if component.hosting:
+        notes = "".join(f"<li>{html.escape(note)}</li>" for note in component.hosting.notes)
         hosted = (
+            f"{f'<h2>Notes</h2><ul>{notes}</ul>' if notes else ''}"
             f"<h2>Flanges and start</h2><p>{html.escape(_HOSTED)}</p>"
             f"<h2>Communication steps</h2><p>{html.escape(_STEPS)}</p>"
             f"{_table(component.hosting.advice())}"
@@ -64,6 +69,21 @@ def documentation(component: Component, platforms: Iterable[Platform]) -> bytes:
         f"<h2>Equations</h2><pre>{html.escape(component.equations.strip())}</pre></body></html>\n"
     )
     return text.encode()
+
+
+def communication_steps(component: Component) -> dict[str, bytes]:
+    """What is known of communication steps: lines for messages, equations for `stability`."""
+    if component.hosting is None:
+        return {}
+    _, *rows = component.hosting.advice()
+    known: dict[tuple[str, str], list[str]] = {}
+    for flange, _, there, held, slopes in rows:
+        inertia, _, shaft = there.partition(" behind ")
+        text = f"{held} with {inertia} ({slopes} with derivatives)"
+        known.setdefault((flange, shaft and f", behind {shaft}"), []).append(text)
+    lines = "".join(f"{f}: at most {', '.join(of)}{shaft}\n" for (f, shaft), of in known.items())
+    models = json.dumps(component.hosting.models())
+    return {"resources/communication_steps.txt": lines.encode(), FLANGE_MODELS: models.encode()}
 
 
 def licence() -> bytes:

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from herringbone.core import ParameterError
-from herringbone.gears.accuracy.deviation_file import read_deviations
-from herringbone.gears.accuracy.deviations import ToothDeviations, deviations
+from herringbone.core import ParameterError, ResourceError
+from herringbone.gears.accuracy.deviation_file import Teeth, read_deviations
+from herringbone.gears.accuracy.deviations import deviations
 from herringbone.gears.geometry.gear_pair import GearPair
 
 
@@ -33,8 +33,8 @@ class GivenDeviations:
                 f"grade = {self.grade}, left and right = {files[0]} and {files[1]}"
             )
 
-    def of_halves(self, pair: GearPair) -> list[tuple[ToothDeviations, ToothDeviations]]:
-        """Pinion and wheel of the left and of the right half.
+    def of_halves(self, pair: GearPair) -> list[Teeth]:
+        """Pinion and wheel of the left and of the right half, drive flanks.
 
         Raises:
             ParameterError: see `deviations`.
@@ -42,13 +42,30 @@ class GivenDeviations:
         """
         if self.grade is not None:
             return [deviations(pair, self.grade, self.seed, half) for half in range(2)]
+        return [drive for drive, _ in self._read(pair)]
+
+    def of_coast_flanks(self, pair: GearPair) -> list[Teeth]:
+        """Pinion and wheel of the left and of the right half, coast flanks; [] if not known.
+
+        Raises:
+            ParameterError: see `deviations`.
+            ResourceError: see `read_deviations`; or one of the files alone has coast flanks.
+        """
+        if self.grade is not None:
+            return [deviations(pair, self.grade, self.seed, half, coast=True) for half in range(2)]
+        known = [coast for _, coast in self._read(pair) if coast is not None]
+        if len(known) == 1:
+            raise ResourceError(
+                f"one of {self.left} and {self.right} has no columns of coast flanks (coast_...); "
+                "give both files the same columns"
+            )
+        return known
+
+    def _read(self, pair: GearPair) -> list[tuple[Teeth, Teeth | None]]:
         return [read_deviations(Path(file), pair) for file in (self.left, self.right) if file]
 
     def __str__(self) -> str:
-        """What they are, for people; the flanks that carry at negative torque have none."""
-        return f"{self._source()}; drive flanks only: at negative torque the teeth are perfect"
-
-    def _source(self) -> str:
+        """What they are, for people."""
         if self.grade is None:
             return f"teeth deviate as in {self.left} and {self.right}"
         grades = self.grade if isinstance(self.grade, tuple) else (self.grade, self.grade)

@@ -113,13 +113,13 @@ def _job(content: Mapping[str, Any], values: Mapping[str, dict[str, Any]], folde
         pair,
         Modification(**relief),
         mesh=MeshAssumptions(**values["mesh"]),
-        deviations=_deviations(content, values["deviations"], folder),
+        deviations=_deviations(content, values["deviations"], folder, pair),
         **values["table"],
     )
 
 
 def _deviations(
-    content: Mapping[str, Any], values: dict[str, Any], folder: Path
+    content: Mapping[str, Any], values: dict[str, Any], folder: Path, pair: GearPair
 ) -> GivenDeviations | None:
     """What the section gives, if it is there; files are beside the gear file."""
     if "deviations" not in content:
@@ -132,7 +132,15 @@ def _deviations(
         if len(grade) != 2:
             raise ParameterError(f"grade = {grade} of the deviations must be one or two classes")
         values["grade"] = tuple(grade)
-    return GivenDeviations(**values)
+    found = GivenDeviations(**values)
+    if found.grade is not None:
+        try:
+            found.of_halves(pair)
+        except ParameterError as error:
+            raise ParameterError(
+                f"[deviations] grade = {grade}, seed = {found.seed}: {error}"
+            ) from None
+    return found
 
 
 def _converted(section: Mapping[str, Any], where: str) -> dict[str, Any]:

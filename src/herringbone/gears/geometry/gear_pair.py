@@ -20,7 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.gears.geometry import given
 from herringbone.gears.geometry.checks import check_given, check_meshing
 from herringbone.gears.geometry.contact import (

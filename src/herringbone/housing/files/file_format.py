@@ -22,6 +22,10 @@ UNITS = {"length": "m", "mass": "kg", "time": "s", "force": "N"}
 SEAT_COLUMNS = tuple(f"{seat}.{axis}" for seat, axis in SEAT_DOFS)
 
 
+DATA = "data"
+"""Of a certificate: the whole path of the data that were reduced."""
+
+
 def digest(data: bytes) -> str:
     """SHA-256 with line ends as on Unix, so that a checkout on Windows keeps it."""
     return hashlib.sha256(data.replace(b"\r\n", b"\n")).hexdigest()

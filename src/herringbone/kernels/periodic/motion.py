@@ -5,7 +5,7 @@ Harmonic balance, with the forces sampled in time (T. M. Cameron and J. H. Griff
 assumed so far, each harmonic of the difference is answered by the linear equations, with stiffness
 and damping averaged over the period. What does not return after a period, such as a run-out, whose
 period is a whole turn, is told from the rest by its mean over a period around each instant, and is
-followed without inertia.
+followed without inertia; its harmonics of one turn of either gear are answered like the others.
 
 The search begins with all coordinates at rest. Angles turn with the rates that they have there.
 """
@@ -25,6 +25,8 @@ from herringbone.kernels.periodic.harmonics import (
     harmonic,
     split,
 )
+from herringbone.kernels.periodic.once_a_turn import MotionPlaces, answer_to_turns
+from herringbone.kernels.periodic.turns import turns_scratch
 from herringbone.kernels.steppers import Rhs
 from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED, solve
 
@@ -44,7 +46,8 @@ _TURN = 6.283185307179586
 def periodic_scratch(states: int, coordinates: int) -> int:
     """Length of the scratch space for so many states and coordinates."""
     m = coordinates
-    return 2 * states + 4 * m * m + (3 * SAMPLES + WINDOW + 6) * m + 2 * SAMPLES
+    fixed = 2 * states + 4 * m * m + (3 * SAMPLES + WINDOW + 6) * m + 2 * SAMPLES
+    return fixed + turns_scratch(m)
 
 
 def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
@@ -56,7 +59,7 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
     states: int,
     scratch: int,
     owner: str,
-) -> Callable[[np.ndarray, float], int]:
+) -> Callable[[np.ndarray, float, tuple[float, float]], int]:
     """Compile the search for a periodic motion.
 
     Args:
@@ -70,8 +73,9 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
         owner: name of the component, for messages.
 
     Returns:
-        search(b, period) -> int: SETTLED, with the states of time 0; or NOT_FOUND, with the states
-        as they were. `period` is in seconds; time is 0 in the middle of the samples.
+        search(b, period, turns) -> int: SETTLED, with the states of time 0; or NOT_FOUND, with the
+        states as they were. `period` is in seconds, `turns` how many of them a turn of either gear
+        has; time is 0 in the middle of the samples.
     """
     n, m, turns = states, len(coordinates), len(turning)
     xs, vs = tuple(x for x, _ in coordinates), tuple(v for _, v in coordinates)
@@ -174,8 +178,14 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
                 complex_solve(b[re_at:im_at], b[im_at:motion_at], x, y, m)
                 add_harmonic(x, y, h, w, table, motion, m)
 
+    at = MotionPlaces(
+        k_at, c_at, re_at, im_at, motion_at, g_at, mean_at, drift_at, x_at, y_at, order_at,
+        found_at, end,
+    )  # fmt: skip
+    answer = answer_to_turns(turned, accelerate, follow, xs, vs, free, at, owner)
+
     @inner(owner)
-    def search(b: np.ndarray, period: float) -> int:
+    def search(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
         for k in range(SAMPLES):
             s, c = sine_and_cosine(_TURN * k / SAMPLES)
             b[table_at + k], b[table_at + SAMPLES + k] = c, s
@@ -200,8 +210,15 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
             return NOT_FOUND
         follow(b, b[drift_at:x_at])
         for i in range(m):
+            b[drift_at + i] = b[found_at + i] / period
+        gears = answer(b, period, turns_of)
+        turned(b, 0.0)
+        for i in range(m):
             b[xs[i]] += b[motion_at + i]
-            b[vs[i]] += b[motion_at + SAMPLES * m + i] + b[found_at + i] / period
+            b[vs[i]] += b[motion_at + SAMPLES * m + i] + b[drift_at + i]
+            for gear in range(gears):
+                b[xs[i]] += b[end + 2 * gear * m + i]
+                b[vs[i]] += b[end + (2 * gear + 1) * m + i]
         return SETTLED
 
     return search

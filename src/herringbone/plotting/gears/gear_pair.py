@@ -126,4 +126,4 @@ def _curves(axes: Axes, stiffness: MeshStiffness) -> None:
         title="Secant mesh stiffness, one half", xlabel="phase [mesh periods]",
         ylabel="stiffness [N/µm]", xlim=(0.0, 2.0),
     )  # fmt: skip
-    legend_beside(axes)
+    legend_beside(axes, "normal force")

@@ -1,6 +1,6 @@
 """Levels and order cuts over a parameter of a study, with its resonances."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from scipy.signal import find_peaks
 
 from herringbone.analysis.set_points import SPEED
-from herringbone.core import ParameterError
 from herringbone.plotting.studies.coinciding import coinciding
-from herringbone.plotting.studies.table import MESH, Points, thinned
+from herringbone.plotting.studies.table import Points, checked_groups, thinned
 from herringbone.plotting.style import COLOURS, MARKER_COLOUR, legend, new_figure, styled
 
 _PROMINENCE = 1.15
@@ -63,7 +62,7 @@ def levels(
         ParameterError: the table has no such parameter or group, or no levels.
     """
     across = points.across(across)
-    shown = _checked(points, groups)
+    shown = checked_groups(points, groups)
     curves = points.curves(across)
     kept = thinned(curves)
     hidden = f"; {len(kept)} of {len(curves)} curves" if len(kept) < len(curves) else ""
@@ -97,15 +96,6 @@ def _legend_below(figure: Figure, axes: Axes) -> None:
     figure.set_figheight(height + room)
     figure.subplots_adjust(bottom=bottom / (height + room), top=1.0 - top / (height + room))
     figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.05, 0.0), ncols=columns)
-
-
-def _checked(points: Points, groups: Sequence[str]) -> Sequence[str]:
-    if wrong := [g for g in groups if g not in points.groups]:
-        known = ", ".join(points.groups) or "none"
-        raise ParameterError(f"the table has no level of '{wrong[0]}'; there are: {known}")
-    if not points.groups:
-        raise ParameterError("the table has no levels: there is no column that ends in .rms")
-    return groups or points.groups
 
 
 def _rms(
@@ -195,56 +185,3 @@ def mark_peaks(axes: Axes, across: np.ndarray, level: np.ndarray) -> None:
         axes.axvline(at, color=MARKER_COLOUR, linewidth=0.7, linestyle=":", zorder=0.5)
         axes.text(at, height, f"{at:.4g}", fontsize=7.0, ha="center", va="bottom",
                   color=MARKER_COLOUR)  # fmt: skip
-
-
-@styled
-def waterfall(points: Points, group: str | None = None) -> Figure:
-    """Mesh orders of steady states over speed and frequency, as coloured squares.
-
-    Args:
-        points: of a study over speed; of several points at a speed the largest amplitudes are
-            seen, and the title says so.
-        group: that is shown; the first one if not given.
-
-    Raises:
-        ParameterError: the table has no mesh frequency, no such group, or none of its orders.
-    """
-    across = points.across(SPEED)
-    (shown, *_) = _checked(points, [group] if group else ())
-    orders = points.orders(shown)
-    if MESH not in points.table or not orders:
-        raise ParameterError(f"the table has no mesh frequency or no mesh orders of '{shown}'")
-    most = points.told_largest(across)
-    title = f"Mesh orders of {shown}{most}{points.told_lost}: {points.title}"
-    figure = new_figure(title, 1, width=10.0)
-    figure.set_figheight(6.5)
-    axes = figure.subplots()
-    rows = list(_cells(points, shown, across, orders))
-    x, y, amplitude = (np.concatenate(column) for column in zip(*rows, strict=True))
-    known = np.isfinite(amplitude) & (amplitude > 0.0) & np.isfinite(y)
-    factor, unit = points.scale(f"{shown}.rms")
-    if not known.any():
-        raise ParameterError(f"nothing moves in '{shown}': no map")
-    level = 20.0 * np.log10(amplitude[known] / amplitude[known].max())
-    order = np.argsort(level)
-    drawn = axes.scatter(x[known][order], y[known][order], c=level[order], s=36.0, vmin=-60.0,
-                         cmap="viridis", marker="s")  # fmt: skip
-    bar = figure.colorbar(drawn, ax=axes, pad=0.015)
-    bar.set_label(f"dB re {factor * amplitude[known].max():.3g} {unit}")
-    axes.set_xlabel(points.label(across))
-    axes.set_ylabel("frequency [Hz]")
-    axes.set_ylim(bottom=0.0)
-    return figure
-
-
-def _cells(
-    points: Points, group: str, across: str, orders: Sequence[int]
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Speed, frequency and amplitude of all points, by order."""
-    table = points.table
-    for order in orders:
-        yield (
-            table[across].to_numpy(float),
-            order * table[MESH].to_numpy(float),
-            table[f"{group}.order_{order}"].to_numpy(float),
-        )

@@ -19,11 +19,12 @@ from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.sensitivity import Sensitivity
 from herringbone.core import HerringboneError, ParameterError
-from herringbone.plotting.studies.levels import Band, levels, waterfall
+from herringbone.plotting.studies.levels import Band, levels
 from herringbone.plotting.studies.maps import is_map, level_map
 from herringbone.plotting.studies.sensitivities import PARAMETER, band, tornado
 from herringbone.plotting.studies.steady_state import steady_picture
 from herringbone.plotting.studies.table import Points
+from herringbone.plotting.studies.waterfall import waterfall
 
 SPREAD = 1.0
 """Of parameters that nobody has measured, if nothing else is said: a factor of 2."""

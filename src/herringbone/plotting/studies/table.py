@@ -71,10 +71,15 @@ class Points:
         """
         choice = [wanted] if wanted else [c for c in (SPEED, *self.numbers) if c in self.numbers]
         if not choice or choice[0] not in self.numbers:
-            known = ", ".join(self.numbers) or "none"
+            known = ", ".join(self.numbers)
+            count = len(self.table)
+            if not known:
+                raise ParameterError(
+                    f"{count} point{'s' * (count != 1)} and no number that is varied: there is no "
+                    "curve; give several values, such as --speed 500:3000:26"
+                )
             raise ParameterError(
-                f"parameter {wanted or 'of the abscissa'}: the points have several numbers of: "
-                f"{known}"
+                f"parameter {wanted}: it has not several numbers; there are: {known}"
             )
         return choice[0]
 
@@ -160,3 +165,17 @@ def thinned(curves: Sequence[tuple[str, pd.DataFrame]]) -> list[tuple[str, pd.Da
 
 def _short(value: object) -> str:
     return f"{value:g}" if isinstance(value, float | int | np.floating) else str(value)
+
+
+def checked_groups(points: Points, groups: Sequence[str]) -> Sequence[str]:
+    """The groups whose levels are to be shown; all of the table if none are named.
+
+    Raises:
+        ParameterError: the table has no levels of a group, or none at all.
+    """
+    if wrong := [g for g in groups if g not in points.groups]:
+        known = ", ".join(points.groups) or "none"
+        raise ParameterError(f"the table has no level of '{wrong[0]}'; there are: {known}")
+    if not points.groups:
+        raise ParameterError("the table has no levels: there is no column that ends in .rms")
+    return groups or points.groups

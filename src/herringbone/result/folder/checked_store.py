@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import HerringboneError
-from herringbone.core.declaring.table import TableColumns
+from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State, remove_reports
 from herringbone.result.folder.others import OtherFile, read_others
 from herringbone.result.folder.room import check_room
@@ -85,10 +85,12 @@ class CheckedStore(Store):
         again = max(0, min(len(times), self._there - self._position))
         if again:
             self._compare(np.column_stack([times[:again], values[:again]]), others[:again])
+        self._position += again
         if again < len(times):
-            super().append(times[again:], values[again:], others[again:])
-            self._there = self._file.rows
-        self._position += len(times)
+            try:
+                super().append(times[again:], values[again:], others[again:])
+            finally:
+                self._there = self._position = self._file.rows
 
     def _compare(self, rows: np.ndarray, others: Sequence[Sequence[Any]]) -> None:
         first, last = self._position, self._position + len(rows)

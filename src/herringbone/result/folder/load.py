@@ -9,11 +9,12 @@ import pandas as pd
 from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.places.files import is_file
 from herringbone.core.reading.structured import read_json
-from herringbone.result.folder.names import SUMMARY, TABLE, State
+from herringbone.result.folder.names import STUDY, SUMMARY, TABLE, State
 from herringbone.result.folder.result_file import result_of
 from herringbone.result.folder.run_file import RunFile, read_run_file
 from herringbone.result.folder.stored_table import stored_table
-from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.result.result import TIME, Result
+from herringbone.result.run_info import RunInfo
 
 _UNITS = "# units: "
 
@@ -54,6 +55,11 @@ def _cut_off(result: Result, run: RunFile, folder: Path) -> Result:
 
 def _load_old(folder: Path) -> Result:
     """Results from before the folder had a format: results.csv and summary.json."""
+    if is_file(folder / STUDY):
+        raise ResourceError(
+            f"{folder} holds a sweep, not a run: read its table.csv with pandas.read_csv, draw "
+            "it by 'herringbone plot', or load points from its folder series, if it has one"
+        )
     if not (is_file(folder / TABLE) and is_file(folder / SUMMARY)):
         raise ResourceError(
             f"{folder} holds no results: there is neither run.json, nor results.csv with "

@@ -9,6 +9,8 @@ FORMAT = 1
 """Version of the folder's format; readers take this one and older ones."""
 RUN, ROWS, OTHERS, CHECKPOINT = "run.json", "results.npy", "others.jsonl", "checkpoint"
 TABLE, UNITS, PARQUET = "results.csv", "units.csv", "results.parquet"
+STUDY = "study.json"
+"""What the folder of a sweep holds instead."""
 SUMMARY, TEXT = "summary.json", "summary.txt"
 OLD = ".before"
 """Ends the name of the last checkpoint but one."""

@@ -56,7 +56,7 @@ class RowFile:
         """Append rows (n, columns).
 
         Raises:
-            HerringboneError: they cannot be written; the file is as before.
+            HerringboneError: they cannot be written; those for which there was room stay.
         """
         block = np.ascontiguousarray(rows, dtype="<f8")
         try:
@@ -64,7 +64,7 @@ class RowFile:
             write_all(self._descriptor, block.data)
             self._count(self.rows + len(block))
         except OSError as error:
-            self._give_up()
+            self._keep_whole(len(block))
             raise refused(error, self.file) from error
         self.rows += len(block)
 
@@ -84,9 +84,13 @@ class RowFile:
         os.lseek(self._descriptor, 0, os.SEEK_SET)
         write_all(self._descriptor, _header(rows, self.columns))
 
-    def _give_up(self) -> None:
-        """After a row that could not be written: what nobody counts makes room again."""
+    def _keep_whole(self, most: int) -> None:
+        """After an error: rows that are whole, `most` at most, are counted; no others."""
         try:
+            there = (os.fstat(self._descriptor).st_size - _HEADER) // self._row
+            if there > self.rows:
+                self._count(min(there, self.rows + most))
+                self.rows = min(there, self.rows + most)
             os.ftruncate(self._descriptor, _HEADER + self.rows * self._row)
         except OSError:
             return

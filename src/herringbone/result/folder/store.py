@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from herringbone.core import OutcomeKind
-from herringbone.core.declaring.table import KeptRows, TableColumns
+from herringbone.core.run_table import KeptRows, TableColumns
 from herringbone.result.folder.names import OTHERS, ROWS, State
 from herringbone.result.folder.others import OtherFile
 from herringbone.result.folder.result_file import stored_result

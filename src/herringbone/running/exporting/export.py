@@ -82,20 +82,14 @@ def build_fmus(
 
 
 def ready(
-    system: str | Path,
-    scene: str | Path | Scene | None,
-    values: Mapping[str, float | str | Path] | None,
-    gear: Gear | Mapping[str, Gear] | None,
-    housing: Named | None,
+    system: str | Path, scene: str | Path | Scene | None, wishes: Wishes
 ) -> tuple[System, Scene]:
     """A system with all values that are to be exported, and the scene that gives them.
 
     Raises:
         HerringboneError: system, scene or values are wrong.
     """
-    structure, chosen, notes = prepared(
-        system, scene, Wishes(values=values or {}, gear=gear, housing=housing)
-    )
+    structure, chosen, notes = prepared(system, scene, wishes)
     for note in notes:
         _log.warning(note)
     if structure.sensors:
@@ -162,7 +156,8 @@ def export_ssp(
     file = Path(file)
     if file.suffix != ".ssp":
         raise ParameterError(f"{file}: the name of an exported system must end in .ssp")
-    structure, chosen = ready(system, scene, values, gear, housing)
+    wishes = Wishes(values=values or {}, gear=gear, housing=housing)
+    structure, chosen = ready(system, scene, wishes)
     step = parallel_step(structure) if step is None else step
     step = make_grid(chosen.t_end, step, step).step
     own = [part for part in structure.parts if not part.foreign]

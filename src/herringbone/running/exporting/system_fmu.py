@@ -1,7 +1,9 @@
 """A whole system as one native FMU."""
 
+import logging
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from herringbone.analysis.hosted.boundary import is_gearbox
 from herringbone.analysis.hosted.component import make_hosted
@@ -14,10 +16,13 @@ from herringbone.cosim.ssp.write import parameter_set
 from herringbone.fmi import interface
 from herringbone.fmi.native.build import build_models
 from herringbone.fmi.native.model import Model
-from herringbone.running.exporting.export import ready, written
+from herringbone.running.exporting.export import written
+from herringbone.running.exporting.lean_system import ready_leaner
 from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named
+from herringbone.running.prepared import Named, Wishes
 from herringbone.scenes import Scene
+
+_log = logging.getLogger(__name__)
 
 
 def export_fmu(
@@ -38,6 +43,9 @@ def export_fmu(
     A gearbox, one pair with its bearings and housing, can be made for hosts: few variables, its own
     equilibrium at the start, inner steps by tolerance. Other systems keep all variables of their
     parts, start where the scene does, and have fixed inner steps.
+
+    A scene whose model a plan made leaner gives a leaner FMU: without the modes of housings that
+    are left out, and with the other states of it held; its description states the certified error.
 
     A parameter file (.ssv) has the start values alone: inputs, parameters, and states that are set,
     for an FMU that was exported at another operating point. It says nothing of resource files.
@@ -66,7 +74,26 @@ def export_fmu(
             f"{file}: the name of an exported FMU must end in .fmu, that of its start values in "
             ".ssv"
         )
-    structure, chosen = ready(system, scene, values, gear, housing)
+    with TemporaryDirectory() as folder:
+        return _exported(
+            file, system, scene, Wishes(values=values or {}, gear=gear, housing=housing),
+            outside, platforms, fmi, wanted, Path(folder),
+        )  # fmt: skip
+
+
+def _exported(
+    file: Path,
+    system: str | Path,
+    scene: str | Path | Scene | None,
+    wishes: Wishes,
+    outside: Sequence[str],
+    platforms: Sequence[str],
+    fmi: int,
+    wanted: Wanted | None,
+    folder: Path,
+) -> Path:
+    """See `export_fmu`; a leaner model's data go into a folder meanwhile."""
+    structure, chosen, held = ready_leaner(system, scene, wishes, folder)
     hosted = wanted is not None and not outside and is_gearbox(structure)
     if wanted not in (None, Wanted()) and not hosted:
         raise ParameterError(
@@ -75,9 +102,16 @@ def export_fmu(
         )
     if wanted is not None and hosted:
         structure = structure.with_values(chosen.values)
+        if held:
+            raise ParameterError(
+                f"scene {chosen.name}: [model]: a gearbox made for hosts can leave out modes of "
+                f"its housing, but not {held[0]}; add --outside, or hold modes alone"
+            )
         composite = make_hosted(structure, wanted)
+        for note in composite.component.hosting.notes if composite.component.hosting else ():
+            _log.warning(note)
     else:
-        composite = make_composite(structure, tuple(outside))
+        composite = make_composite(structure, tuple(outside), held)
     if file.suffix == ".ssv":
         with written(file):
             write_whole(file, parameter_set(_started(composite.component)))

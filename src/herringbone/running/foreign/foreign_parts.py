@@ -76,6 +76,24 @@ def alike(part: Part, made: Part) -> Part:
     return made
 
 
+def clearest_signature(part: Part, make: Callable[[], Part], steps: Sequence[float]) -> Signature:
+    """The signature by the first step [s] whose trials leave nothing open, or least.
+
+    A vibration that trials are too long to resolve looks like an output that is no rate of another.
+    """
+
+    def left_open(found: Signature) -> tuple[bool, int]:
+        return found.kind is Kind.UNKNOWN, sum(r.holds is not Answer.YES for r in found.rates)
+
+    tried: list[Signature] = []
+    for step in steps:
+        if not tried or step < tried[0].step:
+            tried.append(signature_of(part, make, step))
+        if left_open(tried[-1]) == (False, 0):
+            break
+    return min(tried, key=left_open)
+
+
 def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature:
     """Signature of a part, found on further instances; what they refuse leaves it unknown.
 

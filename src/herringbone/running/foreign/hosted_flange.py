@@ -1,8 +1,10 @@
 """Stable communication steps of an FMU whose flange a host couples to an inertia."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 
@@ -15,7 +17,8 @@ from herringbone.core.activity import activity
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Kind, Laboratory
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
+from herringbone.fmi.packed.documentation import FLANGE_MODELS
 from herringbone.running.foreign.foreign_parts import signature_of, start_inputs
 from herringbone.running.foreign.started import own_step, started
 
@@ -36,7 +39,8 @@ class HostedFlange:
         host: what it is coupled to.
         limits: by order and schedule.
         takes_derivatives: the FMU offers derivatives of its inputs.
-        order, base: of the FMU's model: number of states, and step of its trials [s].
+        order, base: of the FMU's model: number of states, and step of its trials [s]; 0: the FMU
+            carries the model, of its equations.
         residual: of the model on trials that were not fitted, at the largest finite limit.
     """
 
@@ -80,6 +84,10 @@ def hosted_flange(
         inputs, outputs = (torque, motion) if found.takes_torque else (motion, torque)
         step = own_step(fmu)
         takes_derivatives = bool(part.addresses.set_derivatives)
+        if not values and (model := _carried(fmu, found)):
+            part.close()
+            limits = host_limits(model, host, takes_torque=found.takes_torque)
+            return HostedFlange(fmu, found, host, limits, takes_derivatives, len(model.a), 0.0, 0.0)
         with activity(f"identifying {found.tau} of {fmu.name}"):
             start = start_inputs(part, inputs)
             signature = signature_of(make(), make, step)
@@ -103,6 +111,17 @@ def hosted_flange(
             "your host"
         )
     return best
+
+
+def _carried(fmu: Path, flange: Flange) -> LinearModel | None:
+    """The linear equations of a flange that an exported gearbox carries; None if it has none."""
+    with ZipFile(fmu) as archive:
+        if FLANGE_MODELS not in archive.namelist():
+            return None
+        models = json.loads(archive.read(FLANGE_MODELS))
+    if flange.tau.rpartition(".")[0] not in models:
+        return None
+    return LinearModel.from_lists(models[flange.tau.rpartition(".")[0]])
 
 
 def _hosted(
@@ -179,7 +198,7 @@ def _with_angle(model: LinearModel, flange: Flange) -> LinearModel:
     if not flange.takes_torque:
         # An angle at the input that nothing follows.
         b, d = np.hstack([np.zeros((n, 1)), model.b]), np.hstack([np.zeros((m, 1)), model.d])
-        return LinearModel(model.a, b, model.c, d, (Given.MEAN, Given.MEAN), (-1, -1))
+        return LinearModel(model.a, b, model.c, d, (InputRule.MEAN, InputRule.MEAN), (-1, -1))
     a = np.block([[model.a, np.zeros((n, 1))], [model.c, np.zeros((1, 1))]])
     b = np.vstack([model.b, model.d])
     c = np.zeros((2, n + 1))

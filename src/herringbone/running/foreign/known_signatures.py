@@ -9,7 +9,7 @@ from herringbone.core.caching.files import keep, kept
 from herringbone.core.caching.keys import digest_of, kernels_key
 from herringbone.core.places.paths import cache_root
 from herringbone.cosim.signature import Answer, Kind, Signature
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Rate
 from herringbone.cosim.structure.system import PartSpec
 from herringbone.running.content import contents_of
@@ -58,7 +58,7 @@ def _signature(plain: dict) -> Signature:
         memory=Answer(plain.pop("memory")),
         delay=np.array(plain.pop("delay"), dtype=int).reshape(shape),
         rates=rates,
-        given=tuple(Given(rule) for rule in plain.pop("given")),
+        given=tuple(InputRule(rule) for rule in plain.pop("given")),
         rate_inputs=tuple(plain.pop("rate_inputs")),
         notes=tuple(plain.pop("notes")),
         **plain,

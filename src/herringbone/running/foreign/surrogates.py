@@ -30,6 +30,11 @@ from herringbone.running.start import known_parts, ramp_times
 _TORQUE = 200.0
 """At pinions that only foreign parts load [N m]; limits hardly depend on it."""
 
+_INSTEAD = (
+    "this holds for all algorithms, with --simulate, too; 'herringbone run' with --step tells of a "
+    "step by its outcome and by its error by steps, at twice and four times the step"
+)
+
 
 @dataclass
 class Surrogates:
@@ -50,8 +55,9 @@ class Surrogates:
 
     @property
     def lines(self) -> list[str]:
-        """Why nothing is promised, for each part for which nothing stands."""
-        return [f"nothing is promised: {name}: {why}" for name, why in self.missing.items()]
+        """Why nothing is promised, for each part for which nothing stands; then what helps."""
+        found = [f"nothing is promised: {name}: {why}" for name, why in self.missing.items()]
+        return [*found, _INSTEAD] if found else []
 
 
 @contextmanager
@@ -158,7 +164,10 @@ def _surrogate(
 def _refusal(part: Part, signature: Signature) -> str:
     """Why no trials tell of the part's steps; "" if they do."""
     if isinstance(part, NodalPart) and part.answers_again:
-        return "it cannot repeat a step, and makes up in the next one for what it missed"
+        return (
+            "it cannot repeat a step (it saves no state), and makes up in the next one for what it "
+            "missed"
+        )
     if part.once or part.one_step or signature.kind is Kind.NOISY:
         return signature.notes[0]
     if part.addresses.set_derivatives:

@@ -101,7 +101,7 @@ def fused(
         recording = _marched(core, trial.steps, columns, system, scene, progress, streaming)
     every = make_result(system, scene, KIND, KIND, recording, lines)
     every = replace(every, verification=_verification(trial))
-    every = with_model_row(judged(every, None), scene.model)
+    every = with_model_row(judged(every, system, None), scene.model)
     result = every if output is None else output.seen(every)
     if recorded:
         recorded(result)

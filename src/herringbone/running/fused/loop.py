@@ -9,7 +9,7 @@ from herringbone.analysis.twin.condensed.solution import CoreStopped
 from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.analysis.twin.fused.course import Course
 from herringbone.core import Outcome, OutcomeKind
-from herringbone.core.declaring.table import KeptRows, TableColumns
+from herringbone.core.run_table import KeptRows, TableColumns
 from herringbone.cosim.checkpoint import checkpoints
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.rows import stream

@@ -13,7 +13,6 @@ from herringbone.scenes import Model, Scene
 from herringbone.scenes.asking import Range
 
 if TYPE_CHECKING:
-    from herringbone.analysis.steady.state import SteadyState
     from herringbone.analysis.twin.condensed.lean import Lean
 
 _R_MIN = 30.0 / math.pi
@@ -32,7 +31,8 @@ def refuse_lean(scene: Scene) -> None:
     if scene.model:
         raise ParameterError(
             f"scene {scene.name}: [model]: leaner models are of steady states, sweeps of them, and "
-            "runs with fuse, without foreign parts; drop [model] for the whole one"
+            "runs with fuse, without foreign parts, and of export --as-fmu; drop [model] for the "
+            "whole one"
         )
 
 
@@ -40,8 +40,8 @@ def refuse_frozen(scene: Scene) -> None:
     """Refuse frozen laws in a run; raises ParameterError."""
     if scene.model.frozen or scene.model.linear:
         raise ParameterError(
-            f"scene {scene.name}: [model]: laws are frozen in steady states and sweeps of them; "
-            "drop frozen and linear for a run"
+            f"scene {scene.name}: [model]: laws are frozen in steady states, which tell the model "
+            "error, and in sweeps of them; drop frozen and linear for a run"
         )
 
 
@@ -94,23 +94,6 @@ def with_model_row(result: Result, model: Model) -> Result:
     how = "no plan certified it" if model.error is None else f"steady states{_where(model)}"
     row = BudgetRow("model left out", "what the scene asks", model.error, known, how)
     return replace(result, budget=by_size([*result.budget, row]))
-
-
-def lean_error(state: "SteadyState", whole: "SteadyState") -> str:
-    """A line that says how far a leaner model is from the whole one, by group of channels."""
-    from herringbone.analysis.leaner.form import Form  # noqa: PLC0415 (numba)
-    from herringbone.analysis.leaner.question import (  # noqa: PLC0415
-        Question,
-        apart,
-        lines_of,
-    )
-
-    found = []
-    for group, columns in whole.channels.items():
-        question = Question(group, tuple(columns), Form.SPECTRUM, 1.0)
-        own = apart(question, lines_of(state, question), lines_of(whole, question))
-        found.append(f"{group} {100.0 * own.error:.3g} %")
-    return f"warning: against the whole model, solved as well, it is off by: {', '.join(found)}"
 
 
 def _within(value: float | None, ends: Range | None) -> bool:

@@ -1,24 +1,23 @@
 """Steady states of systems, by name: by harmonic balance, or of a run where parts are foreign."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
-from herringbone.analysis.steady.set_points import Point, SetPoints
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.settled import SettledState
 from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.at_point import NOTHING, prepared_at
+from herringbone.running.operating.by_hand import warned_by_hand
 from herringbone.running.operating.commanded import with_known_values
-from herringbone.running.operating.lean import certified, lean_error, lean_notes, lean_of
+from herringbone.running.operating.lean import lean_notes, lean_of
 from herringbone.running.operating.settled import LONGEST, settled
 from herringbone.running.pairs.gears import Gear
-from herringbone.running.prepared import Named, Prepared, Wishes, prepared
-from herringbone.scenes import Scene, Start
-
-NOTHING = Wishes()
+from herringbone.running.prepared import Named, Prepared, Wishes
+from herringbone.scenes import Scene
 
 
 def steady(
@@ -72,11 +71,8 @@ def steady(
     found = prepared_at(point, system, scene, wishes)
     solver, notes = _solver_of(found, point, wishes, tolerance)
     state = solver.solve(point, near)
-    model = found.scene.model
-    if model and state.converged and not certified(model, wishes.values, speed, torque):
-        whole = SteadySolver(found.system, tolerance).solve(point, near)
-        if whole.converged:
-            notes = (*notes, lean_error(state, whole))
+    if state.converged:
+        notes = (*notes, *warned_by_hand(system, scene, wishes, point, state))
     return state.noted(notes)
 
 
@@ -107,23 +103,3 @@ def _solver_of(
     solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
     said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
     return solver, (*found.notes, *said)
-
-
-def prepared_at(
-    point: Point,
-    system: str | Path | System,
-    scene: str | Path | Scene | None = None,
-    wishes: Wishes = NOTHING,
-) -> Prepared:
-    """A system in the equilibrium of an operating point; see `steady`.
-
-    Raises:
-        HerringboneError: something about the input is wrong.
-    """
-    point.check()
-    asked = replace(wishes, start=Start.REST, start_offset={}, lean=True)
-    structure = system if isinstance(system, System) else load_system(system)[0]
-    if point.torque is not None and wishes.gear:  # what balances it follows from the pair
-        structure = prepared(system, scene, asked).system
-    wanted = {**SetPoints(structure).values(point), **wishes.values}
-    return prepared(system, scene, replace(asked, values=wanted, start=Start.EQUILIBRIUM))

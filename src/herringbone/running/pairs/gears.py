@@ -88,7 +88,7 @@ def _values(
         values[table] = str(cached_table(job))
     if job.deviations is not None:
         values |= _deviating(known, gear, job, job.deviations)
-        notes.append(f"{option}: {job.deviations}")
+        notes.append(f"{option}: {_described(job, job.deviations)}")
     pairs = known.with_role(Role.GEAR_PAIR)
     if len(pairs) > 1:
         notes += [
@@ -109,6 +109,16 @@ def _deviating(
     if column := known.column(gear, Quantity.PAIR_LAW):
         found[column] = str(cached_pair_law(job))
     return found
+
+
+def _described(job: GearJob, deviations: GivenDeviations) -> str:
+    """What deviations are, and which flanks have none."""
+    if deviations.of_coast_flanks(job.pair):
+        return str(deviations)
+    return (
+        f"{deviations}; drive flanks only: at negative torque the teeth are perfect (columns "
+        "coast_... of the files are of the coast flanks)"
+    )
 
 
 def _touched(system: System, known: Anatomy, gear: PartPath) -> Iterator[PartSpec]:

@@ -17,6 +17,7 @@ from herringbone.analysis.figures.operating_point import (
     steady_part,
 )
 from herringbone.analysis.figures.radiated_power import radiated_power
+from herringbone.analysis.figures.standstill import stands_still
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -31,7 +32,8 @@ _HIGHEST = 3000.0
 def physical_results(result: Result) -> dict[str, Any]:
     """Operating point, forces, levels, orders and powers by name.
 
-    Empty of a run that left nothing that can be evaluated. The boxes of a system of several
+    Empty of a run that left nothing that can be evaluated; at standstill without lines and levels,
+    which would be those of rounding. The boxes of a system of several
     gearboxes have one entry each, by path; the only one is called "".
     """
     result = result.uniform()
@@ -40,11 +42,12 @@ def physical_results(result: Result) -> dict[str, Any]:
     part, power = steady_part(result), power_balance(result)
     found: dict[str, Any] = {"steady_from_s": part.begin, "steady_to_s": part.end}
     found["steady"] = part.steady
+    found["standstill"] = stands_still(result)
     if power is not None:
         found["power_W"] = vars(power)
     elif taken := mean_powers(result):
         found["power_taken_W"] = dict(taken.taken)
-    if sensors := sensor_values(result):
+    if not found["standstill"] and (sensors := sensor_values(result)):
         found["sensors"] = sensors
     boxes = by_gearbox(result)
     return found | {"gearboxes": {name: dict(_gearbox(box)) for name, box in boxes.items()}}
@@ -57,6 +60,8 @@ def _gearbox(result: Result) -> Iterator[tuple[str, Any]]:
     yield "gear_pairs", pairs
     yield "bearing_force_N", _of_halves(result, "bearing_force", "yz")
     yield "seat_velocity_m_s", _of_halves(result, "seat_velocity", "xyz")
+    if stands_still(result):
+        return
     yield "lines", {name: lines for name in result.channels if (lines := _lines(result, name))}
     levels = {}
     for housing in result.parts_with(Role.HOUSING):

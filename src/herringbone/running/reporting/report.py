@@ -4,8 +4,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from herringbone.core.declaring.table import TableColumns
 from herringbone.core.one_thread import one_blas_thread
+from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.names import (
     FORMAT,
     OTHERS,

@@ -11,17 +11,20 @@ from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, er
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
 from herringbone.analysis.figures.settling import unsettled
+from herringbone.analysis.figures.standstill import stands_still, what_to_set
 from herringbone.analysis.twin.reference import reference
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import Outcome, OutcomeKind, ResourceError
 from herringbone.core.declaring.roles import Quantity
+from herringbone.core.places.part_path import PartPath
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.cell.policy import Remark
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
-from herringbone.result.result import TIME, Result, RunInfo
+from herringbone.result.result import TIME, Result
+from herringbone.result.run_info import RunInfo
 from herringbone.scenes import Scene
 
 _FEWEST = 2
@@ -82,8 +85,7 @@ def make_result(
         anatomy=known,
         sensors=system.sensors,
     )
-    units = dict(zip((TIME, *recording.names), ("s", *recording.units), strict=True))
-    units |= recording.other_units
+    units = {TIME: "s", **_units(system, recording), **recording.other_units}
     return Result(data, units, recording.outcome, info, system.channels)
 
 
@@ -104,15 +106,21 @@ def start_of(
     return make_result(system, scene, algorithm, fmu, nothing, notes)
 
 
-def judged(result: Result, bond_frequency: float | None) -> Result:
+def judged(result: Result, system: System, bond_frequency: float | None) -> Result:
     """The result with its error budget, and lines on what in the run does not fit together.
+
+    Nothing is weighed where nothing turns: no part of a bearing force alternates then.
 
     Args:
         result: of a run.
+        system: of the run.
         bond_frequency: the highest of all bonds together [rad/s]; None if it is not known.
     """
     if len(result.data) < _FEWEST or result.outcome.unstable:
         return result
+    if stands_still(result):
+        notes = (*result.info.notes, what_to_set(system))
+        return replace(result, info=replace(result.info, notes=notes))
     even = result.uniform()
     try:
         found, budget = misfits(even), error_budget(even, bond_frequency or 0.0)
@@ -159,15 +167,37 @@ def with_coupling_row(result: Result) -> Result:
     return replace(result, budget=by_size(rows))
 
 
-def _parameters(system: System) -> dict[str, float]:
-    """All real parameters of the known parts, as used, by `instance.variable`."""
-    return {
-        f"{part.name}.{v.name}": float(part.values.get(v.name, v.start))
+def _units(system: System, recording: Recording) -> dict[str, str]:
+    """Units by column; a foreign part without is taken as SI, as the component that it replaces."""
+    replaced = {
+        f"{part.name}.{v.name}": v.unit
         for part in system.parts
-        if part.component
-        for v in COMPONENTS[part.component].declaration.parameters
-        if v.name != "interface_degree"
+        if part.foreign and part.stands_for in COMPONENTS
+        for v in COMPONENTS[part.stands_for].declaration.variables
     }
+    given = zip(recording.names, recording.units, strict=True)
+    return {name: unit or replaced.get(name, "") for name, unit in given}
+
+
+def _parameters(system: System) -> dict[str, float]:
+    """Real parameters and inputs that nothing feeds, of known parts, by `instance.variable`."""
+    fed = {system.split(path) for pair in system.connections for path in pair}
+    found: dict[str, float] = {}
+    for part in system.parts:
+        declared = COMPONENTS[part.component].declaration if part.component else None
+        if declared is None:
+            continue
+        parameters = (v for v in declared.parameters if v.name != "interface_degree")
+        free = (v for v in declared.inputs if fed.isdisjoint(_ends(part.name, v.name)))
+        for v in (*parameters, *free):
+            found[f"{part.name}.{v.name}"] = float(part.values.get(v.name, v.start))
+    return found
+
+
+def _ends(part: PartPath, variable: str) -> list[tuple[PartPath, str]]:
+    """What a connection may name to feed an input: it, or what is in front of one of its dots."""
+    dots = (i for i, c in enumerate(variable) if c == ".")
+    return [(part, variable), *((part, variable[:i]) for i in dots)]
 
 
 def _resources(system: System) -> dict[str, str]:

@@ -7,7 +7,8 @@
     inner steps   of own parts, see `inner_steps`; in proportion to the macro step where runs find
                   that, so that they tell what both err; foreign FMUs are told a share of the
                   tolerance in FMI's setup call
-    estimate      of both errors while the run goes on (`loops.step_error`), and by other runs
+    estimate      of both errors while the run goes on (`loops.adaptive_step.step_error`), and by
+                  other runs
 
 What is given by name wins: an algorithm, a step (the largest one then), an inner step.
 """

@@ -98,7 +98,7 @@ def searched(
         search.take(found)
         step = found.recording.step / float(search.pieces())
     found = search.told() if search.tried else found
-    return found._replace(result=judged(found.result, None))
+    return found._replace(result=judged(found.result, system, None))
 
 
 def first_step(system: System, scene: Scene) -> float:

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
 
 from herringbone.result.result import Result
 from herringbone.running.prepared import Wishes
@@ -67,6 +69,19 @@ class Evaluation(Protocol):
         Raises:
             HerringboneError: it cannot be evaluated, which is a failed point.
         """
+
+
+@runtime_checkable
+class Resumable(Protocol):
+    """An evaluation whose neighbours can be kept in a file, and give the same bits from there."""
+
+    def kept(self, near: Any) -> Mapping[str, np.ndarray]:  # noqa: ANN401
+        """Arrays, no objects, from which a neighbour is made again."""
+        raise NotImplementedError
+
+    def renewed(self, kept: Mapping[str, np.ndarray]) -> Any:  # noqa: ANN401
+        """The neighbour; raises HerringboneError, KeyError or ValueError."""
+        raise NotImplementedError
 
 
 class Evaluator(Protocol):

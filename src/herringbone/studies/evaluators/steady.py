@@ -1,6 +1,7 @@
 """Points by periodic steady states: each from its neighbour, without any run."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -9,6 +10,7 @@ import numpy as np
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
 from herringbone.analysis.steady.assumed import Changes, assumed
+from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.periodic import PeriodicMotion
 from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
@@ -54,11 +56,19 @@ class Steady:
 
 
 class _Near(NamedTuple):
-    """A state, what solved for it, and the values with which that was prepared."""
+    """What a state leaves its neighbour, what solved for it, and how that was prepared.
 
-    state: SteadyState
+    Attributes:
+        state: of the motion; None: of no point so far.
+        solver: for points nearby.
+        values: with which it was prepared.
+        first: point for which it was prepared.
+    """
+
+    state: Neighbour | None
     solver: SteadySolver
     values: Point
+    first: Point
 
 
 class _States:
@@ -76,12 +86,12 @@ class _States:
         del series
         at, values = self._split(point)
         if near is None or not _renewable(near.values, values):
-            solver, prepared = self._prepared(at, values), values
-            state = None
-        else:
-            state, solver, prepared = near
+            near = self._begun(point)
+        state, solver, prepared, first = near
         changed = {n: float(v) for n, v in values.items() if prepared[n] != v}
         found = solver.solve(SteadyPoint(**at, values=changed), state)
+        if not found.found:
+            return Evaluated(UNSETTLED, "; ".join(found.notes))
         if not found.converged:
             message = f"the error is {found.errors.worst:.2g}, {found.tolerance:g} was asked for"
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
@@ -93,7 +103,30 @@ class _States:
                 figures |= self._sensitivities(found, self._asked.sensitivities)
             except ParameterError as error:
                 told.append(str(error))
-        return Evaluated(STEADY, "; ".join(told), figures, _Near(found, solver, prepared))
+        return Evaluated(
+            STEADY, "; ".join(told), figures, _Near(found.neighbour, solver, prepared, first)
+        )
+
+    def _begun(self, point: Point) -> _Near:
+        at, values = self._split(point)
+        return _Near(None, self._prepared(at, values), values, point)
+
+    def kept(self, near: _Near) -> dict[str, np.ndarray]:
+        """See `Resumable`."""
+        assert near.state is not None
+        guess, meshes = near.state
+        return {
+            "values": guess.values,
+            "orders": guess.orders,
+            "numbers": np.array([guess.per_mesh, meshes]),
+            "first": np.array(json.dumps(near.first)),
+        }
+
+    def renewed(self, kept: Mapping[str, np.ndarray]) -> _Near:
+        """See `Resumable`."""
+        per_mesh, meshes = (int(number) for number in kept["numbers"])
+        state = Neighbour(Guess(kept["values"], kept["orders"], per_mesh), meshes)
+        return self._begun(json.loads(str(kept["first"])))._replace(state=state)
 
     def _sensitivities(self, state: SteadyState, patterns: tuple[str, ...]) -> dict[str, Figure]:
         """By group and parameter; raises ParameterError if there are none."""

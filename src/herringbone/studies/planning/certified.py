@@ -18,6 +18,8 @@ FINER = 20.0
 """How much finer than the tolerance models are compared."""
 _LEAST, _LOOSEST = 1e-7, 0.05
 """Tolerances of a solver."""
+_TIGHTER, _LOWER = 4, 0.2
+"""How often a solver's tolerance is lowered, and by what."""
 _TIMES, _PRICED = 3, 6
 """Turns in which costs are measured, and at how many of the points."""
 
@@ -57,6 +59,7 @@ class Certifier:
         self.fine = tolerance_for(questions, 1.0 / FINER)
         self.tolerance = tolerance_for(questions, share)
         self._solver = solver.leaner(WHOLE, self.fine)
+        self._known: dict[Lean, SteadySolver] = {WHOLE: self._solver}
         self.states = [found for found in self._solved(self._solver, ()) if found is not None]
         if len(self.states) < len(points):
             raise ParameterError(
@@ -67,6 +70,16 @@ class Certifier:
             {question.name: lines_of(state, question) for question in questions}
             for state in self.states
         ]
+        self._tighten(share)
+
+    def _tighten(self, share: float) -> None:
+        """Lower the solver's tolerance, which is of groups of channels, until questions meet it."""
+        for _ in range(_TIGHTER):
+            states = self._solved(self.solver(WHOLE, self.tolerance), ())
+            found = self._worst(states)
+            if (found and found.ratio <= share) or self.tolerance <= self.fine:
+                return
+            self.tolerance = max(self.fine, _LOWER * self.tolerance)
 
     def _solved(
         self, solver: SteadySolver, near: Sequence[SteadyState]
@@ -81,13 +94,18 @@ class Certifier:
 
     def solver(self, lean: Lean, tolerance: float) -> SteadySolver:
         """What solves for a leaner model."""
-        return self._solver.leaner(lean, tolerance)
+        if lean not in self._known:
+            self._known[lean] = self._solver.leaner(lean)
+        return self._known[lean].leaner(WHOLE, tolerance)
 
     def error(self, lean: Lean) -> Worst | None:
         """The worst error of a leaner model; None if it has no steady state at a point."""
-        leaner = self._solved(self._solver.leaner(lean), self.states)
+        return self._worst(self._solved(self.solver(lean, self.fine), self.states))
+
+    def _worst(self, states: Sequence[SteadyState | None]) -> Worst | None:
+        """The worst error of states at the points; None if one of them is not there."""
         found: list[tuple[Point, dict[str, Apart]]] = []
-        for ours, theirs in zip(leaner, self.lines, strict=True):
+        for ours, theirs in zip(states, self.lines, strict=True):
             if ours is None:
                 return None
             by_name = {q.name: apart(q, lines_of(ours, q), theirs[q.name]) for q in self.questions}
@@ -103,7 +121,7 @@ class Certifier:
         again, the least time counts. How many iterations a point takes goes up and down from
         model to model, so that a median of few points would be chance, and a mean the noise of one.
         """
-        solvers = [self._solver.leaner(lean, self.tolerance) for lean in models]
+        solvers = [self.solver(lean, self.tolerance) for lean in models]
         points = self.points[:: -(-len(self.points) // most)]
         spent = np.full((rounds, len(models), len(points)), np.inf)
         with one_blas_thread():

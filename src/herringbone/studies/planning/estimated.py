@@ -8,6 +8,7 @@ from herringbone.analysis.leaner.estimate import Estimates
 from herringbone.analysis.leaner.question import Question
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.studies.planning.rung import SHARE, STEADY, Rung, Worst, worst
 
@@ -50,12 +51,15 @@ class Ladder:
 
     def estimate(self, lean: Lean) -> Worst:
         """The worst error of a leaner model at the probes."""
-        found = []
+        found, leaner = [], dict[Structure, Structure]()
         for state, estimates in zip(self._states, self._estimates, strict=True):
             if lean.only_held:
                 by_name = estimates.held(lean.held)
             else:
-                by_name = estimates.of(state.structure.leaner(lean))
+                own = state.structure  # most points share one
+                if own not in leaner:
+                    leaner[own] = own.leaner(lean)
+                by_name = estimates.of(leaner[own])
             found.append((state.point, by_name))
         return worst(self._questions, found)
 

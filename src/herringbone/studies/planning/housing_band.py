@@ -11,14 +11,12 @@ from herringbone.analysis.leaner.question import Apart, Lines, Question, apart, 
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.questions import USUAL, questions_of
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Scene
 from herringbone.studies.planning.points import first_point, points_to_probe
-from herringbone.studies.planning.steady_plan import questions_of
 
-_USUAL = tuple(Ask((what,)) for what in ("bearing force", "seat velocity"))
-"""What is looked at if the scene asks nothing."""
 _ROUND = 50.0
 """Bands are multiples of it [Hz]."""
 
@@ -66,7 +64,7 @@ class Asked(NamedTuple):
             HerringboneError: there is no steady state with it.
         """
         solver = _solver(self.system, self.scene, housing)
-        other = _lines(solver, self.scene, self.questions)
+        other = _lines(solver, self.scene, _questions(solver, self.scene))
         return [
             (
                 question,
@@ -88,11 +86,16 @@ def asked_of(system: str, scene: str | None, housing: Path | None) -> Asked:
     """
     own = load_scene(load_system(system)[1], scene)
     solver = _solver(system, own, housing)
-    questions = tuple(
-        Question(q.name, q.columns, Form.SPECTRUM, q.tolerance)
-        for q in questions_of(solver.structure.core, own.asks or _USUAL)
-    )
+    questions = _questions(solver, own)
     return Asked(system, own, questions, _lines(solver, own, questions))
+
+
+def _questions(solver: SteadySolver, scene: Scene) -> tuple[Question, ...]:
+    """All lines of what is asked, whatever its band."""
+    return tuple(
+        Question(q.name, q.columns, Form.SPECTRUM, q.tolerance, view=q.view)
+        for q in questions_of(solver.structure.core, scene.asks or USUAL)
+    )
 
 
 def _solver(system: str, scene: Scene, housing: Path | None) -> SteadySolver:

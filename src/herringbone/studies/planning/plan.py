@@ -11,12 +11,13 @@ from herringbone.analysis.twin.condensed.lean import WHOLE
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.analysis.twin.monolithic import refuse_foreign_parts
 from herringbone.core import ParameterError
-from herringbone.core.declaring.facts import Facts
+from herringbone.core.facts import Facts
 from herringbone.core.places.files import as_texts
 from herringbone.cosim.structure.system import System
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.at_point import prepared_at
 from herringbone.running.operating.lean import lean_of
-from herringbone.running.operating.steady import prepared_at
+from herringbone.running.operating.questions import questions_of
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 from herringbone.scenes import Model, Motion, Scene
@@ -24,7 +25,7 @@ from herringbone.studies.planning.certified import FINER, tolerance_for
 from herringbone.studies.planning.joint import Joint, joint_choices
 from herringbone.studies.planning.points import first_point
 from herringbone.studies.planning.rung import Rung
-from herringbone.studies.planning.steady_plan import questions_of, steady_rungs
+from herringbone.studies.planning.steady_plan import steady_rungs
 from herringbone.studies.planning.transient_plan import transient_rungs
 
 
@@ -81,6 +82,7 @@ def plan(
     gear: Gear | Mapping[str, Gear] | None = None,
     housing: Named | None = None,
     chart: bool = False,
+    for_fmu: bool = False,
 ) -> Plan:
     """The least model and the solver that answer what a scene asks.
 
@@ -89,6 +91,7 @@ def plan(
 
     Args:
         system, scene, values, gear, housing: see `herringbone.run`; the scene asks.
+        for_fmu: choose what an FMU can do without, as much as may go; states are its cost.
         chart: also solve joint choices of model and tolerance, for a picture; of steady states.
 
     Raises:
@@ -116,7 +119,9 @@ def plan(
         solver = SteadySolver(found.system)
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
-        rungs, certifier, said = steady_rungs(fine, questions, asking, lean_of(asking))
+        rungs, certifier, said = steady_rungs(
+            fine, questions, asking, lean_of(asking), for_fmu=for_fmu
+        )
         tolerance, charted = certifier.tolerance, certifier
     asking = replace(asking, values={**asking.values, **as_texts(values)})
     notes = (*found.notes, *said)

@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from herringbone.analysis.leaner.asked_for import asked_for
 from herringbone.analysis.leaner.question import Lines, Question, lines_of
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
-from herringbone.analysis.twin.fused.core import Core, Steps, closeness
+from herringbone.analysis.twin.fused.core import Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, LONGEST
 from herringbone.core import ParameterError
-from herringbone.scenes import Ask, Scene
+from herringbone.scenes import Scene
 from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.estimated import Ladder, frozen_where_they_bend
 from herringbone.studies.planning.marching import marched
@@ -30,27 +29,13 @@ _WORTH = 0.95
 """Cost over that of the whole model below which leaving something out is worth it."""
 
 
-def questions_of(core: Core, asks: Sequence[Ask]) -> list[Question]:
-    """What is asked, with all outputs by name.
-
-    Raises:
-        ParameterError: the system has no such output.
-    """
-    found: dict[str, Question] = {}
-    for ask in asks:
-        columns = dict.fromkeys(c for what in ask.what for c in asked_for(core, what))
-        own = Question(ask.name, tuple(columns), ask.form, ask.tolerance, ask.band, ask.orders)
-        known = found.get(ask.name)
-        if known is None or own.tolerance < known.tolerance:
-            found[ask.name] = own
-    return list(found.values())
-
-
 def steady_rungs(
     solver: SteadySolver,
     questions: Sequence[Question],
     scene: Scene,
     by_hand: Lean,
+    *,
+    for_fmu: bool = False,
 ) -> tuple[list[Rung], Certifier, list[str]]:
     """The ladder with its choice, what it was certified with, and what is to be said.
 
@@ -59,6 +44,7 @@ def steady_rungs(
         questions: what is asked.
         scene: that asks.
         by_hand: a leaner model that the user gave.
+        for_fmu: an FMU is wanted: what leaves out most is chosen, and states alone.
 
     Raises:
         ParameterError: there is no steady state where it is asked for.
@@ -67,7 +53,7 @@ def steady_rungs(
     for point in points_to_probe(scene.operating):
         states.append(_steady(solver, point, states[-1] if states else None))
     ladder = Ladder(solver, states, questions)
-    rungs = list(ladder.rungs())
+    rungs = [rung for rung in ladder.rungs() if rung.lean.only_held or not for_fmu]
     long = any(state.meshes > 1 for state in states)
     certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
     if by_hand:
@@ -78,7 +64,7 @@ def steady_rungs(
         for rung in rungs
         if ladder.allowed(rung) and not frozen_where_they_bend(rung.lean, certifier.states)
     ]
-    tried = _cheapest(certifier, may)
+    tried = _leanest(may) if for_fmu else _cheapest(certifier, may)
     certified = {
         id(rung): replace(rung, measured=certifier.error(rung.lean))
         for rung in (*tried, *([hand] if hand and hand not in tried else []))
@@ -91,7 +77,13 @@ def steady_rungs(
     every = [replace(whole, cost=costs[0])]
     every += [_run(solver, questions, scene)]
     every += [replace(rung, cost=cost_of.get(id(rung))) for rung in rungs]
-    return _chosen(every), certifier, _remarks(questions, states)
+    chosen = _chosen(every, leanest=for_fmu)
+    return chosen, certifier, _remarks(questions, states)
+
+
+def _leanest(rungs: Sequence[Rung]) -> list[Rung]:
+    """Those that leave out most."""
+    return sorted(rungs, key=lambda rung: -len(rung.lean.held))[:_TRIED]
 
 
 def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
@@ -118,21 +110,24 @@ def _run(solver: SteadySolver, questions: Sequence[Question], scene: Scene) -> R
     return Rung(name, FUSED, cost=cost, step=steps.length, why="dearer")
 
 
-def _chosen(rungs: Sequence[Rung]) -> list[Rung]:
+def _chosen(rungs: Sequence[Rung], *, leanest: bool) -> list[Rung]:
     """The rungs, each with why it is not the choice."""
     priced = [rung for rung in rungs if rung.cost is not None and rung.solver == STEADY]
-    cheapest = min(priced, key=lambda rung: rung.cost or 0.0)
     whole = rungs[0]
+    if leanest:
+        leaner = max(priced, key=lambda rung: len(rung.lean.held))
+        return [replace(rung, why=_why(rung, leaner, "more is in it")) for rung in rungs]
+    cheapest = min(priced, key=lambda rung: rung.cost or 0.0)
     if (cheapest.cost or 0.0) > _WORTH * (whole.cost or 0.0):
         cheapest = whole
     return [replace(rung, why=_why(rung, cheapest)) for rung in rungs]
 
 
-def _why(rung: Rung, choice: Rung) -> str:
+def _why(rung: Rung, choice: Rung, dearer: str = "dearer") -> str:
     if rung is choice:
         return ""
     if rung.cost is not None:
-        return "no cheaper" if choice.whole else "dearer"
+        return "no cheaper" if choice.whole else dearer
     if rung.measured is not None and rung.measured.ratio > SHARE:
         return "its measured error is above half of the tolerance"
     return rung.why or "not tried: others cost less or leave out more"

@@ -21,7 +21,7 @@ def plan_text(plan: Plan) -> list[str]:
     """Lines for people."""
     lines = [f"Plan for {plan.system}, scene {plan.scene.name}"]
     lines += [
-        f"  asked: {question.name}, {len(question.columns)} outputs, to "
+        f"  asked: {question.name}, {len(question.outputs)} outputs, to "
         f"{100.0 * question.tolerance:g} %"
         for question in plan.questions
     ]

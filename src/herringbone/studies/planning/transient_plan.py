@@ -50,7 +50,7 @@ def transient_rungs(
         except HerringboneError:
             finer = None
             continue
-        found = _worst(questions, columns, ours, finer)
+        found = worst_of(questions, columns, ours, finer)
         name = f"whole model, steps of {1e6 * steps.length:.4g} us, degree {steps.degree}"
         rung = Rung(name, FUSED, measured=found, cost=ours.seconds, step=steps.length)
         if found.ratio <= _SAFE:
@@ -72,23 +72,38 @@ def _run(core: Core, scene: Scene, steps: Steps, columns: Sequence[str]) -> Marc
     return marched(core, scene.t_end, scene.record_step, steps, columns)
 
 
-def _worst(
+def worst_of(
     questions: Sequence[Question], columns: Sequence[str], ours: Marched, theirs: Marched
 ) -> Worst:
-    """The largest difference over its tolerance, against what varies within a turn of the shaft."""
+    """The largest difference over its tolerance, against what varies within a turn of the shaft.
+
+    Args:
+        questions: what is asked.
+        columns: of both marches.
+        ours, theirs: at the same times; theirs is the better one.
+    """
     place = {name: k for k, name in enumerate(columns)}
     window = round(TURN / (theirs.times[1] - theirs.times[0]))
     found = []
     for question in questions:
         own = [place[name] for name in question.columns]
-        off = np.sqrt(np.mean((ours.values[:, own] - theirs.values[:, own]) ** 2, axis=0))
-        size = np.std(_less_slow(theirs.values[:, own], window), axis=0)
+        one, other = (_rows(question, each, own) for each in (ours, theirs))
+        off = np.sqrt(np.mean((one - other) ** 2, axis=0))
+        size = np.std(_less_slow(other, window), axis=0)
         whole = float(np.linalg.norm(size))
         single = np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), 0.0)
         k = int(single.argmax())
         error = float(np.linalg.norm(off)) / whole if whole else 0.0
-        found.append(Worst(error, question, question.columns[k], float(single[k]), Point()))
+        found.append(Worst(error, question, question.outputs[k], float(single[k]), Point()))
     return max(found, key=lambda each: each.ratio)
+
+
+def _rows(question: Question, march: Marched, columns: Sequence[int]) -> np.ndarray:
+    """What is asked for (times, outputs)."""
+    values = march.values[:, columns]
+    if question.view is None:
+        return values
+    return question.view.signals(values, march.times[1] - march.times[0])
 
 
 def _less_slow(values: np.ndarray, window: int) -> np.ndarray:

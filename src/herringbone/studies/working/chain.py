@@ -1,11 +1,10 @@
 """What a worker does: a chain of points, each from the one before, and what they cost."""
 
-import json
 import os
 from collections import OrderedDict
 from collections.abc import Callable
-from contextlib import AbstractContextManager, chdir, nullcontext, suppress
-from dataclasses import asdict, dataclass, field
+from contextlib import AbstractContextManager, chdir, nullcontext
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +12,15 @@ from herringbone.core import HerringboneError
 from herringbone.core.freed_memory import keep_freed_memory
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.result.result import Result
-from herringbone.studies.evaluators.evaluator import Base, Evaluated, Evaluation, Evaluator
+from herringbone.studies.evaluators.evaluator import (
+    Base,
+    Evaluated,
+    Evaluation,
+    Evaluator,
+    Resumable,
+)
 from herringbone.studies.study import Point
+from herringbone.studies.working.so_far import Begun, Row, SoFar
 
 FAILED = "failed"
 """Outcome of a point that could not begin."""
@@ -32,7 +38,7 @@ class Job:
         base, evaluator: of the study.
         points: of the chain.
         series: hand on rows over time.
-        so_far: file into which each row goes at once, for who watches; "": none.
+        so_far: file into which each row goes at once, see `SoFar`; "": none.
     """
 
     common: str
@@ -41,15 +47,6 @@ class Job:
     points: tuple[Point, ...]
     series: bool = False
     so_far: str = ""
-
-
-@dataclass(frozen=True)
-class Row:
-    """What the table tells of a point besides its parameters."""
-
-    outcome: str
-    message: str
-    figures: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -81,42 +78,53 @@ def run_chain(job: Job, progress: Callable[[int], None] = lambda points: None) -
     """
     keep_freed_memory()
     before = cpu_seconds()
-    rows, series = [], {}
+    rows: list[Row] = []
+    series: dict[int, Result] = {}
     units: dict[str, str] = {}
     near: Any = None
+    so_far = SoFar(Path(job.so_far)) if job.so_far else None
     with one_blas_thread(), _in_folder(job.base.folder):
         evaluate = _evaluation(job)
-        for place, point in enumerate(job.points):
+        if resumed := _resumed(job, evaluate):
+            begun, near = resumed
+            rows, units, before = list(begun.rows), begun.units, before - begun.cpu
+            progress(len(rows))
+        for place, point in enumerate(job.points[len(rows) :], len(rows)):
             found = _evaluated(evaluate, point, near, series=job.series)
             near = near if found.state is None else found.state
             figures = {name: float(figure.value) for name, figure in found.figures.items()}
+            own = {name: figure.unit for name, figure in found.figures.items()}
             rows.append(Row(found.outcome, found.message, figures))
-            units |= {name: figure.unit for name, figure in found.figures.items()}
+            units |= own
             if found.series is not None:
                 series[place] = found.series
-            if job.so_far:
-                _append(Path(job.so_far), rows[-1], found)
+            if so_far:
+                so_far.add(place, rows[-1], own)
+                if near is not None and isinstance(evaluate, Resumable) and so_far.is_due:
+                    so_far.keep(len(rows), cpu_seconds() - before, evaluate.kept(near))
             progress(1)
     return Done(tuple(rows), units, cpu_seconds() - before, series)
-
-
-def _append(file: Path, row: Row, found: Evaluated) -> None:
-    """Add a row to those so far; a worker elsewhere may not have the folder: none are seen then."""
-    units = {name: figure.unit for name, figure in found.figures.items()}
-    with suppress(OSError), file.open("a", encoding="utf-8") as stream:
-        stream.write(json.dumps([asdict(row), units]) + "\n")
 
 
 def read_so_far(file: Path) -> Done | None:
     """The rows so far of a chain that is not whole; None if there are none."""
     rows: list[Row] = []
     units: dict[str, str] = {}
-    with suppress(OSError, ValueError):  # the last line may be half there
-        for line in file.read_text(encoding="utf-8").splitlines():
-            row, own = json.loads(line)
-            rows.append(Row(**row))
-            units |= own
+    for row, own in SoFar(file).rows():
+        rows.append(row)
+        units |= own
     return Done(tuple(rows), units, 0.0) if rows else None
+
+
+def _resumed(job: Job, evaluate: Evaluation) -> tuple[Begun, Any] | None:
+    """What stands of a chain, and the neighbour of its next point; None: it begins anew."""
+    begun = SoFar(Path(job.so_far)).begin() if job.so_far and not job.series else None
+    if begun is None or not isinstance(evaluate, Resumable):
+        return None
+    try:
+        return begun, evaluate.renewed(begun.kept)
+    except (HerringboneError, KeyError, ValueError):
+        return None
 
 
 def _evaluated(evaluate: Evaluation, point: Point, near: Any, *, series: bool) -> Evaluated:  # noqa: ANN401

@@ -103,6 +103,32 @@ def test_frozen_laws_differ_by_what_is_estimated_and_are_straight() -> None:
     assert np.abs(off[2] - off[0]).max() > 1e3  # 30 um against 1e8 N/m and more
 
 
+def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
+    """Run-outs of a pair without common factors: constant slopes leave other lines."""
+    gear = tmp_path / "pair.toml"
+    gear.write_text(
+        '[gear_pair]\nnumber_of_teeth = [23, 71]\nnormal_module = "3 mm"\n'
+        'helix_angle = "25 deg"\nface_width = "40 mm"\ngap_width = "40 mm"\n'
+        'stub_length = "60 mm"\nshaft_diameter = ["45 mm", "45 mm"]\n'
+        '[mesh]\nbacklash = "120 um"\n[table]\ntorque = "200 N m"\n'
+        'method = "coupled-slices"\nphases = 16\n',
+        encoding="utf-8",
+    )
+    point, wishes = (
+        Point(570.0 * math.pi / 30.0, 270.0),
+        Wishes(gear=gear, values={"gear_mesh.symmetry_deviation": 5e-6}),
+    )
+    solver, _ = prepared_solver("gearbox", point=point, wishes=wishes, tolerance=1e-3)
+    state = solver.solve(point)
+    assert state.meshes == 23 * 71
+    force = Question("force", tuple(state.chosen("bearing_force")), Form.LEVEL, 0.01)
+    for lean in (Lean(frozen=("gear_mesh",)), Lean(linear=("gear_mesh",))):
+        leaner = solver.leaner(lean).solve(point, state)
+        truth = apart(force, lines_of(leaner, force), lines_of(state, force)).error
+        estimate = Estimates(state, (force,), ()).of(state.structure.leaner(lean))["force"].error
+        assert 0.5 * truth <= estimate <= 2.0 * truth  # without these lines 0.19 of it
+
+
 def test_modes_are_ranked_by_what_they_do_and_not_by_their_frequency() -> None:
     solver, state, questions = _rig()
     modes = modes_of(solver.structure)

@@ -79,6 +79,12 @@ def test_clocks_are_refused(tmp_path):
         read_fmu(write(tmp_path, more=clock))
 
 
+def test_an_alias_without_a_name_is_refused(tmp_path):
+    more = '<Float64 name="a" valueReference="50"><Dimension start="2"/><Alias/></Float64>'
+    with pytest.raises(FmuError, match="the variable of reference 50 has no name"):
+        read_fmu(write(tmp_path, more=more))
+
+
 def test_model_exchange_only(tmp_path):
     file = write(tmp_path, "ModelExchange")
     with pytest.raises(

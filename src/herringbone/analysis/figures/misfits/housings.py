@@ -57,6 +57,24 @@ def _of_seats(
     """Lines on the place of the wheel's seats, from those of the pinion."""
     radii = of_both_gears(result, gear, Quantity.BASE_RADIUS)
     angle = parameter(result, bearing, Quantity.WORKING_PRESSURE_ANGLE)
+    yield from seats_elsewhere((part, gear, bearing), housing, radii, angle)
+
+
+def seats_elsewhere(
+    names: tuple[str, str, str],
+    housing: ModalHousing,
+    radii: tuple[float, float] | None,
+    angle: float | None,
+) -> Iterator[str]:
+    """Lines on the place of the wheel's seats, from those of the pinion.
+
+    Args:
+        names: of housing, gear pair and bearing.
+        housing: its modal data.
+        radii: base radii of pinion and wheel [m].
+        angle: working pressure angle of the bearing [rad].
+    """
+    part, gear, bearing = names
     across = _across(housing)
     if across is None:
         return

@@ -9,13 +9,13 @@ gives the step of any length, as long as h0 resolves the motions: their angles p
 below pi, and they must not have died out within one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import expm, logm
 
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 
 _ROUNDING = 1e-13
 """Singular values below this share of the largest one are rounding."""
@@ -93,8 +93,19 @@ class LinearModel:
     b: np.ndarray
     c: np.ndarray
     d: np.ndarray
-    given: tuple[Given, ...]
+    given: tuple[InputRule, ...]
     rates: tuple[int, ...]
+
+    def as_lists(self) -> dict[str, list]:
+        """All of it, as JSON may hold it."""
+        matrices = {name: getattr(self, name).tolist() for name in "abcd"}
+        return {**matrices, "given": [int(g) for g in self.given], "rates": list(self.rates)}
+
+    @classmethod
+    def from_lists(cls, of: Mapping[str, list]) -> "LinearModel":
+        """The model that `as_lists` gave."""
+        a, b, c, d = (np.array(of[name], dtype=float) for name in "abcd")
+        return cls(a, b, c, d, tuple(map(InputRule, of["given"])), tuple(map(int, of["rates"])))
 
     def over(self, h: float) -> Step:
         """A step of length h [s]."""
@@ -103,23 +114,23 @@ class LinearModel:
         b, d = held.copy(), self.d.copy()
         for number, (k, rate) in enumerate(moving):
             b[:, rate] += slope[:, number]
-            if self.given[k] is Given.START:
+            if self.given[k] is InputRule.START:
                 d[:, rate] += h * self.d[:, k]
             else:
                 b[:, rate] -= h * held[:, k]
         return Step(a, b, self.c @ a, self.c @ b + d)
 
 
-def _moving(given: Sequence[Given], rates: Sequence[int]) -> list[tuple[int, int]]:
+def _moving(given: Sequence[InputRule], rates: Sequence[int]) -> list[tuple[int, int]]:
     return [
         (k, rate)
         for k, (rule, rate) in enumerate(zip(given, rates, strict=True))
-        if rule is not Given.MEAN and rate >= 0
+        if rule is not InputRule.MEAN and rate >= 0
     ]
 
 
 def in_continuous_time(
-    step: Step, h: float, given: Sequence[Given], rates: Sequence[int]
+    step: Step, h: float, given: Sequence[InputRule], rates: Sequence[int]
 ) -> LinearModel | None:
     """The model whose step of length h [s] is this one; None if it has none."""
     values = np.linalg.eigvals(step.a)
@@ -138,7 +149,7 @@ def in_continuous_time(
     d, b = step.d - c @ step.b, np.linalg.solve(whole, step.b)
     for k, rate in _moving(given, rates):
         moved = np.linalg.solve(whole, slope @ b[:, k])
-        if given[k] is Given.START:
+        if given[k] is InputRule.START:
             b[:, rate] -= moved
             d[:, rate] -= h * d[:, k]
         else:

@@ -23,7 +23,7 @@ from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import amplitude
 from herringbone.cosim.signature.laboratory import Laboratory
-from herringbone.cosim.signature.rotation import Given
+from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.signature import Signature
 from herringbone.cosim.signature.trial import Refused
 
@@ -251,16 +251,16 @@ class Surrogate:
 
 def _rules(
     signature: Signature, inputs: Sequence[str]
-) -> tuple[tuple[Given, ...], tuple[int, ...]]:
+) -> tuple[tuple[InputRule, ...], tuple[int, ...]]:
     """How the part takes each of these inputs, and the number of its rate among them, or -1."""
-    given, rates = [Given.MEAN] * len(inputs), [-1] * len(inputs)
+    given, rates = [InputRule.MEAN] * len(inputs), [-1] * len(inputs)
     known = dict(
         zip(
             signature.inputs, zip(signature.given, signature.rate_inputs, strict=True), strict=False
         )
     )
     for number, name in enumerate(inputs):
-        rule, rate = known.get(name, (Given.MEAN, -1))
+        rule, rate = known.get(name, (InputRule.MEAN, -1))
         if rate >= 0 and signature.inputs[rate] in inputs:
             given[number], rates[number] = rule, inputs.index(signature.inputs[rate])
     return tuple(given), tuple(rates)

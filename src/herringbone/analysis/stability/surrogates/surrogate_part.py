@@ -14,7 +14,7 @@ import numpy as np
 from herringbone.analysis.stability.surrogates.identification import Step
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
-from herringbone.core.part import Addresses, Given, Part, PartVariable, Value
+from herringbone.core.part import Addresses, Part, PartVariable, Value, ValueOrArray
 from herringbone.cosim.nodal import NodalPart
 from herringbone.kernels import fmi_calls
 from herringbone.kernels.stepping.answered_step import HEADER, KNOWN, answered_step, read_answers
@@ -171,7 +171,7 @@ class SurrogatePart:
         self._states[-1][0] = count
         return self._states[-1].ctypes.data
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable."""
         self._memory[self.variables[name].reference] = value
 

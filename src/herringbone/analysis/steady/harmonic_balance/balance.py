@@ -27,6 +27,8 @@ _ITERATIONS = 40
 _EASY = 8
 """Iterations after which the laws' whole slopes are taken."""
 _HALVINGS = 6
+_STALLED, _LESS = 10, 0.5
+"""Of many meshes: iterations in which the residual has to fall to this share of its least one."""
 _SMALL = 0.03
 """Change so small that it is taken whatever the residual: what the laws' harmonics that Newton does
 not solve for give makes it rise a little."""
@@ -132,6 +134,7 @@ class Balance:
         problem = self.problem
         now, count = self._begun(values, known), problem.values
         part, merit, change, iterations, last = 1.0, np.inf, np.inf, 0, now
+        least, since = np.inf, 0
         stepped = now.response.orders
         step = np.zeros((count, stepped.size))
         while iterations < _ITERATIONS:
@@ -149,6 +152,10 @@ class Balance:
             if not np.isfinite(merit):
                 break
             hard = iterations > _EASY
+            if merit <= _LESS * least:
+                least, since = merit, iterations
+            if self.period.meshes > 1 and iterations - since >= _STALLED:
+                break
             step, part = self._correction(now.response, samples, off, whole=hard), 1.0
             last, now, stepped = now, self._moved(now, step), now.response.orders
             change = self._change(last.z, now.z)
@@ -262,7 +269,11 @@ class Balance:
     def _size(self, samples: Samples, off: np.ndarray, orders: np.ndarray) -> float:
         """How far stiff values are off, over their sizes."""
         stiff = self.problem.stiff
-        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0) + np.finfo(float).tiny
+        size = np.abs(samples.f[:, stiff]).max(axis=0, initial=0.0)
+        if not size.all():  # contacts that are open all the time
+            rest = samples.f[:, stiff] - samples.z @ self.problem.tangent[stiff].T
+            size = np.where(size > 0.0, size, np.abs(rest).max(axis=0, initial=0.0))
+        size += np.finfo(float).tiny
         low = orders <= self.period.order * self.period.meshes
         return float(np.linalg.norm(off[stiff][:, low] / size[:, None]))
 

@@ -65,7 +65,7 @@ def gmres(product, inverse, right: np.ndarray, close: float) -> np.ndarray:  # n
     """
     first = inverse(right)
     size = _norm(first)
-    if size == 0.0:
+    if size == 0.0 or not np.isfinite(size):
         return first
     basis = [first / size]
     matrix = np.zeros((_MOST + 1, _MOST))
@@ -77,6 +77,8 @@ def gmres(product, inverse, right: np.ndarray, close: float) -> np.ndarray:  # n
             matrix[j, k] = _inner(vector, ahead)
             ahead -= matrix[j, k] * vector
         matrix[k + 1, k] = _norm(ahead)
+        if not np.isfinite(matrix[k + 1, k]):
+            break  # no linear algebra ends on that
         shares, *_ = np.linalg.lstsq(matrix[: k + 2, : k + 1], wanted[: k + 2], rcond=None)
         left = np.linalg.norm(matrix[: k + 2, : k + 1] @ shares - wanted[: k + 2])
         if left <= close * size or matrix[k + 1, k] <= close * 1e-3:

@@ -6,14 +6,14 @@ are not felt by them. Nothing of a component is changed, so that a leaner model 
 steady states are found, as those of the whole one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from herringbone.analysis.twin.condensed.equations import Equations
 from herringbone.analysis.twin.monolithic import Twin
-from herringbone.core import StructureError
+from herringbone.core import Instance, StructureError
 from herringbone.core.names import shown
 
 _NONE = 1e-9
@@ -60,8 +60,13 @@ WHOLE = Lean()
 
 def state_names(twin: Twin) -> tuple[str, ...]:
     """Names of all states, `instance.state`; elements of vectors are `x[1]`, `der(x[1])`, ..."""
+    return names_of_states(twin.instances)
+
+
+def names_of_states(instances: Iterable[Instance]) -> tuple[str, ...]:
+    """The same of instances, in their order."""
     found = []
-    for instance in twin.instances:
+    for instance in instances:
         declaration = instance.component.declaration
         own = [v.name for v in declaration.states]
         for vector in declaration.vectors:

@@ -18,7 +18,7 @@ from herringbone.analysis.twin.fused.core import Core, Steps
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.one_thread import one_blas_thread
-from herringbone.core.part import Addresses, Given, PartVariable, Value
+from herringbone.core.part import Addresses, PartVariable, Value, ValueOrArray
 from herringbone.cosim.rows.recording import CoreStatistics
 from herringbone.kernels.signals import STRIDE
 
@@ -207,7 +207,7 @@ class CorePart:
         self._states.append(np.zeros(self._saved_size))
         return self._states[-1].ctypes.data
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set an input before or during initialisation, or the degree of the signals."""
         number = float(value)  # type: ignore[arg-type]  # a number
         if name == INTERFACE_DEGREE:

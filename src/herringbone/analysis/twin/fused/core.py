@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.accuracy.apart import outputs_in
 from herringbone.analysis.twin.condensed.equations import take_apart
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner
 from herringbone.analysis.twin.condensed.outputs import (
@@ -162,7 +163,7 @@ class Core:
             return {group: names for group, names in found.items() if names}
         by_unit: dict[str, list[str]] = {}
         for name in self.names:
-            by_unit.setdefault(f"outputs in {self.unit(name) or '1'}", []).append(name)
+            by_unit.setdefault(outputs_in(self.unit(name)), []).append(name)
         return by_unit
 
     def unit(self, name: str) -> str:

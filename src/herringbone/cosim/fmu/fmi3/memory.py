@@ -39,17 +39,30 @@ MEMORY = np.dtype(
 )
 """What an FMU 3.0 is for its adapters.
 
-instance, and the addresses of its functions; count of elements; addresses of the elements, of their
-last values (float64), and of the value references (uint32) and values (float64) of the current
-call, and of the first elements of the inputs that are arrays (uint32), with their number; number of
-calls; ended: why no step follows, see `ENDED`; saved: the same, of the state saved last; address of
-the time reached by the last step (float64); events: 1 in step mode if event mode is used; addresses
-of fmi3EnterEventMode, fmi3UpdateDiscreteStates and fmi3EnterStepMode; address of the flags that
-they return (uint8 and, from the eighth on, float64).
+    instance ... get_derivatives  the FMU's instance, and the addresses of its functions
+    count, elements, values       of elements: number, address of them, of their last values
+                                  (float64)
+    references, packed            of the current call: addresses of value references (uint32) and
+                                  values (float64)
+    arrays, array_count           of inputs that are arrays: address of their first elements
+                                  (uint32), and number
+    calls                         number of calls
+    ended, saved                  why no step follows, see `ENDED`; that of the state saved last
+    reached                       address of the time that the last step reached (float64)
+    events                        1 in step mode if event mode is used
+    enter_events, update, enter_steps
+                                  addresses of fmi3EnterEventMode, fmi3UpdateDiscreteStates and
+                                  fmi3EnterStepMode
+    flags                         address of what they return (uint8; from the eighth on, float64)
 
-Of inputs that change within the next step: their number; addresses of their elements (uint32), and,
-for all elements, of the derivatives (ORDERS each) and values (float64) at the start of the step;
-when the step began [s]; number of steps with such inputs; how often the FMU asked for inputs.
+Of inputs that change within the next step:
+
+    bent, bent_inputs             their number, and address of their elements (uint32)
+    slopes, starts                of all elements: addresses of the derivatives (ORDERS each) and
+                                  values (float64) at the start of the step
+    began                         when the step began [s]
+    steps_bent                    number of steps with such inputs
+    asked                         how often the FMU asked for inputs
 """
 ORDERS = 4
 """Highest order of derivatives of an input."""

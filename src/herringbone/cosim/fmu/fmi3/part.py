@@ -16,7 +16,7 @@ from fmpy.fmi3 import (
 )
 
 from herringbone.core import FmuError, ParameterError
-from herringbone.core.part import STRUCTURE, Addresses, Given, Value
+from herringbone.core.part import STRUCTURE, Addresses, Value, ValueOrArray
 from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.fmi3 import memory
 from herringbone.cosim.fmu.fmi3.adapters import adapter
@@ -168,7 +168,7 @@ class Fmu3Part(FmuPart):
             found = found._replace(set_derivatives=adapter("set_derivatives"))
         return found
 
-    def set(self, name: str, value: Given) -> None:
+    def set(self, name: str, value: ValueOrArray) -> None:
         """Set a variable; a structural parameter also sets the sizes of arrays.
 
         Raises:

@@ -84,6 +84,12 @@ typedef struct {
     uint32_t since;       /* index of the local that has the time at which the input was set */
 } HbRunsOn;
 
+/* What is logged once, as soon as it holds; the format is as that of a refusal. */
+typedef struct {
+    const char *format;
+    uint8_t warning; /* 0: a matter of course */
+} HbRemark;
+
 typedef struct {
     const char *name;    /* FMI model identifier */
     const char *token;   /* guid of FMI 2, instantiationToken of FMI 3 */
@@ -139,6 +145,10 @@ typedef struct {
        that line of `not_settled` is logged, counted from 1. */
     int32_t (*settle)(double *b, double t);
     const char *const *not_settled;
+    /* Whether a remark holds, with its numbers for the format; after `out`. */
+    uint32_t remarks_count;
+    const HbRemark *remarks;
+    int32_t (*remark)(double *b, double *w, int32_t which, double *report);
     uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
     uint32_t runs_on_count;
     const HbRunsOn *runs_on;

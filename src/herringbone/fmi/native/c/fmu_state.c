@@ -116,6 +116,7 @@ Status instance_set_state(Instance *instance, void *handle) {
                          state->moment.phase != PHASE_INSTANTIATED &&
                          state->moment.phase != PHASE_TERMINATED;
     instance->rates_outdated = true;
+    instance->steps = 0;
     return STATUS_OK;
 }
 

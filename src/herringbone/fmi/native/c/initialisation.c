@@ -181,6 +181,8 @@ Status instance_exit_initialisation(Instance *instance) {
     }
     if (hb_component.settle && !instance->model_exchange) /* the first step is not longer then */
         hb_component.step(instance->block, instance->work, instance->now.time, 0.0);
+    if (!instance->model_exchange)
+        instance_tell_remarks(instance);
     double *signal = instance->block + hb_component.first_output;
     for (uint32_t k = 0; k < hb_component.node_outputs; k++, signal += HB_STRIDE)
         for (int node = 1; node < HB_STRIDE; node++)

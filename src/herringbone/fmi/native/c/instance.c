@@ -43,7 +43,7 @@ static size_t previous_length(void) {
 static bool allocate(Instance *instance) {
     size_t saved = slopes_length() + previous_length();
     size_t length = saved + hb_component.size + hb_component.work + hb_component.states +
-                    hb_component.indicators_count + 1;
+                    hb_component.indicators_count + (JUMPS + 1) * hb_component.inputs + 1;
     instance->slopes = calloc(length, sizeof(double));
     if (!instance->slopes)
         return false;
@@ -52,6 +52,8 @@ static bool allocate(Instance *instance) {
     instance->work = instance->block + hb_component.size;
     instance->rates = instance->work + hb_component.work;
     instance->indicators = instance->rates + hb_component.states;
+    instance->ahead = instance->indicators + hb_component.indicators_count;
+    instance->jumps = instance->ahead + hb_component.inputs;
     return true;
 }
 
@@ -71,6 +73,8 @@ static bool start(Instance *instance) {
     instance->outdated = false;
     instance->rates_outdated = true;
     instance->not_settled = 0;
+    instance->told = 0;
+    instance->steps = 0;
     return true;
 }
 

@@ -36,6 +36,9 @@ typedef struct {
     uint32_t derivatives; /* bit k: the host gave a derivative of input k for the next step */
 } Moment;
 
+/* So many changes of each input are kept for messages. */
+enum { JUMPS = 16 };
+
 typedef struct FmuState FmuState;
 
 /* Why the host is called within a step: for its inputs at `now.time`, or as that has been reached. */
@@ -50,6 +53,7 @@ struct Instance {
     bool outdated;       /* outputs must be computed before they are read */
     bool rates_outdated; /* derivatives of the states, too */
     int32_t not_settled; /* line that says what start was not found; 0: none */
+    uint32_t told;       /* bit k: remark k was logged since the start of initialisation */
     Moment now;
     Texts *texts;
     FmuState *states; /* those that the host has not freed */
@@ -60,6 +64,10 @@ struct Instance {
     double *block, *work;
     double *rates;      /* derivatives of the states */
     double *indicators; /* work space for event indicators */
+
+    double *ahead;      /* inputs at the end of the last step, as they would run on */
+    double *jumps;      /* [inputs][JUMPS] of the last steps: by what the host changed them */
+    uint32_t steps;     /* so many steps are known of */
 
     double *direction; /* of directional derivatives; NULL until one is asked for */
 
@@ -94,6 +102,17 @@ Status instance_read_resources(Instance *instance);
 /* Compute outdated outputs; outdated derivatives of the states. */
 Status instance_refresh(Instance *instance);
 Status instance_refresh_rates(Instance *instance);
+
+/* inputs.c: what the host did to the inputs in the last steps, for messages alone.
+
+   Before and after a step; of a step that failed, tells if an input is the cause: it jumps, or jumps
+   that change sign and grow show an unstable loop. False if the inputs are steady. */
+void instance_note_inputs(Instance *instance);
+void instance_note_ahead(Instance *instance);
+bool instance_blame_input(Instance *instance, double step_size);
+
+/* remarks.c: log what holds now and was not told before. */
+void instance_tell_remarks(Instance *instance);
 
 /* reals.c: what messages call a real, "" for a hidden state; the node is "" or ".node1" ... */
 const char *real_name(uint32_t reference);

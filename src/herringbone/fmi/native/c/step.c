@@ -21,16 +21,19 @@ static uint32_t first_not_finite(const Instance *instance) {
 enum { INNER_STEPS_TOO_SMALL = 3 };
 
 static Status explain_failure(Instance *instance, int32_t failed, double step_size) {
-    if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
-        return instance_fail(instance, STATUS_DISCARD,
-                             "%s: the tolerance %g asks for inner steps below 1e-10 s in a step of "
-                             "%g s, whatever the communication step size; give a larger tolerance, "
-                             "or check the inputs for jumps",
-                             instance->name, instance->block[hb_component.tolerance], step_size);
     if (hb_component.longest_step && step_size > hb_component.longest_step(instance->block))
         return instance_fail(instance, STATUS_DISCARD,
                              "%s: step size %g s; one call takes at most %g s", instance->name,
                              step_size, hb_component.longest_step(instance->block));
+    instance_tell_remarks(instance);
+    if (hb_component.tolerance && instance_blame_input(instance, step_size))
+        return STATUS_DISCARD;
+    if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
+        return instance_fail(instance, STATUS_DISCARD,
+                             "%s: the tolerance %g asks for inner steps below 1e-10 s under steady "
+                             "inputs: the inner step is the cause, whatever the communication step "
+                             "size; give a larger tolerance, or smaller inputs",
+                             instance->name, instance->block[hb_component.tolerance]);
     uint32_t i = first_not_finite(instance);
     bool found = i < hb_component.first_table;
     const char *name = found ? real_name(i) : "result", *unit = found ? real_unit(i) : "";
@@ -113,11 +116,14 @@ Status instance_step(Instance *instance, double time, double step_size) {
            (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
+    instance_note_inputs(instance);
     int32_t failed = step_along_inputs(instance, time, step_size);
     instance->rates_outdated = true;
     if (failed)
         return explain_failure(instance, failed, step_size);
     now->time = time + step_size;
+    instance_note_ahead(instance);
+    instance_tell_remarks(instance);
     if (instance->update)
         instance->update(instance, UPDATE_REACHED);
     return STATUS_OK;

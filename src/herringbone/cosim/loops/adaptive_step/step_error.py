@@ -94,7 +94,6 @@ def _difference(
 def step_error(
     nodes: NodeLayout,
     buffers: Buffers,
-    group: np.ndarray,
     held: np.ndarray,
     squares: np.ndarray,
     known: int,
@@ -106,7 +105,6 @@ def step_error(
 
     Args:
         nodes, buffers: as the last pass left them.
-        group: of each unknown, those of the same unit.
         held: 1 for unknowns that a body holds over the step.
         squares: (2, groups): of the errors of coupling and inner steps, summed over the unknowns.
         known: communication points passed, the start included.
@@ -137,10 +135,10 @@ def step_error(
         error = np.sqrt(coupling * coupling + inner * inner) / buffers.scale[k]
         if error - error != 0.0:
             return np.inf, k
-        squares[COUPLING, group[k]] += coupling * coupling
-        squares[INNER_STEPS, group[k]] += inner * inner
-        relative[group[k]] += error * error
-        count[group[k]] += 1.0
+        squares[COUPLING, nodes.group[k]] += coupling * coupling
+        squares[INNER_STEPS, nodes.group[k]] += inner * inner
+        relative[nodes.group[k]] += error * error
+        count[nodes.group[k]] += 1.0
         if error > largest:
             largest, culprit = error, k
     worst = 0.0
@@ -150,20 +148,17 @@ def step_error(
 
 
 @allocating
-def error_so_far(
-    nodes: NodeLayout, buffers: Buffers, group: np.ndarray, errors: np.ndarray, covered: float
-) -> float:
+def error_so_far(nodes: NodeLayout, buffers: Buffers, errors: np.ndarray, covered: float) -> float:
     """Relative error of the run so far, of the group that errs most.
 
     Args:
         nodes, buffers: after `update_scale`.
-        group: of each unknown.
         errors: (2, groups): integrals of the squares of `step_error` over time.
         covered: time since the start [s].
     """
     sizes = np.zeros(errors.shape[1])
     for k in range(nodes.unknown.size):
-        sizes[group[k]] += covered * buffers.scale[k] ** 2
+        sizes[nodes.group[k]] += covered * buffers.scale[k] ** 2
     worst = 0.0
     for g in range(sizes.size):
         if sizes[g] > 0.0:
@@ -175,7 +170,6 @@ def error_so_far(
 def update_scale(
     nodes: NodeLayout,
     buffers: Buffers,
-    group: np.ndarray,
     moments: np.ndarray,
     times: np.ndarray,
     memory: float,
@@ -185,7 +179,6 @@ def update_scale(
 
     Args:
         nodes, buffers: as the last pass left them; the scale is written.
-        group: of each unknown.
         moments: (5, unknowns): see SUM ... DEVIATION.
         times: (4,) [s]: time that the moments cover; of the straight lines, the sums of the weights
             and of the first and second powers of the time before now.
@@ -207,13 +200,13 @@ def update_scale(
             if spread > _FLAT * times[1] * times[3]:
                 line = times[3] * moments[SUM, k] - times[2] * moments[SUM_T, k]
                 moments[SQUARES, k] += share * (value - line / spread) ** 2
-            moments[LARGEST, group[k]] = max(moments[LARGEST, group[k]], abs(value))
+            moments[LARGEST, nodes.group[k]] = max(moments[LARGEST, nodes.group[k]], abs(value))
     moments[DEVIATION, :] = 0.0
     count = np.zeros(nodes.unknown.size)
     for k in range(nodes.unknown.size):
-        count[group[k]] += 1.0
-        moments[DEVIATION, group[k]] += moments[SQUARES, k] / max(times[0], 1e-300)
+        count[nodes.group[k]] += 1.0
+        moments[DEVIATION, nodes.group[k]] += moments[SQUARES, k] / max(times[0], 1e-300)
     for k in range(nodes.unknown.size):
-        g = group[k]
+        g = nodes.group[k]
         deviation = np.sqrt(moments[DEVIATION, g] / count[g])
         buffers.scale[k] = max(deviation, FLOOR * moments[LARGEST, g], 1e-300)

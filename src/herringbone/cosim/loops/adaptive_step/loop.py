@@ -26,6 +26,19 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
+from herringbone.cosim.loops.adaptive_step.ladder import fitting_rung
+from herringbone.cosim.loops.adaptive_step.step_choice import (
+    TOO_MUCH,
+    continued,
+    next_rung,
+    too_much,
+)
+from herringbone.cosim.loops.adaptive_step.step_error import (
+    ORDER,
+    error_so_far,
+    step_error,
+    update_scale,
+)
 from herringbone.cosim.loops.common import (
     DONE,
     LAST_GOOD,
@@ -34,11 +47,8 @@ from herringbone.cosim.loops.common import (
     get_outputs,
     not_finite,
 )
-from herringbone.cosim.loops.ladder import fitting_rung
 from herringbone.cosim.loops.node_pass import begin, restore
 from herringbone.cosim.loops.nodes import REFRESH, converge, finish
-from herringbone.cosim.loops.step_choice import TOO_MUCH, continued, next_rung, too_much
-from herringbone.cosim.loops.step_error import ORDER, error_so_far, step_error, update_scale
 from herringbone.kernels.compiling.jit import inlined, kernel
 
 STEP_LIMIT = 5
@@ -81,15 +91,11 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    update_scale(
-        nodes, buffers, nodes.group, adaptive.moments, adaptive.covered, adaptive.memory, h
-    )
+    update_scale(nodes, buffers, adaptive.moments, adaptive.covered, adaptive.memory, h)
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(
-        nodes, buffers, nodes.group, adaptive.errors, adaptive.covered[0]
-    )
+    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, adaptive.covered[0])
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
@@ -127,9 +133,7 @@ def _try(
     inner_steps = np.inf
     if adaptive.inner_step > 0.0:
         inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
-    error, culprit = step_error(
-        nodes, buffers, nodes.group, adaptive.held, adaptive.squares, known, inner_steps
-    )
+    error, culprit = step_error(nodes, buffers, adaptive.held, adaptive.squares, known, inner_steps)
     state[CULPRIT] = culprit
     return -1, error
 

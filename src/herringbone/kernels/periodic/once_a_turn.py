@@ -1,0 +1,127 @@
+"""What inertia and damping add to the answer of a body to what returns with the turns of gears."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.periodic.complex_solve import complex_solve
+from herringbone.kernels.periodic.harmonics import SAMPLES
+from herringbone.kernels.periodic.turns import INSTANTS, fit_turns, instant, turns_scratch
+
+PHASES = 8
+"""Of a mesh period, over which what changes slowly is averaged."""
+_TURN = 6.283185307179586
+
+
+class MotionPlaces(NamedTuple):
+    """Places of what `motion` works on, in the block; `end`: of `turns_scratch`."""
+
+    k: int
+    c: int
+    re: int
+    im: int
+    motion: int
+    g: int
+    mean: int
+    drift: int
+    x: int
+    y: int
+    order: int
+    found: int
+    end: int
+
+
+def answer_to_turns(
+    turned: Callable,
+    accelerate: Callable,
+    follow: Callable,
+    xs: tuple[int, ...],
+    vs: tuple[int, ...],
+    free: int,
+    at: MotionPlaces,
+    owner: str,
+) -> Callable[[np.ndarray, float, tuple[float, float]], int]:
+    """Compile answer(b, period, turns) -> int, when the motion of a mesh period is found.
+
+    Args:
+        turned, accelerate, follow: kernels of `motion`.
+        xs, vs: places of coordinates and rates among the states.
+        free: the coordinate whose mean is free; -1: none. It is not moved.
+        at: places.
+        owner: name of the component, for messages.
+
+    Returns:
+        The kernel; it returns for how many gears there is, from `at.end` on, what is added at time
+        0 to coordinates (m,) and rates (m,).
+    """
+    m, scratch = len(xs), turns_scratch(len(xs))
+
+    @inner(owner)
+    def slow(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
+        """Fit what is left of the accelerations while the gears turn; see `fit_turns`."""
+        dx = b[at.x : at.y]
+        for k in range(INSTANTS):
+            row = b[at.g + k * m : at.g + (k + 1) * m]
+            for i in range(m):
+                row[i] = 0.0
+            for phase in range(PHASES + 1):
+                t = period * (instant(k, turns_of) + phase / PHASES - 0.5)
+                turned(b, t)
+                row_of = (phase + PHASES // 2) % PHASES * (SAMPLES // PHASES)
+                motion = b[at.motion + row_of * m : at.g]
+                for i in range(m):
+                    b[xs[i]] += motion[i]
+                    b[vs[i]] += motion[SAMPLES * m + i]
+                accelerate(b, t, dx)
+                share = (0.5 if phase % PHASES == 0 else 1.0) / PHASES
+                for i in range(m):
+                    row[i] += share * (dx[i] - motion[2 * SAMPLES * m + i])
+        return fit_turns(b[at.g : at.mean], turns_of, m, b[at.end : at.end + scratch])
+
+    @inner(owner)
+    def swing(b: np.ndarray, begin: int, w: float) -> None:
+        """What inertia and damping add to the answer to a harmonic that begins there; w: [rad/s].
+
+        It is that of K x = c, less its own inertia and damping.
+        """
+        re, im, x, y = (
+            b[at.re : at.im],
+            b[at.im : at.motion],
+            b[at.y : at.order],
+            b[at.mean : at.drift],
+        )
+        follow(b, b[begin : begin + m])
+        for i in range(m):
+            x[i] = b[at.found + i]
+        follow(b, b[begin + m : begin + 2 * m])
+        for i in range(m):
+            p, q = w * w * x[i], w * w * b[at.found + i]
+            for j in range(m):
+                c = w * b[at.c + i * m + j]
+                p, q = p + c * b[at.found + j], q - c * x[j]
+            b[begin + i], b[begin + m + i] = p, q
+        for i in range(m * m):
+            re[i], im[i] = b[at.k + i], w * b[at.c + i]
+        for i in range(m):
+            re[i * m + i] -= w * w
+            x[i], y[i] = b[begin + i], b[begin + m + i]
+        if free >= 0:
+            x[free], y[free] = 0.0, 0.0
+            for i in range(m):
+                re[free * m + i], im[free * m + i] = 0.0, 0.0
+            re[free * m + free] = 1.0
+        complex_solve(re, im, x, y, m)
+        for i in range(m):
+            b[begin + i], b[begin + m + i] = x[i], -w * y[i]
+
+    @inner(owner)
+    def answer(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:
+        gears = slow(b, period, turns_of)
+        swing(b, at.end, _TURN / (period * turns_of[0]))
+        if gears > 1:
+            swing(b, at.end + 2 * m, _TURN / (period * turns_of[1]))
+        return gears
+
+    return answer

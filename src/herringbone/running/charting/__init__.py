@@ -1,0 +1,1 @@
+"""Speed-accuracy charts: algorithms, steps and cores up a ladder of costs."""

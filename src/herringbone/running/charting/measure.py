@@ -1,0 +1,151 @@
+"""What a speed-accuracy chart shows: runs of algorithms up a ladder of steps, and their errors."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from herringbone.analysis.accuracy.converged import Converged
+from herringbone.analysis.accuracy.step_ladder import (
+    STEPS,
+    Progress,
+    Reference,
+    charted_algorithms,
+    ladder,
+    run_points,
+)
+from herringbone.analysis.accuracy.work_precision import WorkPrecision
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import ParameterError
+from herringbone.core.declaring.roles import Quantity, Role
+from herringbone.core.part import Part
+from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm, refuse_adaptive
+from herringbone.cosim.structure.system import System
+from herringbone.fmi.kind import AUTO as AUTO_FMU
+from herringbone.fmi.kind import choose_kind
+from herringbone.running.charting.fused_curves import fused_points
+from herringbone.running.foreign.foreign_parts import alike, understood
+from herringbone.running.fused.fused import refuse_strangers
+from herringbone.running.loading import instances, open_parts
+from herringbone.running.pairs.gears import Gear
+from herringbone.running.prepared import Named, Wishes, prepared
+
+
+def measure(
+    system: str | Path,
+    *,
+    scene: str | None = None,
+    algorithms: Sequence[str] = (),
+    steps: Sequence[float] = STEPS,
+    tolerances: Sequence[float] = (),
+    t_end: float | None = None,
+    values: Mapping[str, float | str] | None = None,
+    gear: Gear | Mapping[str, Gear] | None = None,
+    housing: Named | None = None,
+    replace_parts: Mapping[str, str | Path] | None = None,
+    fmu: str = AUTO_FMU,
+    fuse: bool = False,
+    progress: Progress = lambda algorithm, step: None,
+) -> WorkPrecision:
+    """Run algorithms up a ladder of steps, against the monolithic twin.
+
+    Args:
+        system: name of a shipped system, folder with system.toml, or .ssp file.
+        scene: name or file of a scene; the system's "loaded" if not given.
+        algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
+        steps: communication step sizes [s].
+        tolerances: relative errors for which li adapts its step, one more curve; none if not given.
+        t_end: duration of each run [s]; the scene's if not given.
+        values, gear, housing, replace_parts: as in `herringbone.run`.
+        fmu: kind of the parts' FMUs, as in `herringbone.run`.
+        fuse: curves of the fused system, too; its steps are the base steps of the core.
+        progress: called before each run with the algorithm and the step [s].
+
+    Raises:
+        HerringboneError: something about the input is wrong.
+    """
+    chosen = _curves(algorithms, tolerances)
+    wishes = Wishes(
+        t_end=t_end,
+        values=values or {},
+        gear=gear,
+        housing=housing,
+        replace_parts=replace_parts or {},
+    )
+    structure, options, notes = prepared(system, scene, wishes)
+    fmu, why = choose_kind(fmu)
+    grids = ladder(steps, options.t_end)
+    if structure.foreign_parts and tolerances:
+        raise ParameterError("tolerances: with foreign FMUs a curve is drawn over fixed steps only")
+    if fuse:
+        refuse_strangers(structure)
+    opened = _Opened(structure, fmu, grids[0].step)
+    if structure.foreign_parts:
+        finer = Converged(structure, opened, grids)
+        found = list(run_points(structure, opened, finer, chosen, grids, progress))
+        modes, micro_step, notes = 0, 0.0, (*notes, *why, finer.note)
+    else:
+        twin = Reference(structure, grids)
+        found = list(run_points(structure, opened, twin, chosen, grids, progress))
+        if fuse:
+            found += [(p, ()) for p in fused_points(structure, twin, grids, progress)]
+        (modes, micro_step), notes = _internals(twin.twin), (*notes, *why)
+    return WorkPrecision(
+        structure.name,
+        options.name,
+        options.t_end,
+        fmu,
+        modes,
+        micro_step,
+        tuple(point for point, _ in found),
+        tuple(dict.fromkeys([*notes, *(note for _, own in found for note in own)])),
+        bool(structure.foreign_parts),
+    )
+
+
+def _curves(algorithms: Sequence[str], tolerances: Sequence[float]) -> list[Algorithm]:
+    """One algorithm for each curve: those named, or all worth showing, and li by tolerance."""
+    if AUTO in algorithms:
+        raise ParameterError(
+            f"{AUTO} is a choice among the algorithms that a chart compares; leave it out"
+        )
+    chosen = list(dict.fromkeys(map(parse_algorithm, algorithms))) or list(charted_algorithms())
+    if 0.0 in tolerances:
+        raise ParameterError("tolerances: 0 keeps the step; name li among the algorithms for that")
+    refuse_adaptive(chosen, "a curve is drawn over steps or over --tolerances")
+    return [*chosen, *(LI(tolerance=tolerance) for tolerance in sorted(tolerances))]
+
+
+class _Opened:
+    """Opens a system's parts again for each run; foreign ones are tried once.
+
+    Args:
+        system: structure with start values.
+        fmu: kind of the parts' FMUs.
+        step: macro step [s] of the trials.
+    """
+
+    def __init__(self, system: System, fmu: str, step: float) -> None:
+        self._system, self._fmu, self._step = system, fmu, step
+        self._first: list[Part] = []
+
+    def __call__(self) -> list[Part]:
+        """Its parts, as the coupling takes them."""
+        parts = open_parts(self._system, self._fmu)
+        if not self._first:
+            self._first = understood(self._system, parts, instances, self._step)[0]
+            return list(self._first)
+        return [
+            alike(first, part) if spec.foreign else part
+            for spec, first, part in zip(self._system.parts, self._first, parts, strict=True)
+        ]
+
+
+def _internals(twin: Twin) -> tuple[int, float]:
+    """Modes of the housing, and shortest micro step [s] of the parts."""
+    modes, micro_steps = 0, []
+    for instance in twin.instances:
+        declaration = instance.component.declaration
+        if Role.HOUSING in declaration.roles:
+            counts = {declaration.first_table + v.length for v in declaration.vectors if v.text}
+            modes += sum(int(instance.block[count]) for count in counts)
+        micro_steps += [instance[v.name] for v in declaration.offered(Quantity.MICRO_STEP)]
+    return modes, min(micro_steps, default=0.0)

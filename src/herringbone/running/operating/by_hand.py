@@ -1,0 +1,145 @@
+"""Models that a user made leaner by hand: what that changes of what the scene asks."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.steady.set_points import Point
+from herringbone.components.registry import component_for
+from herringbone.core import HerringboneError
+from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.places.files import is_folder
+from herringbone.cosim.structure.system import System
+from herringbone.housing import ModalHousing, read_housing
+from herringbone.housing.files.file_format import DATA
+from herringbone.running.housings import split_housings
+from herringbone.running.loading import load_scene, load_system
+from herringbone.running.operating.commanded import with_known_values
+from herringbone.running.operating.lean import certified
+from herringbone.running.prepared import Wishes, housings_of
+from herringbone.scenes import Model, Scene
+
+if TYPE_CHECKING:
+    from herringbone.analysis.steady.state import SteadyState
+
+_ALIKE = 1e-6
+"""Relative difference of static compliances that are the same: a reduction keeps them exactly."""
+
+
+@dataclass(frozen=True)
+class ByHand:
+    """What a user left out, and how to put it back.
+
+    Attributes:
+        names: of what is left out, for people.
+        scene, wishes: with which nothing is.
+        unknown: why the whole model is not known; "" if it is.
+    """
+
+    names: tuple[str, ...]
+    scene: Scene
+    wishes: Wishes
+    unknown: str = ""
+
+
+def warned_by_hand(
+    system: str | Path | System,
+    scene: str | Path | Scene | None,
+    wishes: Wishes,
+    point: Point,
+    state: "SteadyState | None" = None,
+) -> tuple[str, ...]:
+    """A line with the model error of what a user left out by hand; none if nothing is.
+
+    Model errors are those of the steady state of the operating point, for what the scene asks, or
+    for bearing forces and seat velocities if it asks nothing.
+
+    Args:
+        system, scene, wishes: see `running.prepared.prepared`.
+        point: operating point.
+        state: steady state there, with what the user left out, if it is known.
+    """
+    own = _left_out(system, scene, wishes, point)
+    if not own.names:
+        return ()
+    what = " and ".join(own.names)
+    if own.unknown:
+        return (_unknown(what, own.unknown),)
+    from herringbone.running.operating.model_error import model_errors  # noqa: PLC0415 (numba)
+
+    whole = (system, own.scene, own.wishes)
+    try:
+        said, is_large = model_errors(whole, (system, scene, wishes), point, state)
+    except HerringboneError as error:
+        return (_unknown(what, str(error)),)
+    return (f"{'warning: ' if is_large else ''}{what}: {said}",)
+
+
+def _unknown(what: str, why: str) -> str:
+    return f"warning: {what}: the model error is not known at this operating point: {why}"
+
+
+def _left_out(
+    system: str | Path | System, scene: str | Path | Scene | None, wishes: Wishes, point: Point
+) -> ByHand:
+    structure, folder = (system, Path.cwd()) if isinstance(system, System) else load_system(system)
+    chosen = load_scene(folder, scene)
+    names, unknown = [], []
+    if chosen.model and not certified(chosen.model, wishes.values, point.speed, point.torque):
+        names.append("leaner model of the scene")
+    housings = housings_of(structure, chosen, wishes)
+    for part, data in split_housings(housings)[0].items():
+        reduced = read_housing(data) if is_folder(data) else None
+        full = None if reduced is None else _full_data(reduced)
+        if reduced is None or not (full or DATA in reduced.certificate):
+            continue
+        names.append(f"housing {data}, reduced to {reduced.valid_to_hz:g} Hz")
+        if full is None:
+            unknown.append(f"the data that {data} was made of are not there any more")
+        else:
+            housings[part] = full
+    known = with_known_values(structure, chosen, wishes)
+    seats = dict(_one_way(structure, known))
+    names += [f"{', '.join(driven)} driven one way" for driven in seats.values()]
+    if known.foreign_parts:
+        unknown.append(f"{', '.join(known.foreign_parts)}: nobody knows the equations")
+    values = {**wishes.values, **dict.fromkeys(seats, 1.0)}
+    return ByHand(
+        tuple(names),
+        replace(chosen, model=Model()),
+        replace(wishes, housing=housings, values=values),
+        "; ".join(unknown),
+    )
+
+
+def _one_way(declared: System, known: System) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Variables that a user set so that housings are not felt, with these."""
+    parts = anatomy(known)
+    for bearing in parts.with_role(Role.BEARING):
+        column = parts.column(bearing, Quantity.SEAT_MOTION)
+        if column is None or known.part(bearing).foreign or value_at(known, column) != 0.0:
+            continue
+        driven = dict.fromkeys(part for part, _ in parts.joined(bearing, PortKind.SEAT))
+        if driven and value_at(declared, column) != 0.0:
+            yield column, tuple(driven)
+
+
+def _full_data(reduced: ModalHousing) -> Path | None:
+    """Folder of the data that a housing was reduced from; None: it is not there any more."""
+    of = Path(str(reduced.certificate.get(DATA, "")))
+    for folder in (of, Path(component_for(Role.HOUSING).resources)):
+        if not folder.is_absolute() or not is_folder(folder):
+            continue
+        try:
+            full = read_housing(folder)
+        except HerringboneError:
+            continue
+        static, own = full.static_compliance(), reduced.static_compliance()
+        same = np.allclose(static, own, rtol=0.0, atol=_ALIKE * np.abs(static).max())
+        if same and full.frequency_hz.size > reduced.frequency_hz.size:
+            return folder
+    return None
