@@ -13,7 +13,7 @@ NAME = re.compile(rf"(?<![A-Za-z_])({'|'.join(COMPONENTS)})(?![a-z_])")
 MODULES = {
     ".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts)
     for file in (PACKAGE / "components").rglob("*")
-    if file.stem.startswith(tuple(COMPONENTS))
+    if "__pycache__" not in file.parts and file.stem.startswith(tuple(COMPONENTS))
 }
 ASKING = PACKAGE / "thesis" / "names.py"
 """What a user's script would name: the report asks shipped systems by the names in this file."""

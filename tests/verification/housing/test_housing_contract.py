@@ -58,7 +58,7 @@ def test_the_default_holds_the_contract(shipped):
         lambda: component(*shipped["default"]), static=housing.static_compliance()
     )
     assert [f.test for f in findings if not f.holds] == []
-    assert len(findings) == 13
+    assert len(findings) == 14
 
 
 def test_other_statics_are_noticed(shipped):

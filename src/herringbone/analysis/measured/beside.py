@@ -84,7 +84,8 @@ class Beside:
     Attributes:
         record: that was measured.
         speed: that the record tells, over the stated one.
-        shift: of the record against the prediction [s], in one period; NaN at another speed.
+        shift: of the record against the prediction [s], in the period in which the lines that
+            count repeat; NaN at another speed.
         gain: of all lines alike; NaN at another speed.
         likeness: of all lines, phases too, after shift and gain: 1 if they are the same; NaN at
             another speed.
@@ -128,15 +129,16 @@ def beside(record: MeasuredRecord, predicted: Predicted) -> Beside:
         return Beside(record, speed, nan, nan, nan, _lines(record, predicted, speed), (said,))
     orders, own, other = _pairs(record, predicted, speed)
     frequencies = turn_hz * orders
-    shift = _shift(frequencies, own, other, 1.0 / turn_hz)
+    period = 1.0 / (turn_hz * np.gcd.reduce(orders))  # in which these lines repeat
+    shift = _shift(frequencies, own, other, period)
     aligned = other * np.exp(-2j * np.pi * frequencies * shift)
     gain = float((own.conj() @ aligned).real / (own.conj() @ own).real)
     likeness = float((own.conj() @ aligned).real / np.linalg.norm(own) / np.linalg.norm(aligned))
     faults = []
-    if min(shift, 1.0 / turn_hz - shift) * rate > _SHIFTED:
+    if min(shift, period - shift) * rate > _SHIFTED:
         faults.append(
             f"time shift: it begins {1e3 * shift:.2f} ms after the prediction, in a period of "
-            f"{1e3 / turn_hz:.1f} ms; taken out"
+            f"{1e3 * period:.1f} ms; taken out"
         )
     if abs(gain - 1.0) > _GAIN_DIFFERS and likeness >= _ALIKE:
         faults.append(f"gain: all its lines are {gain:.3g} times the predicted ones")
