@@ -116,6 +116,7 @@ def _entries(
         "remarks": "remarks",
         "remark": "hb_remark" if hosting else "NULL",
         "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
+        "watch": "&hb_watch" if hosting else "NULL",
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,

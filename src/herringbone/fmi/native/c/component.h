@@ -9,6 +9,7 @@
 #ifndef HERRINGBONE_COMPONENT_H
 #define HERRINGBONE_COMPONENT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Values of a signal with nodes: X, X.node1 ... X.node4, side by side in the block. */
@@ -84,6 +85,18 @@ typedef struct {
     uint32_t since;       /* index of the local that has the time at which the input was set */
 } HbRunsOn;
 
+struct Instance;
+
+/* What is kept of the inputs for messages, where hosts couple the FMU; see inputs.c. */
+typedef struct {
+    void (*before_step)(struct Instance *instance);
+    void (*after_step)(struct Instance *instance);
+    /* Of a step that failed, tells if an input is the cause: it jumps, or jumps that change sign and
+       grow show an unstable loop. False if the inputs are steady. */
+    bool (*blame)(struct Instance *instance, double step_size);
+} HbWatch;
+extern const HbWatch hb_watch;
+
 /* What is logged once, as soon as it holds; the format is as that of a refusal. */
 typedef struct {
     const char *format;
@@ -150,6 +163,7 @@ typedef struct {
     const HbRemark *remarks;
     int32_t (*remark)(double *b, double *w, int32_t which, double *report);
     uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
+    const HbWatch *watch; /* NULL: nothing is kept of the inputs, and the linker leaves it out */
     uint32_t runs_on_count;
     const HbRunsOn *runs_on;
     uint32_t load_scratch;

@@ -1,3 +1,4 @@
+/* What the host did to the inputs in the last steps, for messages alone. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,18 +34,14 @@ static double value_at(const Instance *instance, uint32_t input, double time) {
                  : value;
 }
 
-void instance_note_inputs(Instance *instance) {
-    if (!hb_component.tolerance)
-        return;
+static void note_inputs(Instance *instance) {
     for (uint32_t i = 0; i < hb_component.inputs; i++)
         instance->jumps[i * JUMPS + instance->steps % JUMPS] =
             instance->steps ? value_at(instance, i, instance->now.time) - instance->ahead[i] : 0.0;
     instance->steps++;
 }
 
-void instance_note_ahead(Instance *instance) {
-    if (!hb_component.tolerance)
-        return;
+static void note_ahead(Instance *instance) {
     uint32_t degree = instance->now.last_degree;
     for (uint32_t i = 0; i < hb_component.inputs; i++)
         instance->ahead[i] =
@@ -111,7 +108,7 @@ static void read_advice(const Instance *instance, const char *name, Message *adv
     free(path);
 }
 
-bool instance_blame_input(Instance *instance, double step_size) {
+static bool blame_input(Instance *instance, double step_size) {
     uint32_t input = culprit(instance);
     if (input == hb_component.inputs)
         return false;
@@ -137,3 +134,5 @@ bool instance_blame_input(Instance *instance, double step_size) {
                   advice.text);
     return true;
 }
+
+const HbWatch hb_watch = {note_inputs, note_ahead, blame_input};

@@ -103,14 +103,6 @@ Status instance_read_resources(Instance *instance);
 Status instance_refresh(Instance *instance);
 Status instance_refresh_rates(Instance *instance);
 
-/* inputs.c: what the host did to the inputs in the last steps, for messages alone.
-
-   Before and after a step; of a step that failed, tells if an input is the cause: it jumps, or jumps
-   that change sign and grow show an unstable loop. False if the inputs are steady. */
-void instance_note_inputs(Instance *instance);
-void instance_note_ahead(Instance *instance);
-bool instance_blame_input(Instance *instance, double step_size);
-
 /* remarks.c: log what holds now and was not told before. */
 void instance_tell_remarks(Instance *instance);
 

@@ -26,7 +26,7 @@ static Status explain_failure(Instance *instance, int32_t failed, double step_si
                              "%s: step size %g s; one call takes at most %g s", instance->name,
                              step_size, hb_component.longest_step(instance->block));
     instance_tell_remarks(instance);
-    if (hb_component.tolerance && instance_blame_input(instance, step_size))
+    if (hb_component.watch && hb_component.watch->blame(instance, step_size))
         return STATUS_DISCARD;
     if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
         return instance_fail(instance, STATUS_DISCARD,
@@ -116,13 +116,15 @@ Status instance_step(Instance *instance, double time, double step_size) {
            (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
-    instance_note_inputs(instance);
+    if (hb_component.watch)
+        hb_component.watch->before_step(instance);
     int32_t failed = step_along_inputs(instance, time, step_size);
     instance->rates_outdated = true;
     if (failed)
         return explain_failure(instance, failed, step_size);
     now->time = time + step_size;
-    instance_note_ahead(instance);
+    if (hb_component.watch)
+        hb_component.watch->after_step(instance);
     instance_tell_remarks(instance);
     if (instance->update)
         instance->update(instance, UPDATE_REACHED);
