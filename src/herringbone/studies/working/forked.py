@@ -48,16 +48,20 @@ class ForkedProcess:
         calls.close()
         answers.close()
         self._code: int | None = None
+        self._reaping = threading.Lock()
 
     def kill(self) -> None:
         """End it at once."""
-        if self._code is None:
-            os.kill(self.pid, signal.SIGKILL)
+        with self._reaping:
+            if self._code is None:
+                os.kill(self.pid, signal.SIGKILL)
 
     def wait(self) -> int:
         """Wait until it ends; returns its exit code, of a signal the negative one."""
         if self._code is None:
-            self._code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+            os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT)  # nobody else has its number yet
+            with self._reaping:
+                self._code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
         return self._code
 
 
