@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 import herringbone as hb
+from campaigns.plans import tell
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.analysis.steady.set_points import Point
@@ -53,12 +54,6 @@ class Answer(NamedTuple):
     seconds: float
     simulated: float
     planning: float
-
-
-def tell(line: str) -> None:
-    """Print a line at once."""
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
 
 
 def lesser(work: Callable[[], object], turns: int = 2) -> float:

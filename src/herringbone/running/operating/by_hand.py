@@ -1,17 +1,16 @@
 """Models that a user made leaner by hand: what that changes of what the scene asks."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.anatomy import value_at
 from herringbone.analysis.steady.set_points import Point
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
-from herringbone.core.declaring.roles import PortKind, Quantity, Role
+from herringbone.core.declaring.roles import Role
 from herringbone.core.places.files import is_folder
 from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing, read_housing
@@ -21,6 +20,7 @@ from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import with_known_values
 from herringbone.running.operating.lean import certified
 from herringbone.running.prepared import Wishes, housings_of
+from herringbone.running.rigid_ground import rigid_bearings
 from herringbone.scenes import Model, Scene
 
 if TYPE_CHECKING:
@@ -103,29 +103,17 @@ def _left_out(
         else:
             housings[part] = full
     known = with_known_values(structure, chosen, wishes)
-    seats = dict(_one_way(structure, known))
-    names += [f"{', '.join(driven)} driven one way" for driven in seats.values()]
+    one_way = [b for b in rigid_bearings(known) if value_at(structure, b.column) != 0.0]
+    names += [f"{', '.join(bearing.housings)} driven one way" for bearing in one_way]
     if known.foreign_parts:
         unknown.append(f"{', '.join(known.foreign_parts)}: nobody knows the equations")
-    values = {**wishes.values, **dict.fromkeys(seats, 1.0)}
+    values = {**wishes.values, **dict.fromkeys((bearing.column for bearing in one_way), 1.0)}
     return ByHand(
         tuple(names),
         replace(chosen, model=Model()),
         replace(wishes, housing=housings, values=values),
         "; ".join(unknown),
     )
-
-
-def _one_way(declared: System, known: System) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Variables that a user set so that housings are not felt, with these."""
-    parts = anatomy(known)
-    for bearing in parts.with_role(Role.BEARING):
-        column = parts.column(bearing, Quantity.SEAT_MOTION)
-        if column is None or known.part(bearing).foreign or value_at(known, column) != 0.0:
-            continue
-        driven = dict.fromkeys(part for part, _ in parts.joined(bearing, PortKind.SEAT))
-        if driven and value_at(declared, column) != 0.0:
-            yield column, tuple(driven)
 
 
 def _full_data(reduced: ModalHousing) -> Path | None:

@@ -85,7 +85,7 @@ def run_chain(job: Job, progress: Callable[[int], None] = lambda points: None) -
     so_far = SoFar(Path(job.so_far)) if job.so_far else None
     with one_blas_thread(), _in_folder(job.base.folder):
         evaluate = _evaluation(job)
-        if resumed := _resumed(job, evaluate):
+        if so_far and not job.series and (resumed := _resumed(so_far, evaluate)):
             begun, near = resumed
             rows, units, before = list(begun.rows), begun.units, before - begun.cpu
             progress(len(rows))
@@ -123,9 +123,9 @@ def read_so_far(file: Path) -> Done | None:
     return Done(tuple(rows), units, 0.0) if rows else None
 
 
-def _resumed(job: Job, evaluate: Evaluation) -> tuple[Begun, Any] | None:
+def _resumed(so_far: SoFar, evaluate: Evaluation) -> tuple[Begun, Any] | None:
     """What stands of a chain, and the neighbour of its next point; None: it begins anew."""
-    begun = SoFar(Path(job.so_far)).begin() if job.so_far and not job.series else None
+    begun = so_far.begin()
     if begun is None or not isinstance(evaluate, Resumable):
         return None
     try:
