@@ -161,6 +161,14 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
         solve(a, x, b[order_at:found_at], b[found_at:table_at], m)
 
     @inner(owner)
+    def vibrate(b: np.ndarray, w: float) -> None:
+        """Make the linear equations of a harmonic, K - w^2 + i w C; w: [rad/s]."""
+        for i in range(m * m):
+            b[re_at + i], b[im_at + i] = b[k_at + i], w * b[c_at + i]
+        for i in range(m):
+            b[re_at + i * m + i] -= w * w
+
+    @inner(owner)
     def correct(b: np.ndarray, period: float, none: float) -> None:
         g, table, motion = b[g_at:mean_at], b[table_at:end], b[motion_at:g_at]
         x, y = b[x_at:y_at], b[y_at:order_at]
@@ -171,18 +179,15 @@ def periodic_motion(  # noqa: PLR0915 (kernels that share their layout)
         for h in range(1, HALF):
             if harmonic(g, h, table, x, y, m) > none:
                 w = h * _TURN / period
-                for i in range(m * m):
-                    b[re_at + i], b[im_at + i] = b[k_at + i], w * b[c_at + i]
-                for i in range(m):
-                    b[re_at + i * m + i] -= w * w
+                vibrate(b, w)
                 complex_solve(b[re_at:im_at], b[im_at:motion_at], x, y, m)
                 add_harmonic(x, y, h, w, table, motion, m)
 
     at = MotionPlaces(
-        k_at, c_at, re_at, im_at, motion_at, g_at, mean_at, drift_at, x_at, y_at, order_at,
+        c_at, re_at, im_at, motion_at, g_at, mean_at, drift_at, x_at, y_at, order_at,
         found_at, end,
     )  # fmt: skip
-    answer = answer_to_turns(turned, accelerate, follow, xs, vs, free, at, owner)
+    answer = answer_to_turns(turned, accelerate, follow, vibrate, xs, vs, free, at, owner)
 
     @inner(owner)
     def search(b: np.ndarray, period: float, turns_of: tuple[float, float]) -> int:

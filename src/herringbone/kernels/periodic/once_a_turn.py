@@ -18,7 +18,6 @@ _TURN = 6.283185307179586
 class MotionPlaces(NamedTuple):
     """Places of what `motion` works on, in the block; `end`: of `turns_scratch`."""
 
-    k: int
     c: int
     re: int
     im: int
@@ -37,6 +36,7 @@ def answer_to_turns(
     turned: Callable,
     accelerate: Callable,
     follow: Callable,
+    vibrate: Callable,
     xs: tuple[int, ...],
     vs: tuple[int, ...],
     free: int,
@@ -46,7 +46,7 @@ def answer_to_turns(
     """Compile answer(b, period, turns) -> int, when the motion of a mesh period is found.
 
     Args:
-        turned, accelerate, follow: kernels of `motion`.
+        turned, accelerate, follow, vibrate: kernels of `motion`.
         xs, vs: places of coordinates and rates among the states.
         free: the coordinate whose mean is free; -1: none. It is not moved.
         at: places.
@@ -102,10 +102,8 @@ def answer_to_turns(
                 c = w * b[at.c + i * m + j]
                 p, q = p + c * b[at.found + j], q - c * x[j]
             b[begin + i], b[begin + m + i] = p, q
-        for i in range(m * m):
-            re[i], im[i] = b[at.k + i], w * b[at.c + i]
+        vibrate(b, w)
         for i in range(m):
-            re[i * m + i] -= w * w
             x[i], y[i] = b[begin + i], b[begin + m + i]
         if free >= 0:
             x[free], y[free] = 0.0, 0.0
