@@ -6,13 +6,20 @@ rotation and a system without controller keeps its start speed, so that the syst
 a null space: Gauss-Newton with the smallest step in scaled unknowns.
 """
 
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.rigid_rotation import steady_rows, turning
+from herringbone.analysis.balanced_angle import balanced_angles
+from herringbone.analysis.rigid_rotation import (
+    rigid_rotation,
+    steady_rows,
+    turning,
+    units_of_states,
+)
+from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import EquilibriumError
 from herringbone.core.declaring.roles import Quantity, Role
@@ -23,13 +30,14 @@ _ITERATIONS, _PATIENCE = 40, 12
 """At most, and without getting closer: a search that is caught stays so."""
 _CLOSER = 0.9
 _CONVERGED = 1e-11
-_DIFFERENCE = 1e-3
 SCALE = {
     "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
     "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
 }  # fmt: skip
 """Sizes of states, by unit; others 1."""
 _RANK = 1e-12
+_KEPT = 1e-3
+"""Of the speed of a gearbox between given torques: its search changes no more of it."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +66,43 @@ def equilibrium(system: System) -> Equilibrium:
     """
     twin = Twin(system)
     with one_blas_thread():
-        held = _held(system, twin)
-        try:
-            return _solved(system, twin, held, _guess(twin))
-        except EquilibriumError:
-            for x in turning(twin, _guess(twin)):
-                with suppress(EquilibriumError):
-                    return _solved(system, twin, held, x)
-            raise
+        held, guess = _held(system, twin), _guess(twin)
+        strayed, failures = None, list[EquilibriumError]()
+        for x in _beginnings(twin, held, guess):
+            try:
+                found, residual = _solved(system, twin, held, x)
+            except EquilibriumError as error:
+                failures.append(error)
+                continue
+            if _kept_speed(twin, held, guess, found):
+                return Equilibrium(_start_values(twin, found), residual)
+            strayed = strayed or (found, residual)
+        if strayed is not None:  # its speed is what its drag leaves
+            return Equilibrium(_start_values(twin, strayed[0]), strayed[1])
+        raise failures[0]
+
+
+def _beginnings(twin: Twin, held: int | None, guess: np.ndarray) -> Iterator[np.ndarray]:
+    """States (n,) from which steady rotation is looked for, one after the other."""
+    yield guess
+    yield from turning(twin, guess)
+    if held is None:
+        yield from balanced_angles(twin, guess, _scales(twin))
+
+
+def _kept_speed(twin: Twin, held: int | None, guess: np.ndarray, found: np.ndarray) -> bool:
+    """False if a search has left the speed of a gearbox between given torques.
+
+    They balance at some angles. That damping and unbalance know the speed, too, is no reason to
+    look for a balance at ten times the speed that was asked for.
+    """
+    if held is not None:
+        return True
+    speeds = np.flatnonzero(rigid_rotation(twin, guess))
+    if len(speeds) != 1:
+        return True
+    before, after = (float(x[speeds[0]]) for x in (guess, found))
+    return before == 0.0 or abs(after - before) < _KEPT * abs(before)
 
 
 def _held(system: System, twin: Twin) -> int | None:
@@ -88,12 +125,14 @@ def _holds_speed(system: System) -> bool:
     return not ends.isdisjoint(found)
 
 
-def _solved(system: System, twin: Twin, held: int | None, x: np.ndarray) -> Equilibrium:
-    """Steady rotation from a guess, with one state as it is, or none."""
+def _solved(
+    system: System, twin: Twin, held: int | None, x: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Steady rotation from a guess, with one state as it is, or none: states (n,) and residual."""
     rotating, zero = steady_rows(twin)
     scale = _scales(twin)
     if x.size == 0:
-        return Equilibrium({}, 0.0)
+        return x, 0.0
     keep = np.setdiff1d(np.arange(x.size), rotating)
     free = np.ones(x.size)
     if held is not None:
@@ -107,13 +146,13 @@ def _solved(system: System, twin: Twin, held: int | None, x: np.ndarray) -> Equi
     r = residual(x)
     first, best, since = None, np.inf, 0
     for iteration in range(_ITERATIONS):
-        jacobian = _jacobian(residual, x, r, scale) * free
+        jacobian = slopes(residual, x, r, scale, range(x.size)) * free
         rows = np.abs(jacobian).max(axis=1)
         rows[rows == 0.0] = 1.0
         scaled = np.abs(r / rows).max()
         first = first or max(scaled, 1.0)
         if scaled < _CONVERGED * first:
-            return Equilibrium(_start_values(twin, x), float(scaled / first))
+            return x, float(scaled / first)
         if scaled < _CLOSER * best:
             best, since = scaled, iteration
         if iteration - since >= _PATIENCE:
@@ -152,23 +191,7 @@ def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
 
 def _scales(twin: Twin) -> np.ndarray:
     """Sizes of the states."""
-    scales = []
-    for instance in twin.instances:
-        declaration = instance.component.declaration
-        scales += [SCALE.get(v.unit, 1.0) for v in declaration.states]
-        for vector in declaration.vectors:
-            scales += [SCALE.get(vector.unit, 1.0)] * vector.capacity
-    return np.array(scales)
-
-
-def _jacobian(residual, x: np.ndarray, r: np.ndarray, scale: np.ndarray) -> np.ndarray:  # noqa: ANN001
-    """d residual / d (x / scale) by forward differences."""
-    columns = []
-    for i, size in enumerate(scale):
-        moved = x.copy()
-        moved[i] += _DIFFERENCE * size
-        columns.append((residual(moved) - r) / _DIFFERENCE)
-    return np.array(columns).T
+    return np.array([SCALE.get(unit, 1.0) for unit in units_of_states(twin)])
 
 
 def _line_search(residual, x: np.ndarray, r: np.ndarray, step: np.ndarray, rows: np.ndarray):  # noqa: ANN001, ANN202

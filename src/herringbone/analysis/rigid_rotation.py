@@ -40,7 +40,7 @@ def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:
         twin: the system.
         x: states (n,) about which it is asked; kinematics do not depend on them.
     """
-    units = _units(twin)
+    units = units_of_states(twin)
     velocities = np.flatnonzero(np.isin(units, list(_VELOCITIES)))
     rotating, zero = steady_rows(twin)
     positions = np.flatnonzero(np.isin(units, list(_POSITIONS)))
@@ -67,7 +67,7 @@ def rigid_rotation(twin: Twin, x: np.ndarray) -> np.ndarray:
     return found
 
 
-def _units(twin: Twin) -> np.ndarray:
+def units_of_states(twin: Twin) -> np.ndarray:
     """Units of all states (n,)."""
     units: list[str] = []
     for instance in twin.instances:
@@ -80,9 +80,10 @@ def _units(twin: Twin) -> np.ndarray:
 
 def steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
     """States that rotate, and outputs that vanish, in steady rotation."""
-    rotating, zero = [], []
-    for first, instance in zip(twin.layout.state_first, twin.instances, strict=False):
-        declaration = instance.component.declaration
-        rotating += [first + i for i, v in enumerate(declaration.states) if v.steady == "rotating"]
-        zero += [f"{instance.name}.{v.name}" for v in declaration.outputs if v.steady == "zero"]
-    return np.array(rotating, dtype=np.int64), zero
+    zero = [
+        f"{instance.name}.{v.name}"
+        for instance in twin.instances
+        for v in instance.component.declaration.outputs
+        if v.steady == "zero"
+    ]
+    return np.array(twin.turning, dtype=np.int64), zero

@@ -61,7 +61,7 @@ def fused_run(
     """
     progress, recorded, output = heard
     if output is not None:
-        output.claim(system, scene, replace(asked, notes=()))
+        output.claim(system, scene, replace(asked, notes=(), left_out=None))
     result = fused(system, scene, asked, progress, recorded, output)
     if result.outcome.unstable:
         return result
@@ -101,7 +101,8 @@ def coupled_run(
     if verify and aim is None:
         check_fixed_step(asked.algorithm, asked.tolerance)
     if output is not None:
-        output.claim(system, scene, replace(asked, notes=(), tolerance=aim or asked.tolerance))
+        wanted = replace(asked, notes=(), left_out=None, tolerance=aim or asked.tolerance)
+        output.claim(system, scene, wanted)
     system, asked = for_tolerance(system, scene, asked, searched=aim is not None)
     if aim is not None:
         found = searched(system, scene, asked, aim, progress, recorded)

@@ -1,6 +1,6 @@
 """Start values of a run: equilibrium, the thesis' gradual load, or rest."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 from herringbone.analysis.equilibrium import SCALE
@@ -106,16 +106,21 @@ def _dropped(system: System, found: Values) -> Iterator[str]:
 
 def known_parts(system: System) -> System:
     """The system without its foreign parts and what they are connected to."""
-    foreign = set(system.foreign_parts)
+    return without_parts(system, system.foreign_parts)
+
+
+def without_parts(system: System, names: Collection[str]) -> System:
+    """The system without some parts; what they would feed keeps its start value."""
+    left_out = set(names)
     return replace(
         system,
-        parts=tuple(part for part in system.parts if part.name not in foreign),
+        parts=tuple(part for part in system.parts if part.name not in left_out),
         connections=tuple(
             pair
             for pair in system.connections
-            if not foreign & {system.split(path)[0] for path in pair}
+            if not left_out & {system.split(path)[0] for path in pair}
         ),
-        sensors={k: spec for k, spec in system.sensors.items() if spec.part not in foreign},
+        sensors={k: spec for k, spec in system.sensors.items() if spec.part not in left_out},
     )
 
 

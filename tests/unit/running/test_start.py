@@ -181,10 +181,10 @@ def test_a_search_that_is_caught_is_given_up(monkeypatch):
 
     def counted(*arguments):
         threads.append({p["num_threads"] for p in threadpool_info() if p["user_api"] == "blas"})
-        return jacobian(*arguments)
+        return slopes(*arguments)
 
-    jacobian = equilibrium._jacobian
-    monkeypatch.setattr(equilibrium, "_jacobian", counted)
+    slopes = equilibrium.slopes
+    monkeypatch.setattr(equilibrium, "slopes", counted)
     system = read_system("gearbox").with_values({"gear_mesh.pinion.tau": 200.0})
     with threadpool_limits(limits=2, user_api="blas"), pytest.raises(EquilibriumError):
         equilibrium.equilibrium(system)

@@ -101,6 +101,16 @@ class Twin:
         counts = [i.component.declaration.state_count for i in self.instances]
         return np.concatenate([i.block[:n] for i, n in zip(self.instances, counts, strict=True)])
 
+    @cached_property
+    def turning(self) -> list[int]:
+        """Indices of the states that are angles that grow."""
+        return [
+            first + k
+            for first, instance in zip(self.layout.state_first, self.instances, strict=False)
+            for k, state in enumerate(instance.component.declaration.states)
+            if state.steady == "rotating"
+        ]
+
     def rhs(self, t: float, x: np.ndarray) -> np.ndarray:
         """Derivative of all states (n,) at time t [s]."""
         dx = np.zeros_like(x)

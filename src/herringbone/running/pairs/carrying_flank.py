@@ -34,6 +34,7 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
             raise _with_hint(error, system) from error
         coasting, wrong = list(flanks), error
     else:
+        _refuse_other_flanks(system.with_values(values), set(flanks))
         coasting = [gear for gear in flanks if _coasts(system.with_values(values), gear)]
         if not coasting:
             return values, ()
@@ -80,6 +81,27 @@ def _free_flanks(system: System) -> dict[str, list[str]]:
     return found
 
 
+def _refuse_other_flanks(system: System, free: set[str]) -> None:
+    """Refuse teeth that touch on another flank than the one that is set by name.
+
+    Args:
+        system: where it stands.
+        free: gear pairs whose flank is not set.
+
+    Raises:
+        EquilibriumError: see there; y would be the line of action of a flank that carries nothing.
+    """
+    known = anatomy(system)
+    for gear in (gear for gear in known.with_role(Role.GEAR_PAIR) if gear not in free):
+        if not (flank := known.column(gear, Quantity.CARRYING_FLANK)):
+            continue
+        twin = Twin(system)
+        set_to = twin.block[twin.index(flank)]
+        if _pressed(twin, gear) * set_to < 0.0:
+            error = EquilibriumError(f"{flank} = {set_to:g}, and the other flank carries the load")
+            raise _with_hint(error, system)
+
+
 def _with_hint(error: EquilibriumError, system: System) -> EquilibriumError:
     """The error, and that a flank set by name may be the wrong one."""
     gears = anatomy(system).with_role(Role.GEAR_PAIR)
@@ -93,7 +115,10 @@ def _with_hint(error: EquilibriumError, system: System) -> EquilibriumError:
 
 def _coasts(system: System, gear: str) -> bool:
     """True if the meshes of a pair are pressed on the coast flank, where the system stands."""
-    columns = anatomy(system).columns(gear, Quantity.MESH_FORCE)
-    twin = Twin(system)
-    forces = twin.observe(np.zeros(1), twin.state[:, None], columns)[0]
-    return bool(np.sum(forces) < 0.0)
+    return _pressed(Twin(system), gear) < 0.0
+
+
+def _pressed(twin: Twin, gear: str) -> float:
+    """Sum of the mesh forces of a pair [N]; below 0 on the coast flank."""
+    columns = anatomy(twin.system).columns(gear, Quantity.MESH_FORCE)
+    return float(np.sum(twin.observe(np.zeros(1), twin.state[:, None], columns)[0]))

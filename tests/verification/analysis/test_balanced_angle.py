@@ -1,0 +1,52 @@
+"""A gearbox between given torques, inside of its bearings' clearances: where it can stand."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from herringbone.analysis.balanced_angle import balanced_angles
+from herringbone.analysis.equilibrium import SCALE
+from herringbone.analysis.rigid_rotation import steady_rows, units_of_states
+from herringbone.analysis.twin.monolithic import Twin
+from herringbone.cosim.structure.system_file import read_system
+from herringbone.running.prepared import Wishes, prepared
+
+VALUES = {
+    "gear_mesh.der(angle)": 104.72,
+    "gear_mesh.pinion.tau": 200.0,
+    "gear_mesh.wheel.tau": -600.0,
+    "gear_mesh.symmetry_deviation": 10e-6,
+    "bearing_supports.pinion.radial_clearance": 10e-6,
+    "bearing_supports.wheel.radial_clearance": 60e-6,
+}
+MESH = 2.0 * np.pi / 27.0
+NEAR = 1e-6
+"""Of the angle [rad], as balances are found."""
+
+
+def test_rates_vanish_at_angles_of_which_each_mesh_has_some():
+    """The acceleration that is left is its slope over the angle, below 10 / s^2, times `NEAR`."""
+    twin = Twin(read_system("gearbox").with_values(VALUES))
+    scale = np.array([SCALE.get(unit, 1.0) for unit in units_of_states(twin)])
+    rotating, _ = steady_rows(twin)
+    found = list(balanced_angles(twin, twin.state, scale))
+    angles = [float(x[rotating[0]]) for x in found]
+    assert len(found) >= 2
+    assert angles == sorted(angles)
+    assert angles[1] - angles[0] < MESH
+    for x in found:
+        rate = np.delete(twin.rhs(0.0, x), rotating)
+        assert np.abs(rate).max() < 10.0 * NEAR
+
+
+@pytest.mark.parametrize(
+    ("torque", "deviation"), list(itertools.product((-900.0, -150.0, 30.0, 700.0), (10e-6, 200e-6)))
+)
+def test_a_gearbox_between_given_torques_starts_at_its_speed(torque, deviation):
+    """Some searches by slopes alone ended at -3531 rad/s, by the last digits of the slopes."""
+    own = {"gear_mesh.pinion.tau": torque, "gear_mesh.symmetry_deviation": deviation}
+    clearances = {name: value for name, value in VALUES.items() if "clearance" in name}
+    start = prepared("gearbox", None, Wishes(values={**own, **clearances})).system
+    speed = start.part("gear_mesh").values["der(angle)"]
+    assert speed == pytest.approx(VALUES["gear_mesh.der(angle)"], rel=1e-3)
