@@ -34,6 +34,9 @@ enum { DOFS = 12, OK = 0, ERROR = 3 };
 #ifndef HARDENING /* N/m3 */
 #define HARDENING 0.0
 #endif
+#ifndef MASS /* kg, at each seat and direction */
+#define MASS 40.0
+#endif
 #ifndef SPRING /* factor of the stiffness to the ground */
 #define SPRING 1.0
 #endif
@@ -50,7 +53,7 @@ enum { DOFS = 12, OK = 0, ERROR = 3 };
 #define LONGEST 1e-6
 #endif
 
-static const double MASS = 40.0, DAMPING_TIME = 5e-6;
+static const double DAMPING_TIME = 5e-6;
 /* Toward the wheel, up, along the shafts. */
 static const double STIFFNESS[3] = {7e8, 7e8, 1.5e8}, COUPLING[3] = {1e8, 1e8, 8e7};
 

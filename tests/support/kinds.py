@@ -8,9 +8,9 @@ from pathlib import Path
 KINDS = Path(__file__).parents[1] / "fmus" / "kinds"
 
 
-def build_kinds(folder: Path) -> Path:
-    """Build all of them in a folder, which is returned; in a process of its own."""
-    command = [sys.executable, "-B", str(KINDS / "build.py"), str(folder)]
+def build_kinds(folder: Path, *sources: str) -> Path:
+    """Build some of them, or all, in a folder, which is returned; in a process of its own."""
+    command = [sys.executable, "-B", str(KINDS / "build.py"), str(folder), *sources]
     done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=folder)
     assert done.returncode == 0, done.stderr
     return folder

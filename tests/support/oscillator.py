@@ -68,6 +68,17 @@ class Oscillator:
             found.append(over @ found[-1])
         return np.array(found)
 
+    def group_errors(self, result):
+        """Of displacements and of velocities against the exact solution, rms over rms."""
+        data = result.data
+        true = self.exact(data["time"].to_numpy())
+        found = data[["one.x", "two.x", "one.v", "two.v"]].to_numpy()
+        parts = {"displacements": slice(0, 2), "velocities": slice(2, 4)}
+        return {
+            name: np.linalg.norm((found - true)[:, part]) / np.linalg.norm(true[:, part])
+            for name, part in parts.items()
+        }
+
     def errors(self, result):
         """Of the displacements, rms over rms; of the energy at the end, over its start."""
         data = result.data

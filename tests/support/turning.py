@@ -10,6 +10,7 @@ from pathlib import Path
 
 import herringbone as hb
 from herringbone.running.prepared import Wishes, prepared
+from support.strangers import write_system
 
 TORQUE = 200.0
 """At the pinion [N m]."""
@@ -46,23 +47,49 @@ class Gearbox:
             for quantity in ("phi", "w")
         }
 
-    def motor(self) -> dict[str, str]:
-        """What the script of the e-motor begins with, instead of what."""
-        phi, w = self.flange["pinion", "phi"], self.flange["pinion", "w"]
+    def motor(self, gear: str = "pinion") -> dict[str, str]:
+        """What the script of an e-motor at a gear begins with, instead of what."""
+        phi, w = self.flange[gear, "phi"], self.flange[gear, "w"]
+        torque = self.torque(gear)
         return {
-            "self.x = [0.0, 0.0, 0.0]": f"self.x = [{TORQUE}, {TORQUE / MOTOR_SHAFT + phi}, {w}]",
+            "self.x = [0.0, 0.0, 0.0]": f"self.x = [{torque}, {torque / MOTOR_SHAFT + phi}, {w}]",
             "phi=0.0, w=0.0": f"phi={phi}, w={w}",
         }
+
+    def torque(self, gear: str) -> float:
+        """On the gearbox at the flange of a gear [N m]."""
+        wheel = -TORQUE * self.flange["pinion", "w"] / self.flange["wheel", "w"]
+        return TORQUE if gear == "pinion" else wheel
 
     def vehicle(self) -> dict[str, str]:
         """What the script of the vehicle begins with, instead of what."""
         phi, w = self.flange["wheel", "phi"], self.flange["wheel", "w"]
-        torque = TORQUE * self.flange["pinion", "w"] / w
-        angle, speed = phi - torque / SIDE_SHAFT, RADIUS * w
+        angle, speed = phi + self.torque("wheel") / SIDE_SHAFT, RADIUS * w
         return {
             "self.angle = self.speed = 0.0": f"self.angle = {angle}; self.speed = {speed}",
             "phi=0.0, w=0.0": f"phi={phi}, w={w}",
         }
+
+
+def with_motors(file: Path, folder: Path, rpm: float) -> tuple[Path, dict[str, float]]:
+    """A gearbox with e-motors at both flanges in steady rotation, and what is to be set in it.
+
+    Args:
+        file: FMU of the e-motor.
+        folder: to write into.
+        rpm: of the pinion [1/min].
+    """
+    gearbox = Gearbox(rpm, folder)
+    files, values = {}, dict(gearbox.values)
+    for part, gear in (("drive", "pinion"), ("brake", "wheel")):
+        to = folder / f"{part}_at_{rpm:.0f}.fmu"
+        files[part] = changed(file, to, gearbox.motor(gear), plain=False, declared=True)
+        values[f"{part}.torque_set"] = gearbox.torque(gear)
+    joined = [["drive.flange", "gearbox.pinion"], ["brake.flange", "gearbox.wheel"]]
+    system = write_system(folder, f"motors_at_{rpm:.0f}", joined, files)
+    with (system / "system.toml").open("a", encoding="utf-8") as opened:
+        opened.write('\ngearbox = { system = "gearbox" }\n')
+    return system, values
 
 
 def changed(file: Path, to: Path, script: dict[str, str], *, plain: bool, declared: bool) -> Path:

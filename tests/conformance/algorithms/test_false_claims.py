@@ -22,7 +22,7 @@ from support.algorithms import (
 from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability.limits import default_algorithms, stability
 from herringbone.analysis.stability.recommendation import rank
-from herringbone.analysis.stability.steps.step_map import LinearPart
+from herringbone.analysis.stability.steps.linear_part import LinearPart
 from herringbone.cosim.algorithms import ALGORITHMS, LI, Jacobi, Predict, parse_algorithm
 from herringbone.cosim.algorithms.staged import Prepared
 

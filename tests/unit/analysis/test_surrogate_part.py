@@ -29,7 +29,8 @@ def surrogate_part(random):
     )
     inputs, outputs = [f"u{k}" for k in range(INPUTS)], [f"y{k}" for k in range(OUTPUTS)]
     surrogate = SimpleNamespace(
-        model=model, over=model.over, inputs=inputs, outputs=outputs,
+        over=model.over, orders=0, rated=False, width=(INPUTS, OUTPUTS),
+        inputs=inputs, outputs=outputs,
         start=random.standard_normal(INPUTS), start_outputs=random.standard_normal(OUTPUTS),
     )  # fmt: skip
     kinds = {"input": inputs, "output": outputs}

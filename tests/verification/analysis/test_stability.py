@@ -10,11 +10,14 @@ from support.housing import PROTOTYPE_HOUSING
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.growth import GROWTH, Growth
+from herringbone.analysis.stability.limits import default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness, linear_network
+from herringbone.analysis.stability.steps import step_map
 from herringbone.analysis.stability.steps.step_limits import step_limits
 from herringbone.analysis.stability.steps.step_map import MappedPart, linear_part
 from herringbone.analysis.stability.steps.step_scan import unstable_bands
 from herringbone.cosim.algorithms import LI, Jacobi
+from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.loops.calls import do_step
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
@@ -144,6 +147,36 @@ def test_mapped_step_is_the_part_s_own_step(degree):
     moved = np.abs(own - base)
     assert (np.abs(mapped - own) <= 1e-6 * moved + 1e-12 * np.abs(own)).all()
     assert moved.max() > 0.0
+
+
+@pytest.mark.parametrize("degree", [0, 3])
+def test_a_composed_map_that_a_trial_contradicts_is_not_taken(monkeypatch, degree):
+    """One thousandth off: then all columns are differences of the part's own steps."""
+    _, instances = linear_network(rig())
+    gear = next(i for i in instances if i.name == "gearbox.gear_mesh")
+    part, composed, asked = MappedPart(gear), step_map.composed, []
+
+    def wrong(*given):
+        asked.append(given)
+        return 1.001 * composed(*given)
+
+    monkeypatch.setattr(step_map, "composed", wrong)
+    part.prepare(1e-4, degree)
+    base = part._advanced(1e-4, part._results(degree))
+    assert np.array_equal(part._columns(1e-4, degree, base), part._measured(1e-4, degree))
+    assert len(asked) == 2
+
+
+@pytest.mark.parametrize("algorithm", default_algorithms(), ids=str)
+def test_columns_of_one_call_are_those_of_runs(monkeypatch, algorithm):
+    """To rounding: an iterated algorithm keeps its scale from run to run."""
+    amplification = Amplification(*linear_network(atlas.two_rotors(0.02, 3.0)), algorithm)
+    found = amplification.matrix(1e-4)
+    run_from = type(amplification._laid_out).run_from
+    monkeypatch.setattr(type(amplification._laid_out), "run_from", PreparedRun.run_from)
+    assert found.size > 0
+    assert amplification.matrix(1e-4) == pytest.approx(found, rel=1e-12, abs=1e-14)
+    assert run_from is not PreparedRun.run_from
 
 
 def test_the_step_of_a_mapped_part_is_not_compiled(monkeypatch):

@@ -1,30 +1,35 @@
 """Amplification matrix of a coupling algorithm, measured on its own compiled code.
 
 One macro step of an algorithm maps z = (states of all parts, signals at the communication points
-that the algorithm looks back to) to z'. For linear parts the map is affine, z' = A z + b: its
-columns follow from differences of single macro steps, exactly up to rounding. Nothing is derived
-by hand, so that every algorithm that runs can be examined.
+that the algorithm looks back to, rates of outputs at its start) to z'. For linear parts the map is
+affine, z' = A z + b: its columns follow from differences of single macro steps, exactly up to
+rounding. Nothing is derived by hand, so that every algorithm that runs can be examined.
 
 The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Busch, ZAMM 96, 2016,
 1061-1081, section 3: recurrence equations of co-simulation; here the parts are the real ones.)
 """
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from herringbone.analysis.stability.coordinates import Coordinates
+from herringbone.analysis.stability.given_derivatives import check_orders, rated_outputs
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
-from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, linear_part
-from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
+from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANGE
+from herringbone.analysis.stability.steps.step_map import linear_part
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import HerringboneError, Instance
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, record_names
+from herringbone.cosim.layouts.starts import starts_of
 from herringbone.cosim.loops.common import DONE, get_all
 from herringbone.cosim.structure.network import Network
 
@@ -36,9 +41,15 @@ _HALF, _FALLS = 0.5, 0.35
 """At half the step less than this share of the growth is left, if it is that of held values: 1/4
 where it goes with the step's square. By time alone it is 1/2."""
 _ROWS = HISTORY - 1
+_PER_SECOND = 1e3
+"""Differences of rates over those of the outputs [1/s]."""
 _START = HISTORY
 """A macro step by which all history is there."""
 _NEVER = 1 << 40
+_FEW = 8
+"""Calls for columns from which on it pays to compile the loop over them."""
+_MOST_STEPS = 10000
+"""Macro steps in a common period of parts with clocks."""
 
 
 class Amplification:
@@ -65,6 +76,7 @@ class Amplification:
         self._start = [part.values.copy() for part in self._parts]
         self._laid_out = algorithm.prepare(self.network)  # the same for all steps
         layout = self._laid_out.layout
+        check_orders(layout, self._parts)
         self._outputs = layout.output_reference.size
         self._first = layout.output_first
         self._records = np.zeros((1, sum(len(names) for names in record_names(network))))
@@ -73,14 +85,24 @@ class Amplification:
         self._base[1:] = self._base[0]
         self._history = self._base.copy()
         signals = self._signal_changes(layout.output_first, layout.output_reference)
+        self._rated = rated_outputs(layout)
+        self._rates = np.zeros(self._rated.size)  # at the start of a step
+        signals = np.concatenate([signals, _PER_SECOND * signals[self._rated]])
         self._coordinates = Coordinates(self._parts, signals.size)
         self._changes = np.concatenate([self._coordinates.changes, signals])
         self._z_changes = np.concatenate([self._coordinates.z_changes, signals])
-        counts = zip(self._parts, self._coordinates.counts, strict=True)
-        seen = [part.values[:count] for part, count in counts if count]
-        self._seen = [*seen, self._history[:_ROWS].ravel()]  # views: whatever is in there later
-        self._places = [(values, k) for values in self._seen for k in range(values.size)]
-        self._used: np.ndarray | None = None
+        seen = [*self._coordinates.counts, _ROWS * self._outputs, self._rates.size]
+        arrays = [*(part.values for part in self._parts), self._history, self._rates]
+        self._array = np.repeat(np.arange(len(arrays)), seen)
+        self._place = np.concatenate([np.arange(count) for count in seen])
+        self._seen = [array.ravel()[:count] for array, count in zip(arrays, seen, strict=True)]
+        self._used_by: dict[frozenset[tuple[bool, ...]], np.ndarray] = {}
+        self._used = np.empty(0, int)
+        standing = [part for part in self._parts if isinstance(part, StandIn)]
+        self._clocks = [part.clock for part in standing if part.clock]
+        # Many macro steps in one call: of parts that are what their values are.
+        by_values = not self._rates.size and not any(part.remembers for part in standing)
+        self._starts, self._moves = starts_of(arrays, seen) if by_values else None, 0
 
     def _signal_changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each signal that an algorithm looks back to."""
@@ -101,6 +123,9 @@ class Amplification:
             HerringboneError: a part fails at this step.
         """
         matrix = self.matrix(step)
+        steps = len(self._ticking(step))
+        if self._clocks:
+            return growth_of(matrix, steps * step, self._noise).per_step(steps)
         found = growth_of(matrix, step, self._noise)
         turned = 2.0 * np.pi * found.frequency * step
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
@@ -121,14 +146,42 @@ class Amplification:
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
 
+        With parts that have clocks it is that of the macro steps of their common period.
+
         Raises:
             HerringboneError: a part fails at this step.
         """
         with one_blas_thread():
-            if self._used is None:
+            ticking = self._ticking(step)
+            kinds = frozenset(ticking)
+            if kinds not in self._used_by:
                 everything = np.arange(self._z_changes.size)
-                self._used = _coupled(self._differences(step, everything))
-            return self._differences(step, self._used)
+                sizes = [np.abs(self._of(which, step, everything)) for which in kinds]
+                self._used_by[kinds] = _coupled(np.sum(sizes, axis=0))
+            self._used = self._used_by[kinds]
+            by_kind = {which: self._of(which, step, self._used) for which in kinds}
+            found = by_kind[ticking[0]]
+            for which in ticking[1:]:
+                found = by_kind[which] @ found
+            return found
+
+    def _ticking(self, step: float) -> list[tuple[bool, ...]]:
+        """Which parts with clocks tick in each macro step of their common period."""
+        parts = [clock.parts_of_period(step) for clock in self._clocks]
+        common = math.lcm(*parts)
+        if common > _MOST_STEPS:
+            names = ", ".join(clock.name for clock in self._clocks)
+            raise HerringboneError(
+                f"the clocks of {names} have no common period of at most {_MOST_STEPS} steps of "
+                f"{step:g} s"
+            )
+        return [tuple(n % k == 0 for k in parts) for n in range(common)]
+
+    def _of(self, ticking: tuple[bool, ...], step: float, used: np.ndarray) -> np.ndarray:
+        """Matrix of one macro step [s] in which these parts with clocks tick."""
+        for clock, ticks in zip(self._clocks, ticking, strict=True):
+            clock.ticks = ticks
+        return self._differences(step, used)
 
     @property
     def residual(self) -> float:
@@ -148,7 +201,7 @@ class Amplification:
             eigenvalues, vectors = np.linalg.eig(matrix)
         sizes = np.where(np.abs(eigenvalues - 1.0) > RIGID, np.abs(eigenvalues), 0.0)
         vector = vectors[:, int(np.argmax(sizes))]
-        used = np.empty(0, int) if self._used is None else self._used
+        used = self._used
         vector = vector / np.abs(vector / self._z_changes[used]).max()
         offset = self._changes.size - self._z_changes.size
         with self._prepared(step) as prepared:
@@ -191,13 +244,41 @@ class Amplification:
         while True:
             self._restore()
             disturbed()
+            if (rates := prepared.start_rates) is not None:
+                rates[self._rated] = self._rates
             status, _, culprit = prepared.run(self._history, chunk)
-            if status == DONE or not any([part.learn() for part in self._parts]):
-                break
-        if status != DONE:
+            if (rates := prepared.start_rates) is not None:
+                self._rates[:] = rates[self._rated]
+            if status == DONE:
+                return np.concatenate(self._seen)
+            self._learn(culprit, step)
+
+    def _moved(
+        self, prepared: PreparedRun, step: float, entries: np.ndarray, changes: np.ndarray
+    ) -> np.ndarray:
+        """(k, all) entries after a macro step from each of k changes (k,) of one entry alone."""
+        if self._starts is None:
+            found = [
+                self._advance(prepared, step, partial(self._perturb, entry, change))
+                for entry, change in zip(entries.tolist(), changes.tolist(), strict=True)
+            ]
+            return np.reshape(found, (entries.size, self._array.size))
+        chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
+        starts = self._starts.changed(self._array[entries], self._place[entries], changes)
+        self._moves += 1
+        run_from = type(prepared).run_from if self._moves > _FEW else PreparedRun.run_from
+        begin = 0
+        while True:
+            status, begin, culprit = run_from(prepared, starts, begin, self._history, chunk)
+            if status == DONE:
+                return starts.found
+            self._learn(culprit, step)
+
+    def _learn(self, culprit: int, step: float) -> None:
+        """Let parts make ready for a step that was refused; raises HerringboneError if none can."""
+        if not any([part.learn() for part in self._parts]):
             name = self._parts[culprit].name if culprit >= 0 else "the coupling"
             raise HerringboneError(f"{name} fails in one step of {step:g} s from equilibrium")
-        return np.concatenate(self._seen)
 
     def _differences(self, step: float, used: np.ndarray) -> np.ndarray:
         with self._prepared(step) as prepared:
@@ -206,41 +287,33 @@ class Amplification:
             base = self._advance(prepared, step)
             steps = self._coordinates.steps()
             entries = self._coordinates.entries(used, steps)
-
-            def moved(entry: int, change: float) -> np.ndarray:
-                return self._advance(prepared, step, lambda: self._perturb(entry, change)) - base
-
-            found = np.empty((base.size, entries.size))
-            uneven = self._noise > 0.0 and _is_uneven(moved, entries, self._changes)
-            for column, entry in enumerate(entries.tolist()):
-                change = self._changes[entry]
-                found[:, column] = moved(entry, change) / change
-                if uneven:
-                    found[:, column] -= moved(entry, -change) / change
-                    found[:, column] *= 0.5
-        return self._coordinates.matrix(found, entries, used, steps)
+            changes = self._changes[entries]
+            moved = self._moved(prepared, step, entries, changes) - base
+            if self._noise > 0.0 and entries.size:
+                last = self._moved(prepared, step, entries[-1:], -changes[-1:]) - base
+                if _is_uneven(moved[-1], last[0]):
+                    moved -= self._moved(prepared, step, entries, -changes) - base
+                    moved *= 0.5
+        rates = moved / changes[:, None]
+        return self._coordinates.matrix(rates.T, entries, used, steps)
 
     def _restore(self) -> None:
         self._history[:] = self._base
+        self._rates[:] = 0.0
         for part, start in zip(self._parts, self._start, strict=True):
             part.values[:] = start
+            part.begin()
 
     def _perturb(self, entry: int, change: float) -> None:
-        values, place = self._places[entry]
-        values[place] += change
+        self._seen[self._array[entry]][self._place[entry]] += change  # views
 
 
-def _is_uneven(
-    moved: Callable[[int, float], np.ndarray], entries: np.ndarray, changes: np.ndarray
-) -> bool:
-    """True if a change and its opposite do not answer alike, by an entry that looks back.
+def _is_uneven(there: np.ndarray, back: np.ndarray) -> bool:
+    """True if a change and its opposite do not answer alike.
 
     An algorithm that corrects until little is left may take one correction less at rest than after
     any change: a difference that belongs to no column, and that differences to both sides cancel.
     """
-    if entries.size == 0:
-        return False
-    there, back = (moved(int(entries[-1]), sign * changes[entries[-1]]) for sign in (1.0, -1.0))
     return bool(np.linalg.norm(there + back) > _EVEN * np.linalg.norm(there))
 
 

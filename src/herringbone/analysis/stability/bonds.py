@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.analysis.stability.linear_parts import Member
-from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import Instance
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
@@ -232,11 +232,10 @@ def _surrogate_response(
 ) -> float:
     """As `_response`, of a foreign body: dv/dt = c b f where v = c x and dx/dt = a x + b f."""
     surrogate = body.surrogate
-    assert surrogate.model is not None
     pushed = np.zeros(len(surrogate.inputs))
     for name, x in forces:
         pushed[surrogate.inputs.index(name)] += x
-    rates = surrogate.model.c @ (surrogate.model.b @ pushed)
+    rates = surrogate.response(pushed)
     velocities = [(motion_at(name)[1], x) for name, x in along]
     read = [(surrogate.outputs.index(v), x) for v, x in velocities if v in surrogate.outputs]
     return float(sum(x * rates[row] for row, x in read))

@@ -2,7 +2,8 @@
 
 z holds the states of all parts, then the signals that an algorithm looks back to. Of a component
 the states themselves are moved. Of what stands for a foreign part the answers of its states are
-moved, as they are few; with x' = states x + held u, matrices make of them what states do.
+moved, as they are few; with x' = states x + held u, matrices make of them what states do. What the
+adapter of one carries from step to step is a state as it is.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,8 +11,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from herringbone.analysis.stability.steps.step_map import CHANGE, OTHER_CHANGE, Linear
-from herringbone.analysis.stability.surrogates.surrogate_part import MacroStep, StandIn
+from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANGE
+from herringbone.analysis.stability.steps.step_map import Linear
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
+from herringbone.analysis.stability.surrogates.surrogate_part import MacroStep
 
 
 class Coordinates:
@@ -39,7 +42,11 @@ class Coordinates:
         self._first = first
         self._z = np.full(first[-1] + signals, -1)
         for p, part in enumerate(parts):
-            if not isinstance(part, StandIn):
+            if isinstance(part, StandIn):
+                self._z[first[p] + part.carried.start : first[p + 1]] = self._states[p][
+                    part.states :
+                ]
+            else:
                 self._z[first[p] : first[p + 1]] = self._states[p]
         self._z[first[-1] :] = states[-1] + np.arange(signals)
         self._size = int(states[-1]) + signals
@@ -98,9 +105,11 @@ class Coordinates:
         for p, states in enumerate(self._states):
             if states.size and entry <= states[-1]:
                 number, values = entry - int(states[0]), self._parts[p].values
-                if p in steps:
+                if p in steps and number < self._stand_in(p).states:
                     answers = steps[p].answers[:, number]
                     values[: answers.size] += answers * change
+                elif p in steps:
+                    values[self._stand_in(p).carried][number - self._stand_in(p).states] += change
                 else:
                     values[number] += change
                 return True
@@ -112,18 +121,21 @@ class Coordinates:
         return part
 
     def _wanted(self, p: int, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """States of a part that are used, and their places."""
-        found = place[self._states[p]]
+        """States of a surrogate that are used, and their places."""
+        found = place[self._states[p][: self._stand_in(p).states]]
         return np.flatnonzero(found >= 0), found[found >= 0]
 
 
 def _changes(part: Linear) -> list[float]:
-    """Differences of a part's entries: states, or answers and inputs held."""
+    """Differences of a part's entries: states, or answers, inputs held and what is carried."""
     if not isinstance(part, StandIn):
         return part.state_changes
     variables = part.part.variables
-    outputs = [
-        part.output_change(name, CHANGE.get(variables[name].unit or "", OTHER_CHANGE))
-        for name in part.surrogate.outputs
-    ]
-    return outputs * part.most_steps + [1.0] * (part.held.stop - part.held.start)
+    outputs = part.answer_changes(
+        {
+            name: CHANGE.get(variables[name].unit or "", OTHER_CHANGE)
+            for name in part.surrogate.outputs
+        }
+    )
+    held = [1.0] * (part.held.stop - part.held.start)
+    return outputs * part.most_steps + held + part.carried_changes

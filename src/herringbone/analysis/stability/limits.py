@@ -17,7 +17,12 @@ from herringbone.analysis.stability.recommendation import (
     rank,
 )
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
-from herringbone.analysis.stability.steps.step_limits import Progress, StepLimits, step_limits
+from herringbone.analysis.stability.steps.step_limits import (
+    Progress,
+    StepLimits,
+    clocks_of,
+    step_limits,
+)
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity, Role
@@ -42,6 +47,7 @@ class Stability:
         ranking: algorithms and steps for that, the best first.
         notes: algorithms that this system cannot have, and those that are not ranked.
         orders: of what stands for foreign parts, by name.
+        fresh_instances: on how many of a foreign part it was tried, of those that save no state.
     """
 
     system: str
@@ -53,6 +59,7 @@ class Stability:
     ranking: Ranking
     notes: tuple[str, ...] = field(default=())
     orders: Mapping[str, int] = field(default_factory=dict)
+    fresh_instances: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def recommended(self) -> Recommendation | None:
@@ -114,6 +121,7 @@ def stability(
         notes.append("algorithms are not ranked: the rule of accuracy knows no foreign parts")
     else:
         ranking = rank(by_limit, highest, tolerance, _micro_step(instances))
+    notes += _on_a_grid(limits, strangers, simulate=simulate)
     notes += [f"{name} is not ranked: {why}" for name, why in ranking.unranked.items()]
     notes += _unfrozen(instances)
     return Stability(
@@ -126,7 +134,22 @@ def stability(
         ranking,
         tuple(notes),
         {name: stranger.surrogate.order for name, stranger in strangers.items()},
+        {
+            name: stranger.surrogate.fresh_instances
+            for name, stranger in strangers.items()
+            if stranger.surrogate.fresh_instances
+        },
     )
+
+
+def _on_a_grid(limits: Sequence[StepLimits], strangers: Strangers, *, simulate: bool) -> list[str]:
+    """A line on which steps were looked at, if parts have clocks."""
+    clocks, looked = clocks_of(strangers), max((found.steps for found in limits), default=0)
+    if not clocks or not looked:
+        return []
+    known = ", ".join(f"{clock.name} every {clock.period:g} s" for clock in clocks)
+    runs = "; their limits are not looked for by runs" if simulate else ""
+    return [f"parts with clocks: {known}: {looked} steps that go with these were looked at{runs}"]
 
 
 def _found(
@@ -137,7 +160,7 @@ def _found(
     strangers: Strangers,
 ) -> StepLimits:
     limit = step_limits(system, algorithm, progress, strangers)
-    if not simulate:
+    if not simulate or limit.steps:
         return limit
     seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands, strangers)
     return replace(limit, simulated_limit=seen)

@@ -13,7 +13,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from herringbone.analysis.stability.surrogates.surrogate_part import StandIn, Stranger
+from herringbone.analysis.stability.surrogates.stand_in import StandIn, Stranger
 from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core import Instance

@@ -131,6 +131,9 @@ def _foreign_lines(found: Stability) -> list[str]:
         f"foreign parts as linear systems that trial steps show: {parts}; on other trials, at the "
         f"limits, they miss by {missed:.1g} % at most"
     ]
+    if found.fresh_instances:
+        tried = ", ".join(f"{name} on {n}" for name, n in found.fresh_instances.items())
+        lines.append(f"without saved states, each trial on an instance of its own: {tried}")
     lines += [
         f"nothing is promised for {limits.algorithm.removesuffix(_SCHEDULE)}: at its limit they "
         f"miss by {100.0 * limits.residual:.2g} %"
@@ -213,6 +216,7 @@ def stability_summary(found: Stability) -> dict[str, Any]:
         "ranking": ranked,
         "unranked": dict(found.ranking.unranked),
         "foreign_orders": dict(found.orders),
+        "foreign_instances": dict(found.fresh_instances),
         "notes": list(found.notes),
     }
 

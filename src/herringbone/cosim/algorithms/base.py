@@ -20,6 +20,9 @@ from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.checkpoint.run_state import Arrays, arrays_of, put_arrays
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import NodeLayout
+from herringbone.cosim.layouts.starts import Starts
+from herringbone.cosim.loops.common import DONE
+from herringbone.cosim.loops.starts import put, take
 from herringbone.cosim.rows.record import Grid, Record, UniformRecord
 from herringbone.cosim.rows.recording import ErrorEstimate, StepStatistics
 from herringbone.cosim.structure.network import Network
@@ -156,6 +159,14 @@ class PreparedRun(ABC):
         """True if outputs are wanted inside the macro step, not only at its end."""
         return False
 
+    @property
+    def start_rates(self) -> np.ndarray | None:
+        """(outputs,) rates that the last macro step leaves to the next, of parts that give them.
+
+        None: there are none, or nothing ran yet. What is written into it counts.
+        """
+        return None
+
     def input_degree(self, part: int) -> int:
         """Degree of the polynomials that a part takes: its nodes, or its FMI derivatives."""
         signals = self.layout.derivatives
@@ -220,6 +231,18 @@ class PreparedRun(ABC):
     @abstractmethod
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; arguments and result are those of `loops.stages.run_stages`."""
+
+    def run_from(
+        self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
+    ) -> tuple[int, int, int]:
+        """Run macro steps from each start, one after another; see `loops.starts.stages_from`."""
+        for number in range(begin, starts.array.size):
+            put(starts, number)
+            status, _, culprit = self.run(history, chunk)
+            if status != DONE:
+                return status, number, culprit
+            take(starts, number)
+        return DONE, starts.array.size, -1
 
 
 def check_multirate(algorithm: Algorithm) -> None:

@@ -91,14 +91,14 @@ class InterfaceJacobian:
 
 
 def correction_matrix(jacobian: np.ndarray, t: float, h: float) -> np.ndarray:
-    """(I - dG/dU)^-1 for a macro step h at t [s].
+    """(I - dG/dU)^-1 for a macro step h at t [s], by columns: it is the transposed one.
 
     Raises:
         CouplingError: the matrix is singular.
     """
     try:
         with one_blas_thread():  # threads wait for each other far longer
-            return np.linalg.inv(np.eye(len(jacobian)) - jacobian)
+            return np.linalg.inv(np.eye(len(jacobian)) - jacobian).T.copy()
     except np.linalg.LinAlgError:
         raise CouplingError(
             f"the interface Jacobian is singular at {t:g} s (h = {h:g} s); "

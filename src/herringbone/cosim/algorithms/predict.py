@@ -32,7 +32,9 @@ from herringbone.cosim.layouts.layout import (
     connected_outputs,
     node_references,
 )
+from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.predict import FORCE, NO_RATE, NODES, Prediction, run_predicted
+from herringbone.cosim.loops.starts import predicted_from
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.rates import rate_of, rates
 
@@ -145,3 +147,9 @@ class PreparedPrediction(PreparedRun):
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run macro steps; see `loops.stages.run_stages`."""
         return run_predicted(self.layout, self._prediction, history, chunk)
+
+    def run_from(
+        self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
+    ) -> tuple[int, int, int]:
+        """See `PreparedRun`."""
+        return predicted_from(starts, begin, self.layout, self._prediction, history, chunk)

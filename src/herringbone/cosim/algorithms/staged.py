@@ -12,7 +12,9 @@ from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.layouts.derivatives import lay_out_derivatives
 from herringbone.cosim.layouts.layout import Chunk, Layout, build_layout
 from herringbone.cosim.layouts.slow import slow_degrees
+from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.stages import run_stages
+from herringbone.cosim.loops.starts import stages_from
 from herringbone.cosim.structure.network import Network
 
 
@@ -54,6 +56,14 @@ class Prepared(PreparedRun):
             layout = self.starter
             chunk = chunk._replace(count=min(chunk.count, self.order - chunk.start))
         return run_stages(layout, history, self.order, chunk)
+
+    def run_from(
+        self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
+    ) -> tuple[int, int, int]:
+        """See `PreparedRun`."""
+        if self.starter is not None and chunk.start < self.order:
+            return super().run_from(starts, begin, history, chunk)
+        return stages_from(starts, begin, self.layout, history, self.order, chunk)
 
 
 def refuse_mixed(network: Network, algorithm: str) -> None:

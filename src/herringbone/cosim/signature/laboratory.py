@@ -36,6 +36,7 @@ class Laboratory:
         why: what is wrong with either, "" if nothing.
         seconds: that a step takes [s].
         start_outputs: (m,) before the first step.
+        instances: how many were made so far.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class Laboratory:
         self.restores: bool | None = None
         self.repeats = True
         self.why = ""
-        self.seconds = 0.0
+        self.seconds, self.instances = 0.0, 0
         self.start_outputs = np.empty(0)
 
     def __enter__(self) -> Self:
@@ -112,6 +113,30 @@ class Laboratory:
             raise
         return np.array(found)
 
+    def run_signals(self, signals: np.ndarray, h: float, *, rated: bool) -> np.ndarray:
+        """(steps, m) outputs after each step of h [s], or (steps, 2 m) with their rates.
+
+        Args:
+            signals: (steps, n + orders n) inputs and their derivatives at the start of each step.
+            h: step [s].
+            rated: rates are asked for.
+
+        Raises:
+            Refused: the part does.
+        """
+        count, found = len(self.inputs), []
+        try:
+            trial = self.at_start()
+            for given in signals:
+                trial.set(given[:count])
+                trial.set_derivatives(given[count:])
+                trial.step(h)
+                found.append(np.concatenate([trial.values(), trial.rates() if rated else []]))
+        except Refused:
+            self._close()
+            raise
+        return np.array(found)
+
     def after(self, lead: Sequence[np.ndarray], last: np.ndarray, h: float) -> np.ndarray:
         """(m,) outputs after whole steps on `lead` and one of h [s] on `last`; raises Refused."""
         try:
@@ -134,6 +159,7 @@ class Laboratory:
 
     def _instance(self) -> Trial:
         stop = self.start_time + 1e6 * self.step
+        self.instances += 1
         return Trial(self._make(), self.inputs, self.outputs, self.start_time, stop)
 
     def _steps(self, trial: Trial) -> np.ndarray:

@@ -7,7 +7,12 @@ import numpy as np
 
 from herringbone.core import FmuError
 from herringbone.core.part import Part
-from herringbone.cosim.loops.calls import do_step, exchange_reals, state_call
+from herringbone.cosim.loops.calls import (
+    do_step,
+    exchange_derivatives,
+    exchange_reals,
+    state_call,
+)
 from herringbone.cosim.loops.common import LAST_GOOD
 from herringbone.kernels.fmi_calls import DISCARD
 
@@ -62,6 +67,44 @@ class Trial:
         if found.size:
             self._exchange(self._at.get_real, self._outputs, found, "to give its outputs")
         return found
+
+    def set_derivatives(self, values: np.ndarray) -> None:
+        """Set derivatives (orders n,) of all inputs at the start of a step; raises Refused."""
+        n = self._inputs.size
+        orders = np.repeat(np.arange(1, values.size // max(n, 1) + 1, dtype=np.int32), n)
+        references = np.tile(self._inputs, values.size // max(n, 1))
+        given = np.ascontiguousarray(values, dtype=float)
+        self._derivatives(self._at.set_derivatives, references, orders, given, "derivatives")
+
+    def rates(self) -> np.ndarray:
+        """(m,) rates of all outputs at the end of a step; raises Refused."""
+        found = np.empty(self._outputs.size)
+        orders = np.ones(found.size, dtype=np.int32)
+        self._derivatives(
+            self._at.get_derivatives, self._outputs, orders, found, "to give its outputs' rates"
+        )
+        return found
+
+    def _derivatives(
+        self,
+        address: int,
+        references: np.ndarray,
+        orders: np.ndarray,
+        values: np.ndarray,
+        what: str,
+    ) -> None:
+        if values.size == 0:
+            return
+        status = exchange_derivatives(
+            address,
+            self._at.component,
+            references.ctypes.data,
+            references.size,
+            orders.ctypes.data,
+            values.ctypes.data,
+        )
+        if status > LAST_GOOD:
+            raise Refused(self._refusal(what, status))
 
     def step(self, h: float) -> None:
         """Step by h [s]; raises Refused."""

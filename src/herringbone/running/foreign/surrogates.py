@@ -6,13 +6,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, round_period
+from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
-from herringbone.analysis.stability.surrogates.surrogate_part import Stranger
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
+from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Kind, Laboratory, Signature
+from herringbone.cosim.signature.amplitudes import amplitude
+from herringbone.cosim.signature.trial import Refused
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
 from herringbone.cosim.structure.system import PartSpec, System
@@ -25,10 +29,13 @@ from herringbone.running.foreign.foreign_parts import (
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.open_flanges import loaded
-from herringbone.running.start import known_parts, ramp_times
+from herringbone.running.start import known_parts, ramp_times, without_parts
 
 _TORQUE = 200.0
 """At pinions that only foreign parts load [N m]; limits hardly depend on it."""
+
+_USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
+"""That are tried of parts that take steps of one length only [s]."""
 
 _INSTEAD = (
     "this holds for all algorithms, with --simulate, too; 'herringbone run' with --step tells of a "
@@ -92,6 +99,21 @@ def opened_surrogates(system: System, step: float) -> Iterator[Surrogates]:
             yield found
 
 
+def without_missing(system: System, found: Surrogates) -> tuple[System, tuple[str, ...]]:
+    """The system without parts for which nothing stands, and lines on these.
+
+    Raises:
+        FmuError: nothing is coupled without them.
+    """
+    if not found.missing:
+        return system, ()
+    rest = without_parts(system, found.missing)
+    if not rest.connections:
+        raise FmuError("; ".join(found.lines))
+    names = ", ".join(found.missing)
+    return rest, (*found.lines, f"what is told is of the system without {names}")
+
+
 def under_load(system: System) -> System:
     """The system with its own parts in steady rotation under load, as they are after a ramp.
 
@@ -150,30 +172,59 @@ def _surrogate(
     ports: tuple[list[str], list[str]],
     step: float,
     stack: ExitStack,
-) -> Surrogate | str:
+) -> Surrogate | SampledSurrogate | str:
     """A part's surrogate, or why there is none; raises FmuError."""
     why = _refusal(part, signature)
     if why:
         return why
     inputs, outputs = ports
     start = start_inputs(make(), inputs) if inputs else np.empty(0)
+    if part.one_step or signature.tick:
+        return _with_clock(make, part, signature, ports, start, step, stack)
     lab = stack.enter_context(Laboratory(make, inputs, outputs, start, step))
-    return Surrogate(lab, signature, part.variables)
+    at = part.addresses  # an adapter that holds inputs has none of derivatives
+    takes, gives = at.set_derivatives != 0, at.get_derivatives != 0
+    found = Surrogate(lab, signature, part.variables, takes_derivatives=takes, gives_rates=gives)
+    if takes and not found.orders:
+        return "it declares input derivatives, and refuses them"
+    return found
+
+
+def _with_clock(
+    make: Callable[[], Part],
+    part: Part,
+    signature: Signature,
+    ports: tuple[list[str], list[str]],
+    start: np.ndarray,
+    step: float,
+    stack: ExitStack,
+) -> SampledSurrogate | str:
+    """The map of a part with a clock of its own, or with steps of one length only."""
+    inputs, outputs = ports
+
+    def of_one_length() -> Part:  # an instance that was restored may have taken other steps
+        return WithoutStates(make())
+
+    fresh = of_one_length if part.one_step else make
+    wanted = (step, *_USUAL_STEPS) if part.one_step else (round_period(signature.tick),)
+    for period in wanted:
+        lab = Laboratory(fresh, inputs, outputs, start, period)
+        try:
+            stack.enter_context(lab)
+        except Refused:
+            continue
+        pairs = zip(inputs, start, strict=True)
+        changes = np.array([amplitude(part.variables[name], float(x)) for name, x in pairs])
+        divides = signature.kind is Kind.SAMPLED
+        return SampledSurrogate(part.name, lab, changes, divides=divides)
+    tried = ", ".join(f"{period:g}" for period in wanted)
+    return f"it refuses steps of {tried} s, the only ones that were tried"
 
 
 def _refusal(part: Part, signature: Signature) -> str:
     """Why no trials tell of the part's steps; "" if they do."""
-    if isinstance(part, NodalPart) and part.answers_again:
-        return (
-            "it cannot repeat a step (it saves no state), and makes up in the next one for what it "
-            "missed"
-        )
-    if part.once or part.one_step or signature.kind is Kind.NOISY:
+    if part.once or signature.kind is Kind.NOISY:
         return signature.notes[0]
-    if part.addresses.set_derivatives:
-        return "it takes derivatives of its inputs, of which the trials tell nothing"
-    if signature.tick:
-        return f"its outputs change every {signature.tick:g} s only"
     return ""
 
 

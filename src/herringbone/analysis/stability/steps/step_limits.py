@@ -7,11 +7,12 @@ maximum mesh stiffness. Not covered: teeth that separate, and parametric excitat
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
 from herringbone.analysis.stability.amplification import Amplification
-from herringbone.analysis.stability.growth import Growth
+from herringbone.analysis.stability.growth import GROWTH, Growth
 from herringbone.analysis.stability.linear_parts import (
     NO_STRANGERS,
     MeshStiffness,
@@ -23,10 +24,13 @@ from herringbone.analysis.stability.steps.step_scan import (
     LARGEST_STEP,
     GrowthOf,
     first_unstable_near,
+    safe_growth,
     unstable_bands,
 )
+from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, common_steps
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.components.registry import component
+from herringbone.core import ParameterError
 from herringbone.cosim.algorithms import Algorithm
 from herringbone.cosim.structure.system import System
 
@@ -55,6 +59,7 @@ class StepLimits:
         residual: largest deviation of what stands for foreign parts from trials that were not
             fitted, at the limit; 0 without foreign parts.
         largest: step [s] at which the scan ends.
+        steps: how many were looked at, if only some go with parts that have clocks; else 0.
     """
 
     algorithm: str
@@ -64,6 +69,7 @@ class StepLimits:
     simulated_limit: float | None = None
     residual: float = 0.0
     largest: float = LARGEST_STEP
+    steps: int = 0
 
     @property
     def promised(self) -> bool:
@@ -106,6 +112,8 @@ def step_limits(
 
     amplification = amplification_at(MeshStiffness.MEAN)
     growth = growth_of(amplification)
+    if clocks_of(strangers):
+        return _limits_on_grid(algorithm, growth, amplification, strangers, largest)
     bands = unstable_bands(growth, largest=largest, coarse=_SCAN_OF_STRANGERS if alone else COARSE)
     first = bands[0][0] if bands else np.inf
     found = {MeshStiffness.MINIMUM.value: first, "mean": first, MeshStiffness.MAXIMUM.value: first}
@@ -123,6 +131,42 @@ def step_limits(
             stranger.surrogate.look_at(first)
         return step_limits(system, algorithm, progress, strangers, again=False)
     return StepLimits(str(algorithm), bands, found, frequency, residual=residual, largest=largest)
+
+
+def clocks_of(strangers: Strangers) -> list[SampledSurrogate]:
+    """What stands for parts with clocks."""
+    found = (stranger.surrogate for stranger in strangers.values())
+    return [surrogate for surrogate in found if isinstance(surrogate, SampledSurrogate)]
+
+
+def _limits_on_grid(
+    algorithm: Algorithm,
+    growth: GrowthOf,
+    amplification: Amplification,
+    strangers: Strangers,
+    largest: float,
+) -> StepLimits:
+    """Unstable steps among those of which parts with clocks have maps, at mean stiffness."""
+    clocks = clocks_of(strangers)
+    grid = common_steps(clocks, largest)
+    if not grid:
+        periods = ", ".join(f"{clock.period:g} s" for clock in clocks)
+        raise ParameterError(f"no step goes with the periods of parts with clocks: {periods}")
+    unstable = {step: safe_growth(growth, step).radius > 1.0 + GROWTH for step in grid}
+    bands: list[tuple[float, float]] = []
+    for before, step in pairwise([0.0, *grid]):
+        if unstable[step] and not unstable.get(before, False):
+            bands.append((step, np.inf))
+        elif not unstable[step] and unstable.get(before, False):
+            bands[-1] = bands[-1][0], step
+    first = bands[0][0] if bands else np.inf
+    residual = _residual(amplification, strangers, first if bands else grid[-1])
+    frequency = growth(first).frequency if bands else np.nan
+    same = dict.fromkeys((stiffness.value for stiffness in MeshStiffness), first)
+    return StepLimits(
+        str(algorithm), tuple(bands), same, frequency, residual=residual, largest=grid[-1],
+        steps=len(grid),
+    )  # fmt: skip
 
 
 def _residual(amplification: Amplification, strangers: Strangers, step: float) -> float:

@@ -1,82 +1,43 @@
 """Parts as a linear analysis runs them: what takes many micro steps becomes one affine map.
 
 A linear part maps (states, inputs at the nodes) to (states, outputs at the nodes) by an affine map
-that depends on the macro step and the interface degree alone. Measured once, by differences of the
+that depends on the macro step and the interface degree alone. Made once, of differences of the
 part's own steps, it replaces hundreds of micro steps in each of the hundreds of steps that an
-amplification matrix takes; what is found is the same to rounding.
+amplification matrix takes; what is found is the same to rounding. The differences are those of a
+few micro steps (see `micro_steps`), and those of the whole step where a trial contradicts these.
 """
 
 import ctypes
+import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from herringbone.analysis.stability.surrogates.surrogate_part import StandIn
-from herringbone.components.in_process import InProcessPart
+from herringbone.analysis.stability.steps.linear_part import (
+    CHANGE,
+    OTHER_CHANGE,
+    LinearPart,
+    state_changes,
+)
+from herringbone.analysis.stability.steps.micro_steps import Rows, composed
+from herringbone.analysis.stability.surrogates.stand_in import StandIn
 from herringbone.core import HerringboneError, Instance
-from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.declaration import node_name
 from herringbone.core.declaring.variable import NODES
-from herringbone.core.part import Addresses, Part, PartVariable
+from herringbone.core.part import Addresses, PartVariable
+from herringbone.kernels.steppers import MOST_MICRO_STEPS
 from herringbone.kernels.stepping import affine_step
 from herringbone.kernels.stepping.affine_step import HEADER
 
-CHANGE = {
-    "m": 1e-9, "m/s": 1e-6, "rad": 1e-7, "rad/s": 1e-3, "N": 1e-2, "N.m": 1e-3,
-    "kg^1/2.m": 1e-9, "kg^1/2.m/s": 1e-6,
-}  # fmt: skip
-"""Differences by unit: small against the mesh deflection (1e-6 m), large against rounding."""
-OTHER_CHANGE = 1e-6
-
-
-def _state_changes(instance: Instance) -> list[float]:
-    """Differences of a part's states, those of its state vectors last."""
-    declaration = instance.component.declaration
-    found = [CHANGE.get(v.unit, OTHER_CHANGE) for v in declaration.states]
-    for vector in declaration.vectors:
-        found += [CHANGE.get(vector.unit, OTHER_CHANGE)] * vector.capacity
-    return found
-
-
-class LinearPart(InProcessPart):
-    """A linear component in this process.
-
-    Attributes:
-        values: that a step may change; the states come first.
-        state_changes: differences of the states.
-    """
-
-    residual = 0.0
-
-    def __init__(self, instance: Instance) -> None:
-        super().__init__(instance)
-        self.values = instance.block[: self.declaration.mutable_size]
-        self.state_changes = _state_changes(instance)
-        self._degree_index = self.declaration.index[INTERFACE_DEGREE]
-        self._degree = float(instance.block[self._degree_index])
-
-    @property
-    def part(self) -> Part:
-        """As the network takes it."""
-        return self
-
-    def prepare(self, step: float, degree: int) -> None:
-        """Make ready for macro steps of a length [s] at an interface degree."""
-        del step
-        self.instance.block[self._degree_index] = degree
-
-    def release(self) -> None:
-        """After macro steps: the degree is what it was."""
-        self.instance.block[self._degree_index] = self._degree
-
-    def learn(self) -> bool:
-        """False: it takes steps of any length."""
-        return False
-
-    def output_change(self, name: str, change: float) -> float:
-        """Difference of an output."""
-        del name
-        return change
+_SAME = 1e-9
+"""Of a micro step: what steppers take for rounding of a length."""
+_FEW = 2
+"""Parts of a macro step that are not worth composing."""
+_ALIKE, _ROUNDING = 1e-6, 1e-13
+"""Deviation of a composed map from the part's own step, over what moves and over values there."""
 
 
 class MappedPart(LinearPart):
@@ -101,6 +62,7 @@ class MappedPart(LinearPart):
         signals = self.values[first : first + count * (NODES + 1)].reshape(count, NODES + 1)
         signals[:, 1:] = signals[:, :1]
         self._operating_point = self.values.copy()
+        self._entries, self._results = cache(self._found_entries), cache(self._found_results)
         self._map = self._memory[place:]
         self.variables: Mapping[str, PartVariable] = {
             name: replace(v, reference=v.reference + HEADER)
@@ -127,7 +89,7 @@ class MappedPart(LinearPart):
         return self._states[-1].ctypes.data
 
     def prepare(self, step: float, degree: int) -> None:
-        """Measure the map.
+        """Make the map.
 
         Raises:
             HerringboneError: the component fails within the step.
@@ -135,44 +97,85 @@ class MappedPart(LinearPart):
         super().prepare(step, degree)
         block, point = self.instance.block, self._operating_point
         kept = block[: point.size].copy()
-        inputs, changes = self._entries(degree)
+        inputs, _ = self._entries(degree)
         outputs = self._results(degree)
-
-        def advance(entry: int, change: float) -> np.ndarray:
-            block[: point.size] = point
-            block[entry] += change
-            if self.instance.step(0.0, step):
-                raise HerringboneError(f"{self.name} fails in one step of {step:g} s")
-            return block[outputs]
-
-        base = advance(0, 0.0)
-        columns = [
-            (advance(entry, change) - base) / change
-            for entry, change in zip(inputs, changes, strict=True)
-        ]
+        base = self._advanced(step, outputs)
+        columns = self._columns(step, degree, base)
         block[: kept.size] = kept
         self._memory[:2] = inputs.size, outputs.size
-        found = (
-            inputs + HEADER,
-            point[inputs],
-            outputs + HEADER,
-            base,
-            np.array(columns).ravel(),
-        )
+        found = (inputs + HEADER, point[inputs], outputs + HEADER, base, columns.ravel())
         flat = np.concatenate(found)
         self._map[: flat.size] = flat
 
-    def _entries(self, degree: int) -> tuple[np.ndarray, list[float]]:
+    def _advanced(
+        self,
+        step: float,
+        outputs: np.ndarray,
+        entries: np.ndarray | int = 0,
+        change: ArrayLike = 0.0,
+    ) -> np.ndarray:
+        """Values after a step from the operating point, of which entries are changed."""
+        block, point = self.instance.block, self._operating_point
+        block[: point.size] = point
+        block[entries] += change
+        if self.instance.step(0.0, step):
+            raise HerringboneError(f"{self.name} fails in one step of {step:g} s")
+        return block[outputs]
+
+    def _columns(self, step: float, degree: int, base: np.ndarray) -> np.ndarray:
+        """(inputs, outputs) of a step, composed of those of a few micro steps if that is right."""
+        intervals = max(degree, 1)
+        parts = step * MOST_MICRO_STEPS / (intervals * self.instance.longest_step())
+        if parts > _FEW:
+            count = math.ceil(parts - _SAME)
+            part = self._measured(step / count, degree)
+            found = composed(part.T, self._rows(degree), degree, count)
+            if self._is_own(found, step, degree, base):
+                return found.T
+        return self._measured(step, degree)
+
+    def _measured(self, step: float, degree: int) -> np.ndarray:
+        """(inputs, outputs) by differences of the part's own steps."""
+        outputs = self._results(degree)
+        base = self._advanced(step, outputs)
+        moved = [
+            (self._advanced(step, outputs, entry, change) - base) / change
+            for entry, change in zip(*self._entries(degree), strict=True)
+        ]
+        return np.array(moved)
+
+    def _is_own(self, matrix: np.ndarray, step: float, degree: int, base: np.ndarray) -> bool:
+        """True if a matrix (outputs, inputs) tells a step for which all inputs are changed."""
+        entries, changes = self._entries(degree)
+        changed = changes * np.random.default_rng(0).uniform(-1.0, 1.0, len(changes))
+        moved = self._advanced(step, self._results(degree), entries, changed) - base
+        allowed = _ALIKE * np.abs(matrix) @ np.abs(changed) + _ROUNDING * np.abs(base)
+        return bool((np.abs(moved - matrix @ changed) <= allowed).all())
+
+    def _found_entries(self, degree: int) -> tuple[np.ndarray, list[float]]:
         """Indices of states and of inputs at the live nodes, and their differences."""
         declaration = self.declaration
-        entries, changes = list(range(declaration.state_count)), _state_changes(self.instance)
+        entries, changes = list(range(declaration.state_count)), state_changes(self.instance)
         for v in declaration.inputs:
             for node in range(degree + 1):
                 entries.append(declaration.index[node_name(v.name, node) if node else v.name])
                 changes.append(CHANGE.get(v.unit, OTHER_CHANGE))
         return np.array(entries), changes
 
-    def _results(self, degree: int) -> np.ndarray:
+    def _rows(self, degree: int) -> Rows:
+        """What the rows of a map are, see `_results`."""
+        declaration = self.declaration
+        nodes, ends, at = [], [], declaration.state_count
+        for v in declaration.outputs:
+            inner = degree if v.nodes else 0
+            if inner:
+                nodes.append(np.arange(at, at + inner))
+            ends.append(at + inner)
+            at += inner + 1
+        shape = len(nodes), max(degree, 1)
+        return Rows(declaration.state_count, np.reshape(nodes, shape).T.astype(int), np.array(ends))
+
+    def _found_results(self, degree: int) -> np.ndarray:
         """Indices of states and of outputs, with their live nodes."""
         declaration = self.declaration
         found = list(range(declaration.state_count))

@@ -57,7 +57,7 @@ def unstable_bands(
         return ()
     # The smallest step may be unstable itself: then nothing is looked for below.
     samples = _samples(growth, max(smallest, _BELOW * first), min(_ABOVE * first, largest))
-    samples.append((first, _safe(growth, first)))
+    samples.append((first, safe_growth(growth, first)))
     samples = _with_maxima(growth, sorted(samples, key=_step))
     samples += _closely(growth, next(step for step, value in samples if _grows(value)))
     samples.sort(key=_step)
@@ -77,7 +77,7 @@ def unstable_bands(
 def first_unstable_near(growth: GrowthOf, limit: float) -> float:
     """First unstable step near a known one [s]; closely around it narrow bands are seen, too."""
     low = _NEAR * limit
-    while low > SMALLEST_STEP and _grows(_safe(growth, low)):
+    while low > SMALLEST_STEP and _grows(safe_growth(growth, low)):
         low *= _NEAR
     closely = _find_unstable(growth, low, _RESOLUTION, limit / _NEAR)
     if closely is not None:
@@ -97,7 +97,7 @@ def first_unstable(growth: GrowthOf, smallest: float, largest: float) -> float |
     return first_unstable_near(growth, _crossing(growth, found / COARSE, found))
 
 
-def _safe(growth: GrowthOf, step: float) -> Growth:
+def safe_growth(growth: GrowthOf, step: float) -> Growth:
     """Growth; infinite where a part fails within one step."""
     try:
         return growth(step)
@@ -115,7 +115,7 @@ def _find_unstable(
     growth: GrowthOf, step: float, factor: float, largest: float = LARGEST_STEP
 ) -> float | None:
     """First unstable step of a geometric sequence, which ends with the largest step."""
-    while not _grows(_safe(growth, step)):
+    while not _grows(safe_growth(growth, step)):
         if step >= largest:
             return None
         step = min(step * factor, largest)
@@ -127,7 +127,7 @@ def _samples(growth: GrowthOf, first: float, end: float) -> list[tuple[float, Gr
     found: list[tuple[float, Growth]] = []
     step, since = first, np.inf
     while step <= end:
-        value = _safe(growth, step)
+        value = safe_growth(growth, step)
         found.append((step, value))
         since = min(since, step) if _grows(value) else np.inf
         if value.radius > _CLEARLY and step > _FOR_LONG * since:
@@ -140,7 +140,7 @@ def _closely(growth: GrowthOf, first: float) -> list[tuple[float, Growth]]:
     """Growth around the first unstable step, at the resolution of the crossings."""
     half = int(np.log(_CLOSELY) / np.log(_RESOLUTION))
     steps = first * _RESOLUTION ** np.arange(-half, half + 1.0)
-    return _with_maxima(growth, [(float(step), _safe(growth, float(step))) for step in steps])
+    return _with_maxima(growth, [(float(step), safe_growth(growth, float(step))) for step in steps])
 
 
 def _step(sample: tuple[float, Growth]) -> float:
@@ -174,7 +174,7 @@ def _tries(growth: GrowthOf, low: float, high: float, radius: str) -> list[tuple
     tried = []
 
     def negative(step: float) -> float:
-        tried.append((float(step), _safe(growth, float(step))))
+        tried.append((float(step), safe_growth(growth, float(step))))
         return -getattr(tried[-1][1], radius)
 
     options = {"maxiter": _TRIES, "xatol": _CLOSE * low}
@@ -184,10 +184,10 @@ def _tries(growth: GrowthOf, low: float, high: float, radius: str) -> list[tuple
 
 def _crossing(growth: GrowthOf, low: float, high: float) -> float:
     """Step between two of which one is stable, by bisection; the stable side of the bracket."""
-    low_bad = _grows(_safe(growth, low))
+    low_bad = _grows(safe_growth(growth, low))
     while high > _RESOLUTION * low:
         middle = float(np.sqrt(low * high))
-        if _grows(_safe(growth, middle)) == low_bad:
+        if _grows(safe_growth(growth, middle)) == low_bad:
             low = middle
         else:
             high = middle

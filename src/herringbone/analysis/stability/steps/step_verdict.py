@@ -12,7 +12,7 @@ from herringbone.analysis.stability.linear_parts import (
     Strangers,
     linear_network,
 )
-from herringbone.analysis.stability.steps.step_limits import Progress
+from herringbone.analysis.stability.steps.step_limits import Progress, clocks_of
 from herringbone.analysis.stability.surrogates.surrogate import PROMISED
 from herringbone.core.energy_report import Diagnosis, hertz
 from herringbone.cosim.algorithms import Algorithm
@@ -95,7 +95,8 @@ def step_verdicts(
             residual = max(residual, amplification.residual)
         worst = max(by_stiffness, key=lambda s: by_stiffness[s].radius)
         growth = by_stiffness[worst].radius - 1.0
-        why = diagnose(system, algorithm, step, strangers) if growth > GROWTH else None
+        told = growth > GROWTH and not clocks_of(strangers)  # remedies are other steps, too
+        why = diagnose(system, algorithm, step, strangers) if told else None
         frequency = by_stiffness[worst].frequency
         found.append(
             StepVerdict(str(algorithm), step, growth, worst.value, frequency, why, residual)

@@ -9,6 +9,7 @@ gives the step of any length, as long as h0 resolves the motions: their angles p
 below pi, and they must not have died out within one.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -120,6 +121,42 @@ class LinearModel:
                 b[:, rate] -= h * held[:, k]
         return Step(a, b, self.c @ a, self.c @ b + d)
 
+    def along(self, h: float, orders: int, *, rated: bool, followed: bool) -> Step:
+        """A step of length h [s] on inputs that are polynomials over it.
+
+        Args:
+            h: length.
+            orders: highest order of the derivatives at its start: inputs (n (1 + orders),), order
+                by order.
+            rated: outputs are followed by their rates at the end.
+            followed: the part goes along with the polynomials; else it holds their means.
+        """
+        held, order = self.over(h), np.arange(orders + 1)
+        power = h**order / [math.factorial(k) for k in order]
+        eye = np.eye(len(self.given))
+        if followed:
+            b = np.hstack([held.b, *_of_powers(self.a, self.b, h, orders)])
+            end = np.kron(power, eye)
+            rise = np.kron([0.0, *power[:-1]], eye)
+            d = np.hstack([held.d, self.c @ b[:, len(eye) :] + self.d @ end[:, len(eye) :]])
+        else:
+            means = power / (order + 1.0)
+            b, d, end = np.kron(means, held.b), np.kron(means, held.d), np.kron(means, eye)
+            rise = np.zeros_like(end)
+        if not rated:
+            return Step(held.a, b, held.c, d)
+        rates = self.c @ (self.a @ b + self.b @ end) + self.d @ rise
+        return Step(held.a, b, np.vstack([held.c, self.c @ self.a @ held.a]), np.vstack([d, rates]))
+
+
+def _of_powers(a: np.ndarray, b: np.ndarray, h: float, orders: int) -> list[np.ndarray]:
+    """What inputs t^k / k!, k from 1 on, make of the states over a step, (k, n) each."""
+    count, inputs = b.shape
+    whole = np.zeros((count + (orders + 1) * inputs,) * 2)
+    whole[:count, :count], whole[:count, count : count + inputs] = h * a, h * b
+    whole[count:, count:] = h * np.eye(inputs * (orders + 1), k=inputs)
+    return np.split(expm(whole)[:count, count:], orders + 1, axis=1)[1:]
+
 
 def _moving(given: Sequence[InputRule], rates: Sequence[int]) -> list[tuple[int, int]]:
     return [
@@ -179,3 +216,12 @@ def _integrals(a: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray, np.ndar
     whole = np.block([[h * a, h * eye, none], [none, none, h * eye], [none, none, none]])
     found = expm(whole)[:count]
     return found[:, :count], found[:, count : 2 * count], found[:, 2 * count :]
+
+
+def missed_share(found: np.ndarray, truth: np.ndarray) -> float:
+    """Largest deviation of any column, root of the sum of squares, over the column."""
+    sizes = np.linalg.norm(truth, axis=0)
+    answered = sizes > 0.0
+    if not answered.any():
+        return 0.0
+    return float(np.max(np.linalg.norm(found - truth, axis=0)[answered] / sizes[answered]))

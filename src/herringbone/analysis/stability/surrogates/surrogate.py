@@ -6,6 +6,7 @@ that resolve the part's motions: much shorter ones tell nothing of slow motions,
 of those that have died out or have turned by more than half a circle.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
@@ -17,8 +18,10 @@ from herringbone.analysis.stability.surrogates.identification import (
     Step,
     blocks,
     in_continuous_time,
+    missed_share,
     realised,
 )
+from herringbone.core.declaring.variable import NODES
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import amplitude
@@ -74,10 +77,18 @@ class Surrogate:
         why: why there is none, "" if there is.
         amplitudes: (n,) changes of the inputs for which the model's states are about 1.
         start, start_outputs: (n,) and (m,) of the operating point.
+        orders: highest order of input derivatives that it takes.
+        rated: it gives rates of its outputs.
     """
 
     def __init__(
-        self, lab: Laboratory, signature: Signature, variables: Mapping[str, PartVariable]
+        self,
+        lab: Laboratory,
+        signature: Signature,
+        variables: Mapping[str, PartVariable],
+        *,
+        takes_derivatives: bool = False,
+        gives_rates: bool = False,
     ) -> None:
         self._lab = lab
         self.inputs, self.outputs = lab.inputs, lab.outputs
@@ -87,9 +98,12 @@ class Surrogate:
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
         self._loud = 1.0
         self._rate = 0.0  # seconds that a simulated second takes
-        self._residuals, self._steps = dict[float, float](), dict[float, Step]()
+        self._residuals, self._steps = dict[tuple[float, int], float](), dict[float, Step]()
         self.model: LinearModel | None = None
         self.base = lab.step
+        self.orders, self.rated, self._follows = 0, gives_rates, True
+        if takes_derivatives:
+            self.orders = self._orders_taken()
         self.look_at(lab.step)
 
     def look_at(self, h: float) -> None:
@@ -105,31 +119,79 @@ class Surrogate:
             self.why = f"its answers make no linear system: {error}"
 
     @property
+    def fresh_instances(self) -> int:
+        """On how many instances it was tried, if each trial takes one; 0 if states are restored."""
+        return 0 if self._lab.restores else self._lab.instances
+
+    @property
     def order(self) -> int:
         """Number of the model's states."""
         return 0 if self.model is None else len(self.model.a)
+
+    @property
+    def width(self) -> tuple[int, int]:
+        """Numbers of inputs and outputs of its steps, with derivatives and rates."""
+        return len(self.inputs) * (1 + self.orders), len(self.outputs) * (1 + self.rated)
 
     def over(self, h: float) -> Step:
         """A step of the model of length h [s]; there is a model."""
         assert self.model is not None
         if h not in self._steps:
             with one_blas_thread():
-                self._steps[h] = self.model.over(h)
+                self._steps[h] = self.model.along(
+                    h, self.orders, rated=self.rated, followed=self._follows
+                )
         return self._steps[h]
 
-    def residual(self, h: float) -> float:
+    def response(self, pushed: np.ndarray) -> np.ndarray:
+        """(m,) rates of the outputs by inputs (n,) that jump, through the states [1/s]."""
+        assert self.model is not None
+        return self.model.c @ (self.model.b @ pushed)
+
+    def residual(self, h: float, orders: int = 0) -> float:
         """Largest deviation of the model over the answer, of any output, in steps of h [s].
 
-        On inputs that were not fitted, all at once; infinite if the part refuses such steps.
+        On inputs that were not fitted, all at once, with derivatives up to an order; infinite if
+        the part refuses such steps.
         """
         if self.model is None:
             return np.inf
-        if h not in self._residuals:
+        if (h, orders) not in self._residuals:
             try:
-                self._residuals[h] = self._missed(self.over(h), h)
+                self._residuals[h, orders] = self._missed_signals(h, orders)
             except Refused:
-                self._residuals[h] = np.inf
-        return self._residuals[h]
+                self._residuals[h, orders] = np.inf
+        return self._residuals[h, orders]
+
+    def _orders_taken(self) -> int:
+        """The highest order of input derivatives that it does not refuse."""
+        for orders in range(NODES, 0, -1):
+            try:
+                self._lab.run_signals(self._signals(self._lab.step, orders), self._lab.step,
+                                      rated=False)  # fmt: skip
+            except Refused:
+                continue
+            return orders
+        return 0
+
+    def _signals(self, h: float, orders: int, loud: float = 1.0) -> np.ndarray:
+        """(steps, width) inputs that are fitted nowhere, with derivatives up to an order."""
+        count = len(self.inputs)
+        moved = _stirring(count * (1 + orders))[: self._fresh_steps(h)]
+        for order in range(orders + 1):
+            columns = slice(order * count, (order + 1) * count)
+            moved[:, columns] *= loud * self.amplitudes * math.factorial(order) / h**order
+        moved[:, :count] += self.start
+        return moved
+
+    def _missed_signals(self, h: float, orders: int) -> float:
+        """Of the model, on inputs with derivatives up to an order, and by rates if it has them."""
+        signals = self._signals(h, orders, self._loud)
+        rest = self._signals(h, orders, 0.0)
+        found, unmoved = (self._lab.run_signals(x, h, rated=self.rated) for x in (signals, rest))
+        inputs = np.zeros((len(signals), self.width[0]))
+        inputs[:, : signals.shape[1]] = signals - rest
+        return missed_share(self.over(h).answers(inputs), found - unmoved)
 
     def _identify(self, asked: float) -> None:
         """Look for the base step that resolves the motions, and meets steps of a length [s]."""
@@ -153,6 +215,16 @@ class Surrogate:
                 self.why = "its answers to pulses are those of no linear system in continuous time"
             return
         self.model, self.base = best.model, best.base
+        if self.orders:
+            self._see_what_it_follows(asked)
+
+    def _see_what_it_follows(self, h: float) -> None:
+        """Does it go along with polynomials, in steps of h [s], or hold their means?"""
+        missed = {}
+        for follows in (True, False):
+            self._follows, self._steps = follows, {}
+            missed[follows] = self._missed_signals(h, 1)
+        self._follows, self._steps = missed[True] <= missed[False], {}
 
     def _affordable(self, h: float, wanted: float) -> float:
         """A longer step as far as its trials may take, the same one if that is not far."""
@@ -182,7 +254,7 @@ class Surrogate:
         inputs, truth = self._fresh(h)
         found: list[tuple[float, int]] = []
         for order in _orders(len(whole.a)):
-            missed = _relative(whole.reduced(order).answers(inputs), truth)
+            missed = missed_share(whole.reduced(order).answers(inputs), truth)
             found.append((missed, order))
             if missed <= _GOOD:
                 break
@@ -228,16 +300,17 @@ class Surrogate:
 
     def _fresh(self, h: float) -> tuple[np.ndarray, np.ndarray]:
         """Inputs (steps, n) in amplitudes that are fitted nowhere, and outputs over their sizes."""
-        steps = int(
-            np.clip(_SECONDS / max(2.0 * h * self._rate, 1e-300), _FEWEST_FRESH, _FRESH_STEPS)
-        )
-        inputs = _stirring(len(self._lab.inputs))[:steps]
+        inputs = _stirring(len(self._lab.inputs))[: self._fresh_steps(h)]
         rest = self._run(np.zeros_like(inputs), h)
         return inputs, (self._run(self._loud * inputs, h) - rest) / self._loud / self._sizes
 
+    def _fresh_steps(self, h: float) -> int:
+        affordable = _SECONDS / max(2.0 * h * self._rate, 1e-300)
+        return int(np.clip(affordable, _FEWEST_FRESH, _FRESH_STEPS))
+
     def _missed(self, step: Step, h: float) -> float:
         inputs, truth = self._fresh(h)
-        return _relative(step.answers(inputs * self.amplitudes) / self._sizes, truth)
+        return missed_share(step.answers(inputs * self.amplitudes) / self._sizes, truth)
 
     def _run(self, inputs: np.ndarray, h: float) -> np.ndarray:
         """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
@@ -269,15 +342,6 @@ def _rules(
 def _stirring(count: int) -> np.ndarray:
     """Inputs (steps, n) that no two outputs answer alike, the same ones in every call."""
     return np.random.default_rng(_SEED).uniform(-1.0, 1.0, (_FRESH_STEPS, count))
-
-
-def _relative(found: np.ndarray, truth: np.ndarray) -> float:
-    """Largest deviation of any column, root of the sum of squares, over the column."""
-    sizes = np.linalg.norm(truth, axis=0)
-    answered = sizes > 0.0
-    if not answered.any():
-        return 0.0
-    return float(np.max(np.linalg.norm(found - truth, axis=0)[answered] / sizes[answered]))
 
 
 def _orders(most: int) -> list[int]:
