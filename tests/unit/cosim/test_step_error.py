@@ -15,6 +15,7 @@ from herringbone.cosim.loops.adaptive_step.step_error import (
     INNER_STEPS,
     ORDER,
     error_so_far,
+    room_for,
     step_error,
     update_scale,
 )
@@ -44,7 +45,7 @@ def error(force, degree, *, held=0, known=9, scale=1.0, inner_steps=np.inf, squa
     nodes, buffers = found_force(force, degree, scale)
     held = np.array([held], np.int64)
     squares = np.zeros((2, 1)) if squares is None else squares
-    return step_error(nodes, buffers, held, squares, known, inner_steps)[0]
+    return step_error(nodes, buffers, held, squares, room_for(1), known, inner_steps)[0]
 
 
 @pytest.mark.parametrize("degree", KAPPA)
@@ -54,6 +55,10 @@ def test_error_of_a_power(degree):
     wanted = AMPLIFICATION * KAPPA[degree] * math.factorial(q)
     assert error(lambda t: (t + 0.3) ** q, degree) == pytest.approx(wanted, rel=1e-9)
     assert error(lambda t: (t + 0.3) ** (q - 1), degree) < 1e-9 * wanted
+
+
+def test_a_force_that_never_acts_has_no_error():
+    assert error(lambda t: 0.0, 3, scale=1e-300) == 0.0
 
 
 @pytest.mark.parametrize("degree", KAPPA)
@@ -100,7 +105,7 @@ def test_without_history_a_lower_derivative_stands_in():
 def test_what_is_left_of_the_correction_counts():
     nodes, buffers = found_force(lambda t: 0.0, 3)
     buffers.rest[:] = [[1.0], [2.0], [-3.0]]
-    assert step_error(nodes, buffers, 0 * ONE, np.zeros((2, 1)), 9, np.inf)[0] == 3.0
+    assert step_error(nodes, buffers, 0 * ONE, np.zeros((2, 1)), room_for(1), 9, np.inf)[0] == 3.0
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -119,7 +124,7 @@ def test_error_of_the_run_is_a_mean():
     nodes, buffers = found_force(lambda t: 0.0, 3, scale=10.0)
     errors = np.zeros((2, 1))
     errors[[COUPLING, INNER_STEPS], 0] = 2.0 * 0.3**2, 2.0 * 0.4**2
-    assert error_so_far(nodes, buffers, errors, 2.0) == pytest.approx(0.05, rel=1e-12)
+    assert error_so_far(nodes, buffers, errors, room_for(1), 2.0) == pytest.approx(0.05, rel=1e-12)
 
 
 def test_each_unit_has_its_size_and_the_worst_one_counts():
@@ -130,7 +135,7 @@ def test_each_unit_has_its_size_and_the_worst_one_counts():
     buffers = buffers._replace(scale=np.array([1000.0, 1.0]))
     errors = np.zeros((2, 2))
     errors[COUPLING] = 2.0 * np.array([10.0, 0.02]) ** 2
-    assert error_so_far(nodes, buffers, errors, 2.0) == pytest.approx(0.02, rel=1e-12)
+    assert error_so_far(nodes, buffers, errors, room_for(1), 2.0) == pytest.approx(0.02, rel=1e-12)
 
 
 def test_size_of_the_forces_is_their_standard_deviation():
@@ -140,12 +145,12 @@ def test_size_of_the_forces_is_their_standard_deviation():
     times = np.sort(np.concatenate([[0.0, 10.0], rng.uniform(0.0, 10.0, 3000)]))
     moments, covered = np.zeros((5, 1)), np.zeros(4)
     nodes, buffers = found_force(lambda t: mean, 3)
-    update_scale(nodes, buffers, moments, covered, 50.0, 0.0)
+    update_scale(nodes, buffers, moments, room_for(1), covered, 50.0, 0.0)
     assert buffers.scale[0] == pytest.approx(FLOOR * mean)
     for start, end in pairwise(times):
         at = start + (end - start) * np.arange(4) / 3
         buffers.nodes[:, 0] = mean + 3.0 * np.sin(w * at)
-        update_scale(nodes, buffers, moments, covered, 50.0, end - start)
+        update_scale(nodes, buffers, moments, room_for(1), covered, 50.0, end - start)
     assert covered[0] == pytest.approx(10.0)
     # The line needs a period or two until it is the mean, within 2 / (w t) of the amplitude.
     assert buffers.scale[0] == pytest.approx(3.0 / math.sqrt(2.0), rel=0.05)
@@ -155,11 +160,11 @@ def test_a_load_that_rises_is_no_vibration():
     """A ramp of 100 a second, and 0.5 sin at 8 Hz on it: the line takes the ramp out."""
     moments, covered = np.zeros((5, 1)), np.zeros(4)
     nodes, buffers = found_force(lambda t: 0.0, 3)
-    update_scale(nodes, buffers, moments, covered, 1.0, 0.0)
+    update_scale(nodes, buffers, moments, room_for(1), covered, 1.0, 0.0)
     for start, end in pairwise(np.linspace(0.0, 20.0, 8001)):
         at = start + (end - start) * np.arange(4) / 3
         buffers.nodes[:, 0] = 100.0 * at + 0.5 * np.sin(16.0 * math.pi * at)
-        update_scale(nodes, buffers, moments, covered, 1.0, end - start)
+        update_scale(nodes, buffers, moments, room_for(1), covered, 1.0, end - start)
     # A mean over 20 s would be off by 577; the vibration moves the line by 1 / (w memory) = 2 %.
     vibration = math.sqrt(moments[2, 0] / covered[0])
     assert vibration == pytest.approx(0.5 / math.sqrt(2.0), rel=0.05)

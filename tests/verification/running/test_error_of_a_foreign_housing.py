@@ -10,7 +10,8 @@ from support.c_housing import c_housing_fmu
 import herringbone as hb
 from herringbone.analysis.accuracy.apart import apart
 
-CONVERGED = {"algorithm": "li:degree=3", "step": 2e-6}
+CONVERGED = {"algorithm": "li:degree=3", "step": 2e-6, "values": {"gear_mesh.micro_step": 2e-7}}
+"""Inner steps as well: teeth come into contact here, and 0.67 us would err 2e-6."""
 
 
 def run(file, **asked):
@@ -41,7 +42,7 @@ def test_default_run(housing):
         assert saves or found.verification.groups[group] < 3.0 * error
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-5])
 def test_tolerance(housing, tolerance):
     file, _ = housing
     true = true_error(run(file, tolerance=tolerance), run(file, **CONVERGED))

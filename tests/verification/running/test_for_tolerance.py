@@ -2,17 +2,21 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.accuracy.apart import Apart
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.analysis.stability.recommendation import separation_step
+from herringbone.core import Outcome, OutcomeKind
 from herringbone.cosim.algorithms import LI
 from herringbone.running.coupled import Asked
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
+from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
 from herringbone.running.steps.tried import Search
 
 GEAR, MOTOR = "gearbox.gear_mesh.micro_step", "drive_motor.micro_step"
@@ -101,3 +105,43 @@ def test_a_step_is_divided_so_that_runs_have_points_in_common(monkeypatch, wante
     monkeypatch.setattr(search, "_shorter", lambda: wanted)
     assert search.pieces() == found
     assert (steps * found).denominator == 1
+
+
+def test_inner_steps_of_runs_fall_with_the_square_of_the_macro_step(rig):
+    """From a third of it on, so that kinks inside of them (second power) err as the coupling does.
+
+    Not below 1e-7 by the rule: 2.5 us sqrt(1e-7 / 2.8e-5).
+    """
+    stable = dict.fromkeys(stable_inner_steps(rig.system), 1.0)
+
+    def at(step):
+        return inner(with_inner_steps_of(rig.system, step, 2e-4, 1e-6, stable), GEAR)
+
+    assert [at(step) for step in (2e-4, 1e-4, 5e-5)] == pytest.approx(
+        [2e-4 / 3.0, 5e-5 / 3.0, 1.25e-5 / 3.0], rel=1e-12
+    )
+    assert at(4e-6) == pytest.approx(1.494e-7, rel=1e-3)
+    assert at(3e-7) == pytest.approx(1e-7, rel=1e-12)
+    close = dict.fromkeys(stable, 1e-5)
+    assert inner(with_inner_steps_of(rig.system, 2e-4, 2e-4, 1e-6, close), GEAR) == 1e-5
+
+
+def test_each_group_falls_with_a_power_of_its_own(monkeypatch):
+    """The one that errs most with long steps (sixth order) hides one of first order."""
+    laws = {"velocity": lambda h: 1e21 * h**6, "torque": lambda h: 10.0 * h}
+    search, steps = Search(1e-5, wished=True), (2e-4, 1e-4, 2.5e-5)
+
+    def differences(before, found, _):
+        pairs = {name: (law(before), law(found)) for name, law in laws.items()}
+        return Apart({name: long - short for name, (long, short) in pairs.items()}, "", 0.0)
+
+    monkeypatch.setattr("herringbone.running.steps.tried.apart", differences)
+    for step in steps:
+        recording = SimpleNamespace(step=step, wall_seconds=0.0)
+        result = SimpleNamespace(
+            outcome=Outcome(OutcomeKind.COMPLETED, 0.01), info=SimpleNamespace(t_end=0.01)
+        )
+        search.take(SimpleNamespace(result=result, recording=recording, every=step, exchanged=()))
+    assert search.tried[-1].groups["velocity"].error < 1e-4
+    assert search.tried[-1].error == pytest.approx(10.0 * steps[-1], rel=1e-6)
+    assert not search.why

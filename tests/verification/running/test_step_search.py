@@ -5,7 +5,6 @@ by runs with longer steps, with the power 2 at the most; higher powers make the 
 for.
 """
 
-import numpy as np
 import pytest
 from support.oscillator import JOINED, Oscillator
 from support.strangers import write_system
@@ -14,17 +13,6 @@ import herringbone as hb
 from herringbone.commands import main as cli
 
 TOLERANCES = (1e-2, 1e-4, 1e-6)
-
-
-def achieved(oscillator, result):
-    """Largest error of displacements and velocities, rms over rms, against the exact solution."""
-    data = result.data
-    true = oscillator.exact(data["time"].to_numpy())
-    found = data[["one.x", "two.x", "one.v", "two.v"]].to_numpy()
-    return max(
-        np.linalg.norm((found - true)[:, part]) / np.linalg.norm(true[:, part])
-        for part in (slice(0, 2), slice(2, 4))
-    )
 
 
 @pytest.mark.parametrize("plain", [False, True], ids=["restores", "plain"])
@@ -38,7 +26,7 @@ def test_error_over_tolerance(kinds, cut, plain):
             oscillator.system, tolerance=tolerance, record_step=1e-2, t_end=10.0, start="rest",
             values=oscillator.values,
         )  # fmt: skip
-        share = achieved(oscillator, result) / tolerance
+        share = max(oscillator.group_errors(result).values()) / tolerance
         assert 5e-4 < share < 2.0
         assert result.verification.error <= tolerance
         steps.append(result.info.communication_step)
@@ -50,7 +38,7 @@ def test_foreign_parts_alone_get_a_step_that_suits_them(kinds):
     oscillator = Oscillator(kinds, "force and motion", 0.01)
     result = hb.run(oscillator.system, t_end=10.0, start="rest", values=oscillator.values)
     assert result.info.communication_step > 5e-4
-    assert achieved(oscillator, result) < 2e-3
+    assert max(oscillator.group_errors(result).values()) < 2e-3
     assert any(note.startswith("tolerance = 0.001: steps of") for note in result.info.notes)
     assert not result.verification.missed
 

@@ -4,14 +4,37 @@ With steps h1 > h2 > h3 and an error C h^p, the results differ by
 
     d12 = C (h1^p - h2^p),   d23 = C (h2^p - h3^p),
 
-which gives p, and the error of the last run, C h3^p = d23 h3^p / (h2^p - h3^p).
+which gives p, and the error of the last run, C h3^p = d23 h3^p / (h2^p - h3^p). Differences are
+what the longer steps err, and p is the power between these: at the last step more can be left of
+what falls with a lower one. So powers of long steps, high by chance, do not count as they are.
 """
+
+from typing import NamedTuple
 
 LOWEST, HIGHEST = 0.01, 8.0
 """Powers that are looked for."""
+_LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
+"""Powers that count: least; most of two runs that are far apart; of near ones until two runs in
+turn have shown more; then. Errors of contacts scatter with the step: one power can be chance."""
+FAR = 0.3
+"""Difference of two runs above which the longer step follows no power."""
 
 
-def step_power(first: float, second: float, steps: tuple[float, float, float]) -> float:
+class Left(NamedTuple):
+    """What a run errs, by runs with longer steps.
+
+    Attributes:
+        error: of the run [1].
+        power: with which the differences fall; 1 where there is one only.
+        counted: power that counts for the error.
+    """
+
+    error: float
+    power: float
+    counted: float
+
+
+def step_power(first: float, second: float, steps: tuple[float, ...]) -> float:
     """Power p, between 0 and 8.
 
     Args:
@@ -41,3 +64,18 @@ def left_of(longer: float, step: float, power: float) -> float:
         power: with which the error falls.
     """
     return step**power / (longer**power - step**power)
+
+
+def left(first: float | None, second: float, steps: tuple[float, ...], before: float = 0.0) -> Left:
+    """Error of a run by its difference from the one before, and that one's from its predecessor.
+
+    Args:
+        first: difference of both runs before; None: there is one only, or it is not known.
+        second: difference of the run from the one before.
+        steps: of the runs [s], in their order: at least two.
+        before: power that was measured with one run less; 0: none.
+    """
+    power = 1.0 if first is None else step_power(first, second, steps[-3:])
+    most = _MOST if first is None or first >= FAR else min(max(before, _MOST), _HIGHEST)
+    counted = min(max(power, _LEAST), _ROUGH if second > FAR else most)
+    return Left(second * left_of(steps[-2], steps[-1], counted), power, counted)

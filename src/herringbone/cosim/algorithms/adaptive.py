@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.algorithms.iterated import SMALLEST, PreparedNodes
 from herringbone.cosim.algorithms.jacobian import (
     PREDICTION,
@@ -30,6 +31,7 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
+from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
 from herringbone.cosim.loops.adaptive_step.loop import STEP_LIMIT, run_adaptive
 from herringbone.cosim.loops.adaptive_step.step_error import (
@@ -37,6 +39,7 @@ from herringbone.cosim.loops.adaptive_step.step_error import (
     INNER_STEPS,
     LARGEST,
     ORDER,
+    room_for,
     update_scale,
 )
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
@@ -192,12 +195,15 @@ class PreparedAdaptive(PreparedNodes):
             memory=MEMORY * TICKS * self._tick,
             inner_step=self.inner_step,
             times=self._record.row_times,
+            room=room_for(int(nodes.group.max(initial=-1)) + 1),
         )
         first = self._first_rung()
         adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
         adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
         buffers.nodes[:] = buffers.history[0]
-        update_scale(nodes, buffers, adaptive.moments, adaptive.covered, adaptive.memory, 0.0)
+        update_scale(
+            nodes, buffers, adaptive.moments, adaptive.room, adaptive.covered, adaptive.memory, 0.0
+        )
         return adaptive
 
     def saved(self) -> Arrays:
@@ -222,6 +228,12 @@ class PreparedAdaptive(PreparedNodes):
         self._kept = float(saved["kept"])
         if self._adaptive is not None:
             self._adaptive = self._adaptive._replace(tolerance=self._kept)
+
+    def run_from(
+        self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
+    ) -> tuple[int, int, int]:
+        """See `PreparedRun`."""
+        return PreparedRun.run_from(self, starts, begin, history, chunk)
 
     def run(self, history: np.ndarray, chunk: Chunk) -> tuple[int, int, int]:
         """Run up to the end of the chunk, which counts ticks; see `loops.stages.run_stages`."""

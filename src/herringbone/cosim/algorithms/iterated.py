@@ -24,8 +24,10 @@ from herringbone.cosim.layouts.nodes import (
     lay_out_nodes,
     new_buffers,
 )
+from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH, grow_scale, run_iterated
+from herringbone.cosim.loops.starts import iterated_from
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.repeating import answers_again, explicit_note, explicit_parts
 
@@ -139,6 +141,11 @@ class PreparedNodes(PreparedRun):
         """State restores."""
         return int(self._buffers.counts[0]) if self._buffers else 0
 
+    @property
+    def start_rates(self) -> np.ndarray | None:
+        """See `PreparedRun`."""
+        return None if self._buffers is None else self._buffers.rates[0]
+
     def close_loop(self, loop: AlgebraicLoop) -> float:
         """Growth after the loop has been solved in every step: by the Jacobian, or by sweeps.
 
@@ -186,13 +193,34 @@ class PreparedNodes(PreparedRun):
                 self.nodes,
                 self._buffers,
                 self._correction,
-                Control(self.corrections, self.most, REST, slow, PREDICTION),
+                self._control(slow),
                 chunk._replace(start=done, count=until - done),
             )
             if status == REFRESH:
                 status = self._refresh(self._buffers, chunk._replace(start=done))
             if status != DONE or done >= end:
                 return status, done, culprit
+
+    def run_from(
+        self, starts: Starts, begin: int, history: np.ndarray, chunk: Chunk
+    ) -> tuple[int, int, int]:
+        """See `PreparedRun`."""
+        patient = not self.newton or chunk.start + chunk.count <= self._next_refresh
+        if self._buffers is None or not (self._corrected and patient):
+            return super().run_from(starts, begin, history, chunk)
+        return iterated_from(
+            starts,
+            begin,
+            self.layout,
+            self.nodes,
+            self._buffers,
+            self._correction,
+            self._control(np.inf),
+            chunk,
+        )
+
+    def _control(self, slow: float) -> Control:
+        return Control(self.corrections, self.most, REST, slow, PREDICTION)
 
     def _refresh(self, buffers: Buffers, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""

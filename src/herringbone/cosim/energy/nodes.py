@@ -18,12 +18,13 @@ def _write_speed(monitor: EnergyMonitor, nodes: np.ndarray, i: int, h: float) ->
     """Velocities of pair i at the points, less their common mean."""
     count, s, v = nodes.shape[0], monitor.places.position[i], monitor.places.velocity[i]
     points, common, rule = monitor.points, monitor.state[COMMON, i], monitor.rule
+    share, per_step = h * common / (count - 1), 1.0 / h
     for k in range(count):
         points[count + k] = h * (nodes[k, v] - common)
     for k in range(count):
         points[k] = 0.0
         if s >= 0:
-            points[k] = nodes[k, s] - nodes[0, s] - k / (count - 1) * h * common
+            points[k] = nodes[k, s] - nodes[0, s] - k * share
         else:
             for j in range(count):
                 points[k] += rule.position[k, j] * points[count + j]
@@ -31,7 +32,7 @@ def _write_speed(monitor: EnergyMonitor, nodes: np.ndarray, i: int, h: float) ->
         total = 0.0
         for k in range(2 * count):
             total += rule.motion[q, k] * points[k]
-        monitor.speed[i, q] = total / h
+        monitor.speed[i, q] = total * per_step
 
 
 @inlined

@@ -23,7 +23,7 @@ class Adaptive(NamedTuple):
         tolerance: relative error that is asked for.
         last: ticks of the whole run.
         rungs: macro steps in ticks, ascending.
-        corrections: (rungs, unknowns p, unknowns p).
+        corrections: (rungs, unknowns p, unknowns p), each by columns.
         ready: NONE ... OWN by rung.
         owed: corrections beyond the first, by rung, since its Jacobian.
         taken, rejected: macro steps by rung.
@@ -32,6 +32,7 @@ class Adaptive(NamedTuple):
         errors: (2, groups): the integrals of these over time.
         far: (1,) error of the run so far.
         moments, covered: of the forces, and times: see `step_error.update_scale`.
+        room: see `step_error.room_for`.
         memory: time over which the forces are taken about a straight line [s].
         inner_step: longest of the bodies [s]; 0 if they make none.
         sharpness: (1,) largest error over ticks^order of the last steps.
@@ -54,6 +55,7 @@ class Adaptive(NamedTuple):
     far: np.ndarray
     moments: np.ndarray
     covered: np.ndarray
+    room: np.ndarray
     memory: float
     inner_step: float
     sharpness: np.ndarray
@@ -72,12 +74,13 @@ def new_adaptive(
     memory: float,
     inner_step: float,
     times: np.ndarray,
+    room: np.ndarray,
 ) -> Adaptive:
     """Step control of a run that has not begun.
 
     Args:
         nodes: the layout of passes.
-        rungs, held, tolerance, last, memory, inner_step, times: see `Adaptive`.
+        rungs, held, tolerance, last, memory, inner_step, times, room: see `Adaptive`.
     """
     unknowns, groups = nodes.unknown.size, int(nodes.group.max(initial=-1)) + 1
     size = nodes.degree * unknowns
@@ -96,6 +99,7 @@ def new_adaptive(
         far=np.zeros(1),
         moments=np.zeros((5, max(unknowns, groups))),
         covered=np.zeros(4),
+        room=room,
         memory=memory,
         inner_step=inner_step,
         sharpness=np.zeros(1),

@@ -112,6 +112,15 @@ class NodalPart(PartAdapter):
             adapter._memory["watched"] = 0
         return adapter
 
+    def carry_in(self, missed: np.ndarray) -> None:
+        """Keep what a step has missed (n,) in an array of the caller's, see `nodal.once`."""
+        self._arrays["missed"] = missed
+        self._memory["missed"] = missed.ctypes.data
+
+    def forget_step(self) -> None:
+        """The next step is none that was taken already, though it may begin at the same time."""
+        self._memory["taken_time"] = np.nan
+
     @property
     def answers_again(self) -> bool:
         """True if the part cannot repeat a step; see `nodal.once`."""

@@ -4,8 +4,8 @@
     algorithm     `li` with a macro step that follows the tolerance, where all parts can repeat a
                   step and are of this project; of degree 3, or 4 where little error is left; with
                   foreign parts a fixed step, found by runs (see `step_search`)
-    inner steps   of own parts, see `inner_steps`; in proportion to the macro step where runs find
-                  that, so that they tell what both err; foreign FMUs are told a share of the
+    inner steps   of own parts, see `inner_steps`; with the square of the macro step where runs find
+                  that, see `inner_steps_of_runs`; foreign FMUs are told a share of the
                   tolerance in FMI's setup call
     estimate      of both errors while the run goes on (`loops.adaptive_step.step_error`), and by
                   other runs
@@ -19,10 +19,9 @@ from herringbone.cosim.algorithms import LI, with_tolerance
 from herringbone.cosim.structure.system import System
 from herringbone.running.coupled import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
+from herringbone.running.steps.inner_steps_of_runs import SHARE
 from herringbone.scenes import Scene
 
-SHARE = 0.1
-"""Of the tolerance, for the inner errors of foreign FMUs."""
 _FINE = 3e-5
 """Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
 teeth are in contact and where they separate."""

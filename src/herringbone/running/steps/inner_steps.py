@@ -12,7 +12,7 @@ Where the system's start is no load, or foreign parts take part, each gearbox is
 itself under a torque.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -97,19 +97,6 @@ def with_inner_steps(
 def stable_inner_steps(system: System) -> dict[str, float]:
     """The longest inner step [s] that own parts may take, by path, where none is set by name."""
     return _stable(system, _linear(system))
-
-
-def with_inner_steps_of(system: System, step: float, stable: Mapping[str, float]) -> System:
-    """The system with inner steps in proportion to a macro step, as far as they are stable.
-
-    Runs with ever shorter macro steps so tell what both err.
-
-    Args:
-        system: with all values.
-        step: macro step [s].
-        stable: see `stable_inner_steps`.
-    """
-    return system.with_values({p: min(step / _LI.degree, most) for p, most in stable.items()})
 
 
 def _paths(system: System) -> Iterator[tuple[str, str]]:

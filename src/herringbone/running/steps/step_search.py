@@ -5,8 +5,10 @@ system: the phase of an oscillation without damping drifts away with time. Where
 no rule knows that, and some cannot take a step back. Whole runs tell, see `accuracy.step_power`.
 
 The first steps are long and cost little; from the second run on the step is chosen to err 0.7 of
-the tolerance. The power of the step counts as 4 at most, as 2 while the run before was far from its
-own predecessor, as 1 where two runs are far apart or no other is known: long steps pretend more.
+the tolerance. The power of the step counts as 4 at most, as 2 until two runs in turn have shown
+more, or while the run before was far from its own predecessor, as 1 where two runs are far apart or
+no other is known: long steps pretend more. Each group of channels has its own: one that errs little
+with long steps can err most at last.
 The first step is a 47th of the run, or five times li's own where parts of this project take part:
 47 is prime, so that signals with a whole number of periods in the run do not look constant.
 """
@@ -20,9 +22,11 @@ from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.operating.lean import with_row
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import judged
-from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps_of
+from herringbone.running.steps.inner_steps import stable_inner_steps
+from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
 
@@ -83,11 +87,11 @@ def searched(
     """
     search = Search(tolerance, wished=asked.tolerance is not None)
     stable = {} if asked.tolerance is None else stable_inner_steps(system)
-    step = asked.step or first_step(system, scene)
+    step = first = asked.step or first_step(system, scene)
     wanted = replace(asked, tolerance=None, warn=False, all_points=True, judge=False)
     while not search.why:
         try:
-            tried = with_inner_steps_of(system, step, stable)
+            tried = with_inner_steps_of(system, step, first, tolerance, stable)
             found = coupled(tried, scene, replace(wanted, step=step), progress, recorded)
         except HerringboneError as error:
             if not search.tried:
@@ -98,7 +102,7 @@ def searched(
         search.take(found)
         step = found.recording.step / float(search.pieces())
     found = search.told() if search.tried else found
-    return found._replace(result=judged(found.result, system, None))
+    return found._replace(result=with_row(judged(found.result, system, None), asked.left_out))
 
 
 def first_step(system: System, scene: Scene) -> float:

@@ -1,15 +1,15 @@
 """Runs with ever shorter steps: what is known of their errors, and when there are enough."""
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from statistics import fmean
 
 from herringbone.analysis.accuracy.apart import Apart, apart
-from herringbone.analysis.accuracy.step_power import left_of, step_power
+from herringbone.analysis.accuracy.step_power import FAR, left, left_of
 from herringbone.core import Outcome, OutcomeKind
+from herringbone.result.verification import Verification
 from herringbone.running.coupled import Coupled
-from herringbone.running.steps.verification import scaled
+from herringbone.running.steps.tried_run import TriedRun
 
 _RUNS, _FAILURES = 20, 2
 """Runs in all; runs in which a part or the coupling fails, for whatever reason."""
@@ -19,10 +19,13 @@ _FEW, _CLOSEST = (1, 2, 4), Fraction(3, 2)
 """Of so many steps of a run the next one makes more: half as many again at the least."""
 _AIM = 0.7
 """Share of the tolerance that the next step is to err."""
-_LEAST, _ROUGH, _MOST, _HIGHEST = 0.5, 1.0, 2.0, 4.0
-"""Powers that count: least; most of two runs that are far apart, and near; of three near ones."""
-_FAR = 0.3
-"""Difference of two runs above which the longer step follows no power."""
+_PRESUMED, _KNOWN = 4.0, 3
+"""Power that the next step is chosen by, until so many runs are near their predecessors; then it is
+the larger one of the last two measured. The first that is measured is that of the longest steps,
+and by a low one the next step would be far too short. One that presumes too much costs one more
+run, no accuracy: what was measured tells the error."""
+_LOWEST = 0.5
+"""Of these powers."""
 _BLIND = 2.0
 """What the step is divided by as long as nothing is known of the error."""
 _FALLS = 0.3
@@ -32,40 +35,6 @@ noise, whose differences rise and fall, the mean of four."""
 _LONG = 4
 _PATIENCE, _TIMES = 60.0, 30.0
 """A run is not begun if it takes longer [s], and so many times as long as all before."""
-
-
-@dataclass(frozen=True)
-class _Tried:
-    """A run that ended well, and what is known of its error.
-
-    Attributes:
-        found: the run.
-        differences: from the run before; None for the first.
-        power: with which the differences fall.
-        counted: power that counts for the error.
-        share: the run's error over these differences.
-    """
-
-    found: Coupled
-    differences: Apart | None = None
-    power: float = 1.0
-    counted: float = 1.0
-    share: float = 0.0
-
-    @property
-    def step(self) -> float:
-        """Macro step [s]."""
-        return self.found.recording.step
-
-    @property
-    def apart(self) -> float:
-        """Difference from the run before, of the group that differs most."""
-        return max(self.differences.groups.values(), default=0.0) if self.differences else math.inf
-
-    @property
-    def error(self) -> float:
-        """Of the group that errs most."""
-        return self.share * self.apart if self.differences else math.inf
 
 
 class Search:
@@ -83,7 +52,7 @@ class Search:
 
     def __init__(self, tolerance: float, *, wished: bool) -> None:
         self._tolerance, self._wished = tolerance, wished
-        self.tried: list[_Tried] = []
+        self.tried: list[TriedRun] = []
         self.failed: list[float] = []
         self.why = ""
         self._seconds, self._steps = 0.0, 1
@@ -114,31 +83,38 @@ class Search:
         )
         return min(found, default=Fraction(_AT_ONCE))
 
-    def _shorter(self) -> float:
-        if not self.tried or self.tried[-1].apart > _FAR:
-            return _BLIND
-        last = self.tried[-1]
-        power = last.counted if len(self.tried) > 2 else _HIGHEST
-        return (last.error / (_AIM * self._tolerance)) ** (1.0 / power)
+    @property
+    def _power_known(self) -> bool:
+        return sum(tried.apart <= FAR for tried in self.tried) >= _KNOWN
 
-    def _judged(self, found: Coupled) -> _Tried:
+    def _shorter(self) -> float:
+        """By what the last step is too long, by powers as far as these are known."""
+        if not self.tried or self.tried[-1].apart > FAR:
+            return _BLIND
+        before, last, power = *self.tried[-2:], _PRESUMED
+        if self._power_known:  # one that is low by chance, as with contacts, is no reason
+            power = min(max(before.power, last.power, _LOWEST), _PRESUMED)
+        error = last.apart * left_of(before.step, last.step, power)
+        return (error / (_AIM * self._tolerance)) ** (1.0 / power)
+
+    def _judged(self, found: Coupled) -> TriedRun:
         """A run beside those before."""
         if not self.tried:
-            return _Tried(found)
-        before, step = self.tried[-1], found.recording.step
-        new = _Tried(found, apart(before.found.every, found.every, found.exchanged))
-        power = 1.0
-        if before.differences is not None:
-            steps = (self.tried[-2].step, before.step, step)
-            power = step_power(before.apart, new.apart, steps)
-        most = _HIGHEST if before.apart < _FAR else _MOST
-        counted = min(max(power, _LEAST), _ROUGH if new.apart > _FAR else most)
-        share = left_of(before.step, step, counted)
-        return replace(new, power=power, counted=counted, share=share)
+            return TriedRun(found)
+        before = self.tried[-1]
+        differences = apart(before.found.every, found.every, found.exchanged)
+        steps = (*(tried.step for tried in self.tried), found.recording.step)
+        earlier = before.differences.groups if before.differences else {}
+        powers = {name: group.power for name, group in before.groups.items()}
+        groups = {
+            name: left(earlier.get(name), difference, steps, powers.get(name, 0.0))
+            for name, difference in differences.groups.items()
+        }
+        return TriedRun(found, differences, groups)
 
     def _over(self, outcome: Outcome, found: Coupled) -> str:
         """Why no other step is tried; "" if one is."""
-        patience = 2 if self.tried and self.tried[-1].apart < _FAR else 3
+        patience = 2 if self.tried and self.tried[-1].apart < FAR else 3
         powers = [t.power for t in self.tried[2:]]
         flat = len(powers) >= patience and all(p < _FALLS for p in powers[-patience:])
         flat = flat or (len(powers) >= _LONG and fmean(powers[-_LONG:]) < _FALLS)
@@ -155,7 +131,7 @@ class Search:
 
     def _too_dear(self, found: Coupled) -> str:
         """Why the step that is needed is not begun; "" if it is."""
-        if len(self.tried) < 3 or self.tried[-1].apart > _FAR:
+        if not self._power_known or self.tried[-1].apart > FAR:
             return ""
         times = self._shorter()
         seconds = times * found.recording.wall_seconds
@@ -179,11 +155,17 @@ class Search:
             said = f"tolerance = {self._tolerance:g} is not met: error {last.error:.2g}; {self.why}"
             result = replace(result, outcome=replace(result.outcome, message=said))
         if found:
-            verification = scaled(found, last.share, self.tried[-2].step, "by longer steps")
-            if self._wished:
-                verification = verification._replace(asked=self._tolerance)
-            result = replace(result, verification=verification)
+            result = replace(result, verification=self._verification(found))
         return last.found._replace(result=result)
+
+    def _verification(self, found: Apart) -> Verification:
+        """Of the last run; its worst output as its worst group, of which more is known."""
+        last = self.tried[-1]
+        groups = {name: group.error for name, group in last.groups.items()}
+        worst = last.error / last.apart * found.worst_difference if last.apart else 0.0
+        asked = self._tolerance if self._wished else None
+        step = self.tried[-2].step
+        return Verification(groups, found.worst, worst, step, "by longer steps", asked)
 
     def _limit(self) -> str:
         """What kept the search from the tolerance, if anything did."""

@@ -91,11 +91,12 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    update_scale(nodes, buffers, adaptive.moments, adaptive.covered, adaptive.memory, h)
+    room, covered = adaptive.room, adaptive.covered
+    update_scale(nodes, buffers, adaptive.moments, room, covered, adaptive.memory, h)
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, adaptive.covered[0])
+    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, room, covered[0])
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
@@ -133,7 +134,9 @@ def _try(
     inner_steps = np.inf
     if adaptive.inner_step > 0.0:
         inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
-    error, culprit = step_error(nodes, buffers, adaptive.held, adaptive.squares, known, inner_steps)
+    error, culprit = step_error(
+        nodes, buffers, adaptive.held, adaptive.squares, adaptive.room, known, inner_steps
+    )
     state[CULPRIT] = culprit
     return -1, error
 

@@ -27,7 +27,7 @@ import numpy as np
 
 from herringbone.cosim.layouts.layout import HISTORY
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.kernels.compiling.jit import allocating, inlined
+from herringbone.kernels.compiling.jit import inlined
 
 ORDER = np.array([0, 2, 4, 4, 6])
 """Order q by degree p."""
@@ -42,6 +42,8 @@ _INNER_ORDER = 4
 FLOOR = 1e-3
 """Smallest standard deviation that counts, in units of the largest force."""
 _MOST_POINTS = 5 + 2
+_PLACES, _OWN, _LINEAR, _FOURTH, _RELATIVE, _COUNT = range(6)
+"""Rows of the room: places and weights of values, sums and numbers of unknowns by group."""
 _FLAT = 1e-9
 COUPLING, INNER_STEPS = range(2)
 """Rows of what `step_error` finds."""
@@ -51,14 +53,21 @@ now, which make the line; sum of squared deviations from it. Of each group: the 
 sum of the mean square deviations."""
 
 
-@allocating
-def _weights(buffers: Buffers, degree: int, points: int, weights: np.ndarray) -> None:
+def room_for(groups: int) -> np.ndarray:
+    """What the functions below work in, for so many groups of unknowns."""
+    return np.zeros((_COUNT + 1, max(_MOST_POINTS, groups)))
+
+
+@inlined
+def _weights(
+    buffers: Buffers, degree: int, points: int, x: np.ndarray, weights: np.ndarray
+) -> None:
     """Weights of the values whose sum is h^q f^(q), q = degree + points.
 
     Args:
+        x: room for the places of these values.
         weights: of the degree + 1 nodes, then of so many communication points before the step.
     """
-    x = np.empty(_MOST_POINTS)
     count = degree + 1
     for j in range(count):
         x[j] = j / degree
@@ -71,10 +80,10 @@ def _weights(buffers: Buffers, degree: int, points: int, weights: np.ndarray) ->
     for j in range(1, count):
         factorial *= j
     for j in range(count):
-        weights[j] = factorial
+        product = 1.0
         for k in range(count):
-            if k != j:
-                weights[j] /= x[j] - x[k]
+            product *= x[j] - x[k] if k != j else 1.0
+        weights[j] = factorial / product
 
 
 @inlined
@@ -90,12 +99,13 @@ def _difference(
     return total
 
 
-@allocating
+@inlined
 def step_error(
     nodes: NodeLayout,
     buffers: Buffers,
     held: np.ndarray,
     squares: np.ndarray,
+    room: np.ndarray,
     known: int,
     inner_steps: float,
 ) -> tuple[float, int]:
@@ -107,70 +117,79 @@ def step_error(
         nodes, buffers: as the last pass left them.
         held: 1 for unknowns that a body holds over the step.
         squares: (2, groups): of the errors of coupling and inner steps, summed over the unknowns.
+        room: see `room_for`.
         known: communication points passed, the start included.
         inner_steps: from node to node; infinite if parts make none.
     """
     p = nodes.degree
     squares[:] = 0.0
     largest, culprit = 0.0, 0
-    relative, count = np.zeros(squares.shape[1]), np.zeros(squares.shape[1])
-    own, linear, fourth = (
-        np.empty(_MOST_POINTS), np.empty(_MOST_POINTS), np.empty(_MOST_POINTS),
-    )  # fmt: skip
+    relative, count = room[_RELATIVE], room[_COUNT]
+    relative[:] = 0.0
+    count[:] = 0.0
     points = min(ORDER[p] - p, known - 1, HISTORY - 2)
     points_1 = min(ORDER[1] - 1, known - 1)
     points_4 = min(max(_INNER_ORDER - p, 0), known - 1, HISTORY - 2)
-    _weights(buffers, p, points, own)
-    _weights(buffers, 1, points_1, linear)
-    _weights(buffers, p, points_4, fourth)
-    finer = INNER / (p * inner_steps) ** _INNER_ORDER
+    own, linear, fourth = room[_OWN], room[_LINEAR], room[_FOURTH]
+    _weights(buffers, p, points, room[_PLACES], own)
+    _weights(buffers, 1, points_1, room[_PLACES], linear)
+    _weights(buffers, p, points_4, room[_PLACES], fourth)
+    finer = AMPLIFICATION * INNER / (p * inner_steps) ** _INNER_ORDER
     for k in range(nodes.unknown.size):
         i = nodes.unknown[k]
+        missing = _difference(buffers, i, own, 1, p, points)
+        inner = missing
+        if points_4 != points:
+            inner = _difference(buffers, i, fourth, 1, p, points_4)
+        inner *= finer
+        missing *= _KAPPA[p]
         if held[k]:
             missing = _KAPPA[1] * _difference(buffers, i, linear, p, 1, points_1)
-        else:
-            missing = _KAPPA[p] * _difference(buffers, i, own, 1, p, points)
         coupling = AMPLIFICATION * abs(missing) + abs(buffers.rest[p - 1, k])
-        inner = AMPLIFICATION * finer * abs(_difference(buffers, i, fourth, 1, p, points_4))
-        error = np.sqrt(coupling * coupling + inner * inner) / buffers.scale[k]
+        error = (coupling / buffers.scale[k]) ** 2 + (inner / buffers.scale[k]) ** 2
         if error - error != 0.0:
             return np.inf, k
         squares[COUPLING, nodes.group[k]] += coupling * coupling
         squares[INNER_STEPS, nodes.group[k]] += inner * inner
-        relative[nodes.group[k]] += error * error
+        relative[nodes.group[k]] += error
         count[nodes.group[k]] += 1.0
         if error > largest:
             largest, culprit = error, k
     worst = 0.0
-    for g in range(count.size):
+    for g in range(squares.shape[1]):
         worst = max(worst, relative[g] / count[g])
     return np.sqrt(worst), culprit
 
 
-@allocating
-def error_so_far(nodes: NodeLayout, buffers: Buffers, errors: np.ndarray, covered: float) -> float:
+@inlined
+def error_so_far(
+    nodes: NodeLayout, buffers: Buffers, errors: np.ndarray, room: np.ndarray, covered: float
+) -> float:
     """Relative error of the run so far, of the group that errs most.
 
     Args:
         nodes, buffers: after `update_scale`.
         errors: (2, groups): integrals of the squares of `step_error` over time.
+        room: see `room_for`.
         covered: time since the start [s].
     """
-    sizes = np.zeros(errors.shape[1])
+    sizes = room[_RELATIVE]
+    sizes[:] = 0.0
     for k in range(nodes.unknown.size):
         sizes[nodes.group[k]] += covered * buffers.scale[k] ** 2
     worst = 0.0
-    for g in range(sizes.size):
+    for g in range(errors.shape[1]):
         if sizes[g] > 0.0:
             worst = max(worst, (errors[COUPLING, g] + errors[INNER_STEPS, g]) / sizes[g])
     return np.sqrt(worst)
 
 
-@allocating
+@inlined
 def update_scale(
     nodes: NodeLayout,
     buffers: Buffers,
     moments: np.ndarray,
+    room: np.ndarray,
     times: np.ndarray,
     memory: float,
     h: float,
@@ -180,6 +199,7 @@ def update_scale(
     Args:
         nodes, buffers: as the last pass left them; the scale is written.
         moments: (5, unknowns): see SUM ... DEVIATION.
+        room: see `room_for`.
         times: (4,) [s]: time that the moments cover; of the straight lines, the sums of the weights
             and of the first and second powers of the time before now.
         memory: over which values are taken about a straight line [s].
@@ -193,16 +213,19 @@ def update_scale(
         times[2] = kept * (times[2] - share * times[1])
         times[1] = kept * times[1] + share
         spread = times[1] * times[3] - times[2] * times[2]
+        known = spread > _FLAT * times[1] * times[3]
+        mean, slope = (times[3] / spread, times[2] / spread) if known else (0.0, 0.0)
         for k in range(nodes.unknown.size):
             value = buffers.nodes[node, nodes.unknown[k]]
             moments[SUM_T, k] = kept * (moments[SUM_T, k] - share * moments[SUM, k])
             moments[SUM, k] = kept * moments[SUM, k] + share * value
-            if spread > _FLAT * times[1] * times[3]:
-                line = times[3] * moments[SUM, k] - times[2] * moments[SUM_T, k]
-                moments[SQUARES, k] += share * (value - line / spread) ** 2
+            if known:
+                line = mean * moments[SUM, k] - slope * moments[SUM_T, k]
+                moments[SQUARES, k] += share * (value - line) ** 2
             moments[LARGEST, nodes.group[k]] = max(moments[LARGEST, nodes.group[k]], abs(value))
     moments[DEVIATION, :] = 0.0
-    count = np.zeros(nodes.unknown.size)
+    count = room[_COUNT]
+    count[:] = 0.0
     for k in range(nodes.unknown.size):
         count[nodes.group[k]] += 1.0
         moments[DEVIATION, nodes.group[k]] += moments[SQUARES, k] / max(times[0], 1e-300)
