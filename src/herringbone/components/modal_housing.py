@@ -61,6 +61,8 @@ _SLOWEST, _SMALLEST_SHAPE = 2.0 * math.pi * 10.0, 1e-6
 """What rigid modes [rad/s], and modes that do not move the seats [kg^-1/2], count as there."""
 _DOFS = tuple((seat, axis) for seat in HALVES for axis in "xyz")
 _N = len(_DOFS)
+_AXES = 3
+_SEATS = _N // _AXES
 _FORCES = tuple(f"{seat}.f_{axis}" for seat, axis in _DOFS)
 
 
@@ -85,14 +87,15 @@ _TABLE_SIZE = 1 + MODES * (2 + _N + 1) + _PARTIAL
 STEPS = 24
 """Steps whose propagators are kept, for masters that come back to a step."""
 # Work: slots filled so far, step of each slot, slots of propagators (by entry, then by mode), room
-# for one propagator and for its making, polynomial forces.
+# for one propagator and for its making, polynomial forces by dof, the same by mode.
 _FILLED, _STEP_OF = 0, 1
 _PROPAGATORS = _STEP_OF + STEPS
 _SLOT = MODES * modal.PROPAGATOR
 _ONE = _PROPAGATORS + STEPS * _SLOT
 _SCRATCH = _ONE + modal.PROPAGATOR
 _POLYNOMIALS = _SCRATCH + modal.SCRATCH_SIZE
-_WORK = _POLYNOMIALS + _N * STRIDE
+_MODAL = _POLYNOMIALS + _N * STRIDE
+_WORK = _MODAL + modal.DEGREES * MODES
 
 _d = Declaration(
     "modal_housing",
@@ -201,9 +204,10 @@ def _motion(b: np.ndarray) -> None:
 
 
 @kernel
-def _seats(b: np.ndarray) -> None:
-    """Write the motion of the seats and its accelerations from those of the modes."""
-    _motion(b)
+def _accelerate(b: np.ndarray, forces: np.ndarray) -> None:
+    """Write the accelerations of modes and seats under the forces on the modes."""
+    for i in range(_count(b)):
+        b[_ACCELERATIONS + i] = _acceleration(b, i, forces[i])
     sums = b[_SUMS : _SUMS + _PARTIAL]
     fours = (_count(b) + 3) // 4
     for k in range(_N):
@@ -222,9 +226,11 @@ def _seats(b: np.ndarray) -> None:
 @kernel
 def _out(b: np.ndarray, t: float) -> None:
     forces = b[_FIRST_INPUT:_FIRST_OUTPUT]
+    of_modes = b[_ACCELERATIONS : _ACCELERATIONS + MODES]
     for i in range(_count(b)):
-        b[_ACCELERATIONS + i] = _acceleration(b, i, _modal_force(b, i, forces, STRIDE))
-    _seats(b)
+        of_modes[i] = _modal_force(b, i, forces, STRIDE)
+    _motion(b)
+    _accelerate(b, of_modes)
 
 
 @kernel
@@ -261,31 +267,37 @@ def _propagators(b: np.ndarray, w: np.ndarray, h: float) -> int:
 
 
 @kernel
-def _propagate(b: np.ndarray, phi: np.ndarray, forces: np.ndarray, degree: int) -> None:
-    """Advance all modes, and write their accelerations.
+def _push(b: np.ndarray, seat: int, forces: np.ndarray, to: np.ndarray) -> None:
+    """Add what one power of the forces at a seat does to the modes.
 
-    Args:
-        b: block.
-        phi: propagators of the step, by entry and mode.
-        forces: their polynomials over the step, by dof and power.
-        degree: of the polynomials.
+    The three forces are read before the loop, which lets the compiler take modes side by side.
     """
-    count = _count(b)
-    for i in range(count):
-        q, v = b[i], b[MODES + i]
-        b[i] = phi[i] * q + phi[MODES + i] * v
-        b[MODES + i] = phi[2 * MODES + i] * q + phi[3 * MODES + i] * v
-        b[_ACCELERATIONS + i] = 0.0
+    first = seat * _AXES
+    f_x, f_y, f_z = (
+        forces[first * STRIDE],
+        forces[(first + 1) * STRIDE],
+        forces[(first + 2) * STRIDE],
+    )
+    x = b[_SHAPES + first * MODES : _SHAPES + (first + _AXES) * MODES]
+    for i in range(_count(b)):
+        to[i] += x[i] * f_x + x[MODES + i] * f_y + x[2 * MODES + i] * f_z
+
+
+@kernel
+def _project(b: np.ndarray, w: np.ndarray, degree: int) -> None:
+    """Write the forces on the modes as polynomials of the time in intervals between nodes.
+
+    By power, then by mode; powers above the degree that `modal.advance` takes are zero.
+    """
+    forces, of_modes = w[_POLYNOMIALS:_MODAL], w[_MODAL:]
+    for k in range(_N):
+        monomial(b, _FIRST_INPUT + k * STRIDE, degree, forces, k * STRIDE)
+        shift(forces, k * STRIDE, degree, 0.0, 1.0 / max(degree, 1))
+    for i in range(modal.powers_of(degree) * MODES):
+        of_modes[i] = 0.0
     for j in range(degree + 1):
-        power = forces[j:]
-        gamma = phi[(4 + 2 * j) * MODES : (6 + 2 * j) * MODES]
-        for i in range(count):
-            force = _modal_force(b, i, power, STRIDE)
-            b[i] += gamma[i] * force
-            b[MODES + i] += gamma[MODES + i] * force
-            b[_ACCELERATIONS + i] += force  # all powers are 1 at the end of the step
-    for i in range(count):
-        b[_ACCELERATIONS + i] = _acceleration(b, i, b[_ACCELERATIONS + i])
+        for seat in range(_SEATS):
+            _push(b, seat, forces[j:], of_modes[j * MODES : (j + 1) * MODES])
 
 
 @kernel
@@ -295,14 +307,14 @@ def _step(b: np.ndarray, w: np.ndarray, t: float, h: float) -> int:
     at = _propagators(b, w, h / intervals)
     if at == 0:
         return TOO_LONG
-    phi, forces = w[at : at + _SLOT], w[_POLYNOMIALS:]
+    phi, forces = w[at : at + _SLOT], w[_MODAL:]
+    _project(b, w, degree)
     for node in range(1, intervals + 1):
-        for k in range(_N):
-            monomial(b, _FIRST_INPUT + k * STRIDE, degree, forces, k * STRIDE)
-            shift(forces, k * STRIDE, degree, (node - 1.0) / intervals, 1.0 / intervals)
-        _propagate(b, phi, forces, degree)
-        _seats(b)
+        modal.advance(b, phi, forces, degree, MODES, _count(b))
+        modal.next_interval(forces, degree, MODES, _count(b))
+        _motion(b)
         store_node(b, _FIRST_OUTPUT, _OUTPUTS, node)
+    _accelerate(b, forces)
     return 0 if all_finite(b, 0, 2 * MODES) else NOT_FINITE
 
 

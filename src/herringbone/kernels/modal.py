@@ -89,3 +89,46 @@ def propagator(w: float, zeta: float, h: float, out: np.ndarray, at: int, s: np.
         factorial *= max(j, 1)
         out[at + 4 + 2 * j] = s[e + 2 + j] * factorial
         out[at + 5 + 2 * j] = s[e + _N + 2 + j] * factorial * scale
+
+
+@kernel
+def powers_of(degree: int) -> int:
+    """How many powers of the force `advance` takes for a degree; those beyond it are zero."""
+    return 2 if degree < 2 else DEGREES
+
+
+@kernel
+def advance(
+    x: np.ndarray, phi: np.ndarray, f: np.ndarray, degree: int, room: int, count: int
+) -> None:
+    """Advance oscillators by a step; loops are over oscillators, which so go side by side.
+
+    Args:
+        x: coordinates, and `room` behind them velocities.
+        phi: propagators of the step, by entry, then by oscillator (PROPAGATOR, room).
+        f: forces over it, by power, then by oscillator (`powers_of` the degree, room).
+        degree: of the forces.
+        room: for oscillators.
+        count: of oscillators.
+    """
+    m = room
+    for i in range(count):
+        q, v, f_0, f_1 = x[i], x[m + i], f[i], f[m + i]
+        shift = phi[4 * m + i] * f_0 + phi[6 * m + i] * f_1
+        push = phi[5 * m + i] * f_0 + phi[7 * m + i] * f_1
+        x[i] = (phi[i] * q + phi[m + i] * v) + shift
+        x[m + i] = (phi[2 * m + i] * q + phi[3 * m + i] * v) + push
+    for i in range(count if degree > 1 else 0):
+        f_2, f_3, f_4 = f[2 * m + i], f[3 * m + i], f[4 * m + i]
+        x[i] += phi[8 * m + i] * f_2 + phi[10 * m + i] * f_3 + phi[12 * m + i] * f_4
+        x[m + i] += phi[9 * m + i] * f_2 + phi[11 * m + i] * f_3 + phi[13 * m + i] * f_4
+
+
+@kernel
+def next_interval(f: np.ndarray, degree: int, room: int, count: int) -> None:
+    """Re-expand forces, as of `advance`, about the end of the step, for the next one as long."""
+    for k in range(degree):
+        for j in range(degree - 1, k - 1, -1):
+            here, above = f[j * room : (j + 1) * room], f[(j + 1) * room : (j + 2) * room]
+            for i in range(count):
+                here[i] += above[i]

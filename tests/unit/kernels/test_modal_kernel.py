@@ -89,3 +89,31 @@ def test_steps_that_masters_send(h):
     w, zeta = 2 * np.pi * 6900.0, 0.01  # highest pseudo mode of the shipped housing
     # w h up to 4300: 14 squarings; 2**14 eps = 4e-12, damped meanwhile.
     assert error(propagator(w, zeta, h), reference(w, zeta, h), w, h) < 1e-11
+
+
+@pytest.mark.parametrize("degree", range(5))
+def test_two_intervals_are_one_step_of_both(degree):
+    """The force is a polynomial of degree p over two intervals; nothing else than rounding."""
+    room, count, h = 4, 3, 2e-5
+    rng = np.random.default_rng(degree)
+    oscillators = [(0.0, 0.0), (3e3, 0.02), (6e4, 0.3)]
+    phi = np.zeros((2, modal.PROPAGATOR, room))
+    for i, (w, zeta) in enumerate(oscillators):
+        for k in range(2):
+            phi[k, :, i] = propagator(w, zeta, (k + 1) * h)
+    f = np.zeros((modal.DEGREES, room))
+    f[: degree + 1, :count] = rng.normal(size=(degree + 1, count))
+    once, twice = np.zeros(2 * room), np.zeros(2 * room)
+    once[:] = rng.normal(size=2 * room)
+    once[:room] *= h
+    twice[:] = once
+    over_both = f * 2.0 ** np.arange(modal.DEGREES)[:, None]
+    modal.advance(once, phi[1].ravel(), over_both.ravel(), degree, room, count)
+    for _ in range(2):
+        modal.advance(twice, phi[0].ravel(), f.ravel(), degree, room, count)
+        f = f.ravel()
+        modal.next_interval(f, degree, room, count)
+    np.testing.assert_allclose(twice[:room], once[:room], rtol=1e-12, atol=1e-12 * h)
+    np.testing.assert_allclose(twice[room:], once[room:], rtol=1e-12, atol=1e-12)
+    powers = over_both.sum(axis=0)  # the force at the end of both
+    np.testing.assert_allclose(f[:count], powers[:count], rtol=1e-12)

@@ -199,7 +199,7 @@ def indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
         z[2 * side], z[2 * side + 1] = b[at.DEPTH + 2 * side], -b[at.DEPTH + 2 * side + 1]
 
 
-_advance = steppers.body_stepper(_rates, _results, at.DECLARATION)
+_advance = steppers.body_stepper(_rates, _results, at.DECLARATION, at.SCRATCH)
 
 
 @kernel

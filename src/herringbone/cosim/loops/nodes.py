@@ -46,14 +46,18 @@ def residual(buffers: Buffers) -> float:
 
 @inlined
 def correct(buffers: Buffers, correction: np.ndarray) -> None:
-    """U += C (G - U)."""
-    count = buffers.scale.size
-    for row in range(correction.shape[0]):
-        total = 0.0
-        for k in range(buffers.rest.shape[0]):
-            for i in range(count):
-                total += correction[row, k * count + i] * buffers.rest[k, i]
-        buffers.trial[row // count, row % count] += total
+    """U += C (G - U), by columns of C: sums of several rows go side by side."""
+    nodes, count, room = buffers.rest.shape[0], buffers.scale.size, buffers.values
+    for row in range(nodes * count):
+        room[row] = 0.0
+    for node in range(nodes):
+        for i in range(count):
+            rest, of_column = buffers.rest[node, i], correction[node * count + i]
+            for row in range(nodes * count):
+                room[row] += of_column[row] * rest
+    for node in range(nodes):
+        for i in range(count):
+            buffers.trial[node, i] += room[node * count + i]
 
 
 @inlined
@@ -120,7 +124,7 @@ def run_iterated(
     """Run macro steps; the result is that of `loops.stages.run_stages`.
 
     Args:
-        correction: C, (unknowns p) squared.
+        correction: C by columns, (unknowns p) squared.
 
     Status REFRESH ends the chunk after a macro step that is complete.
     """
