@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 
 from herringbone.analysis.steady import guess, resolution
+from herringbone.analysis.steady.harmonic_balance import families
+from herringbone.analysis.steady.harmonic_balance.correction import bent
+from herringbone.analysis.steady.harmonic_balance.families import Families
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
@@ -70,14 +75,20 @@ def spectrum(state: SteadyState, orders: np.ndarray, group: str) -> np.ndarray:
     return on(orders, state.harmonics(columns).coefficients, state.numbers)[:, 1:]
 
 
+@pytest.fixture(scope="module")
+def whole(pair):
+    """The state by all places."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (guess, resolution):
+            patch.setattr(module, "LONG", 10_000)
+        return solved(pair, TOLERANCE / 10.0)
+
+
 @pytest.mark.parametrize("sides", [1, 3])
-def test_lines_alone_are_what_all_places_give(pair, monkeypatch, sides):
+def test_lines_alone_are_what_all_places_give(pair, whole, monkeypatch, sides):
     """Also if lines are at first looked for not far enough aside, as the error then tells."""
     monkeypatch.setattr(resolution, "SIDES", sides)
     ours = solved(pair, TOLERANCE)
-    for module in (guess, resolution):
-        monkeypatch.setattr(module, "LONG", 10_000)
-    whole = solved(pair, TOLERANCE / 10.0)
     assert ours.converged
     assert whole.converged
     assert ours.meshes == whole.meshes == 713
@@ -87,3 +98,29 @@ def test_lines_alone_are_what_all_places_give(pair, monkeypatch, sides):
     for group in ("bearing_force", "seat_velocity"):
         one, other = (spectrum(state, orders, group) for state in (ours, whole))
         assert np.linalg.norm(one - other) < 1.1 * TOLERANCE * np.linalg.norm(other)
+
+
+def test_a_step_of_newton_is_the_same_with_families_of_low_orders(monkeypatch):
+    """GMRES has the exact Jacobian, whose inverse beyond these orders is nearly 1."""
+    solver, _ = prepared_solver("test_rig", point=Point(speed=100.0), tolerance=1e-3)
+    state = solver.solve(Point(speed=100.0))
+    structure, orbit = state.structure, state.orbit
+    assert structure.meshes > 1
+    steps, sizes = [], []
+    for highest in (8, 1000):
+        monkeypatch.setattr(families, "HIGHEST", highest)
+        found = Families(orbit.response.orders, structure.meshes, orbit.resolved.order)
+        own = found.inverses(
+            structure.problem, orbit.response, bent(structure.problem, orbit.samples)
+        )
+        sizes.append(own.shape[-1])
+        off = np.zeros_like(orbit.channels[: structure.problem.values])
+        off[:, 1:] = 1.0 / orbit.response.orders[1:]
+        steps.append(
+            correct_by_families(
+                structure.problem, orbit.response, orbit.samples, off, found, TOLERANCE
+            )
+        )
+    assert sizes[0] < 0.6 * sizes[1]
+    size = np.linalg.norm(steps[1])
+    assert np.linalg.norm(steps[0] - steps[1]) < 10.0 * TOLERANCE * size

@@ -1,5 +1,6 @@
 """First guesses of a periodic motion: equilibrium, slow motion, and what a march comes to."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError, ParameterError
 
+PLACES = 64
+"""Points in time of a mesh period, at first."""
 LONG = 200
 """Meshes of a period of which lines alone are looked at."""
 _TURNS, _SETTLED = 3.0, 0.7
@@ -69,24 +72,29 @@ def standing(structure: Structure, motion: Motion) -> Orbit:
     return still.solve(structure.start, np.zeros(1, dtype=int), _SAME)
 
 
+def beginnings(structure: Structure, motion: Motion, still: Orbit) -> Iterator[tuple[Orbit, float]]:
+    """Where a march may begin, and turns of the first pinion over which deviations come in.
+
+    Equilibrium, then that of ideal teeth: deviations may part teeth at rest, and what a march would
+    begin with is no equilibrium.
+    """
+    yield still, 0.0
+    balance = Balance(structure.ideal, Period(0, 1), motion)
+    ideal = balance.solve(structure.ideal_start, np.zeros(1, dtype=int), _SAME)
+    if turns(ideal):
+        yield ideal, _RAMP
+
+
 def _followed(
     structure: Structure, motion: Motion, still: Orbit, periods: float, places: int, kept: float
 ) -> March | None:
-    """A march from equilibrium, else from that of ideal teeth; None if both fail.
-
-    Deviations may part teeth at rest, and what a march then begins with is no equilibrium.
-    """
-    try:
-        return marched(structure, motion, still, periods, places, kept)
-    except HerringboneError:
-        balance = Balance(structure.ideal, Period(0, 1), motion)
-        ideal = balance.solve(structure.ideal_start, np.zeros(1, dtype=int), _SAME)
-    if not turns(ideal):
-        return None
-    try:
-        return marched(structure, motion, ideal, periods, places, kept, ramp=_RAMP)
-    except HerringboneError:
-        return None
+    """A march from the first of these beginnings that has one; None if all fail."""
+    for begin, ramp in beginnings(structure, motion, still):
+        try:
+            return marched(structure, motion, begin, periods, places, kept, ramp)
+        except HerringboneError:
+            continue
+    return None
 
 
 def begun(structure: Structure, motion: Motion, still: Orbit, per_mesh: int) -> Guess:

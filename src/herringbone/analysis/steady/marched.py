@@ -12,7 +12,8 @@ import numpy as np
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.equations import laws_of
-from herringbone.analysis.twin.condensed.march_arrays import Calls
+from herringbone.analysis.twin.condensed.march_arrays import Calls, Samples
+from herringbone.analysis.twin.condensed.rungs import coefficients
 from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 
@@ -72,7 +73,8 @@ class March(NamedTuple):
     Attributes:
         values: (values, kept places) at equal times.
         places: of a period.
-        turned: theta at the first of them, less that at the start of a period [rad].
+        turned: theta at the first of them, without its swing, less that at the start of a period
+            [rad].
         speed, frequency: of the motion that it began from [rad/s].
     """
 
@@ -124,6 +126,76 @@ class March(NamedTuple):
         return min(self.change(times) for times in range(1, _MOST_TIMES + 1))
 
 
+class Following:
+    """The condensed core on its way from a motion on, place by place of the period.
+
+    Args:
+        structure: the system.
+        motion: what is given.
+        begin: where it begins; its period is that of the places.
+        places: points in time of a period.
+        ramp: turns of the first pinion over which deviations come in.
+    """
+
+    def __init__(
+        self, structure: Structure, motion: Motion, begin: Orbit, places: int, ramp: float = 0.0
+    ) -> None:
+        self._condensed, self._values = structure.core.condensed, structure.problem.values
+        constant = motion.given[:-1, 0].real.copy()
+        held = Held(
+            self._condensed.twin, self._condensed.equations, self._condensed.modes, constant, ramp
+        )
+        self._run = Solution(held, _DEGREE, _CLOSE, lean=True)
+        own = start_of(begin)
+        self._run.state.q[: own.size] = own
+        self._begin, self._late, self._gone = begin, structure.late, 0
+        self.places, self._gap = places, begin.period / places
+        self._step = self._gap / np.ceil(self._gap / _LONGEST)
+
+    @property
+    def time(self) -> float:
+        """How long it has gone on [s]."""
+        return self._gone * self._gap
+
+    def on(self, places: int, kept: int, inside: int = 1) -> March:
+        """Go on for some places, and keep the last ones.
+
+        Args:
+            places: how many.
+            kept: of them, at least one.
+            inside: values kept for each place, a power of 2: along the polynomials of the steps.
+
+        Raises:
+            CoreStopped: the march fails.
+        """
+        first, end = self._gone, self._gone + places
+        times = self._late + (end - kept + np.arange(kept * inside) / inside) * self._gap
+        begin, end_time = (self._late + n * self._gap for n in (first, end))
+        series, angles = [np.zeros((self._values, 0))], [np.zeros(0)]
+        for part in self._run.piece(begin, end_time, self._step, times):
+            series.append(self._along(part))
+            coarse = Samples(*(array[::inside] for array in part))
+            angles.append(self._run.coordinates(coarse)[:, 2 * self._condensed.modes.rates.size :])
+        self._gone = end
+        return self._march(np.hstack(series), np.concatenate(angles[1:]), self.places * inside)
+
+    def _along(self, part: Samples) -> np.ndarray:
+        """Laws' values (values, times), less mean tangents, along the polynomials of steps."""
+        nodes = part.held[:, self._run.state.q.size :].reshape(part.times.size, -1, _DEGREE + 1)
+        shares = (part.since / part.length)[:, None] ** np.arange(_DEGREE + 1)
+        weights = shares @ coefficients(_DEGREE)
+        return np.einsum("tvn,tn->vt", nodes[:, : self._values], weights)
+
+    def _march(self, series: np.ndarray, angles: np.ndarray, places: int) -> March:
+        """What was kept; the first of it where theta, but for its swing, is as far as it is."""
+        response = self._begin.response
+        turned = 0.0
+        if angles.shape[1] and response.speed:
+            grown = np.arange(len(angles)) * self._gap * response.speed
+            turned = float((angles[:, 0] - grown).mean())
+        return March(series, places, turned, response.speed, response.frequency)
+
+
 def marched(
     structure: Structure,
     motion: Motion,
@@ -147,25 +219,6 @@ def marched(
     Raises:
         CoreStopped: the march fails.
     """
-    condensed, values = structure.core.condensed, structure.problem.values
-    held = Held(
-        condensed.twin, condensed.equations, condensed.modes, motion.given[:-1, 0].real.copy(), ramp
-    )
+    way = Following(structure, motion, begin, places, ramp)
     periods += ramp / abs(structure.turns_of_pinion)
-    run = Solution(held, _DEGREE, _CLOSE, lean=True)
-    own = start_of(begin)
-    run.state.q[: own.size] = own
-    gap = begin.period / places
-    step = gap / np.ceil(gap / _LONGEST)
-    count, last = round(kept * places), round(periods * places)
-    times = structure.late + (np.arange(count) + last - count) * gap
-    end = structure.late + last * gap
-    found: list[np.ndarray] = []
-    angle = 0.0
-    for part in run.piece(structure.late, end, step, times):
-        if not found:
-            angle = float(part.held[0, 2 * condensed.modes.rates.size])
-        inputs = part.held[:, run.state.q.size :: _DEGREE + 1]
-        found.append(inputs[:, :values].copy())
-    series = np.concatenate(found).T
-    return March(series, places, angle, begin.response.speed, begin.response.frequency)
+    return way.on(round(periods * places), round(kept * places))

@@ -23,11 +23,6 @@ _LARGEST = 8
 ORDERS, SUMMARY = "orders.csv", "steady.json"
 
 
-def per_second(speed: float) -> float:
-    """Speed [rad/s] of one in r/min."""
-    return speed / R_MIN
-
-
 def steady_summary(state: SteadyState | SettledState) -> dict:
     """Figures of a state, for JSON; SI units, None where something is not known."""
     levels = {group: state.level(group) for group in state.channels} if state.found else {}
@@ -43,6 +38,7 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
         own: dict = {"duration": state.run.outcome.time, "change": dict(state.changes)}
     else:
         own = {
+            "marched": state.settled._asdict() if state.settled else None,
             "left_out": dict(state.errors.left_out),
             "change": dict(state.errors.change),
             "iterations": state.orbit.iterations,
@@ -102,6 +98,11 @@ def _of_balance(state: SteadyState) -> list[str]:
         f"{max(state.errors.change.values(), default=0.0):.2g}; {state.orbit.iterations} "
         f"iterations, {state.orbit.places} points of the period",
     ]
+    if state.settled:
+        lines.append(
+            f"  by marching: {state.settled.time:.3g} s from equilibrium; the last period differs "
+            f"from the one before by {state.settled.change:.2g}"
+        )
     if state.bends:
         lines.append(f"  laws bend within the period: {', '.join(state.bends)}")
     if _are_cheap(state):

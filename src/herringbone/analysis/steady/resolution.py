@@ -34,13 +34,25 @@ class Resolution(NamedTuple):
     thin: float
     sides: int
 
-    def period(self, structure: Structure, times: int) -> Period:
-        """Of so many periods of a structure."""
-        meshes = times * structure.meshes
-        found = Period(self.per_mesh // 4, meshes * self.per_mesh, meshes, self.thin)
-        if times > 1 or meshes < LONG:
+    def period(self, structure: Structure, times: int) -> Period | None:
+        """Of so many periods of a structure; None of a long one that lines alone do not tell.
+
+        A march tells that, unless nothing holds the speed, which would drift meanwhile: then all
+        places are taken.
+        """
+        found = self.all_places(structure, times)
+        if times > 1 or found.meshes < LONG:
             return found
-        return found.thinned_to_lines(structure.bases, self.sides) or found
+        if structure.problem.free is not None:
+            return found.thinned_to_lines(structure.bases, self.sides) or found
+        if self.sides >= _EVERY:
+            return None
+        return found.thinned_to_lines(structure.bases, self.sides)
+
+    def all_places(self, structure: Structure, times: int) -> Period:
+        """Of so many periods of a structure, at all places."""
+        meshes = times * structure.meshes
+        return Period(self.per_mesh // 4, meshes * self.per_mesh, meshes, self.thin)
 
     def finest(self, period: Period) -> bool:
         """True if a period that was looked at so is not to be looked at more finely."""

@@ -1,14 +1,16 @@
 """Steady states of one system at many operating points."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
-from typing import NamedTuple
+from functools import cache, partial
 
 import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.found import Found, by_marching, none_found
 from herringbone.analysis.steady.guess import (
     LONG,
+    PLACES,
     SETTLING,
     Guess,
     Neighbour,
@@ -22,8 +24,9 @@ from herringbone.analysis.steady.guess import (
 )
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.marched import March
+from herringbone.analysis.steady.repeated import Repeated
 from herringbone.analysis.steady.resolution import first
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState
@@ -35,13 +38,9 @@ from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3
 AS_IT_IS = Point()
-_PLACES = 64
-"""Points in time of a mesh period, at first."""
 _TRIED, _REPEATS = 2, 0.1
 """Of a march: how many periods of repetition are tried; a change over the alternation that is none.
 """
-_STEPS, _NEUTRAL = 256, 1e-3
-"""Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
 
 
 _NO_ROTATION = (
@@ -51,26 +50,6 @@ _NO_ROTATION = (
 
 
 _NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
-
-
-class Found(NamedTuple):
-    """A motion, what is given of it, and its errors."""
-
-    motion: Motion
-    orbit: Orbit
-    errors: Accuracy
-
-    def good(self, tolerance: float) -> bool:
-        """True if it is a motion, with all harmonics that a tolerance needs."""
-        return self.orbit.converged and self.errors.worst <= tolerance
-
-    def grows(self, structure: Structure, times: int) -> bool:
-        """True if small deviations grow; of many meshes that is not asked for."""
-        if structure.meshes > 1:
-            return False
-        steps = max(_STEPS, self.orbit.places // (2 * times)) * times
-        largest = multipliers(structure.problem, self.motion, self.orbit, steps).largest
-        return largest > 1.0 + _NEUTRAL
 
 
 class SteadySolver:
@@ -132,10 +111,11 @@ class SteadySolver:
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             given = motion_at(structure, point)
-            (motion, orbit, errors), notes = self._found(structure, given, near)
+            found, notes = self._found(structure, given, near)
+        motion, orbit, errors, settled = found
         if point.torque == 0.0 and not orbit.converged:
             notes = (*notes, _NO_LOAD)
-        return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes)
+        return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes, settled)
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -149,51 +129,68 @@ class SteadySolver:
         self, structure: Structure, motion: Motion, near: Neighbour | None
     ) -> tuple[Found, tuple[str, ...]]:
         """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
-        unstable = None
-        for times, guess in self._guesses(structure, motion, near):
-            found = self._resolved(structure, several(motion, times), times, guess)
+        unstable, found = None, None
+        at_rest = cache(partial(standing, structure, motion))  # a neighbour often needs none
+        for times, guess in self._guesses(structure, motion, at_rest, near):
+            tried = self._resolved(structure, several(motion, times), times, guess)
+            if tried is None:
+                break
+            found = tried
             if found.good(self.tolerance):
                 if not (bending_parts(structure, found.orbit) and found.grows(structure, times)):
                     return found, _told(times)
                 unstable = unstable or found
-            elif structure.meshes >= LONG and not found.orbit.resolved.bases:
-                break  # places of the whole period take long, and know no better from elsewhere
-        still = standing(structure, motion)
+            elif structure.meshes >= LONG and _searched(found):
+                break  # that took long, and is no better from elsewhere
+        still = at_rest()
+        found = found or none_found(motion, still)
         if not turns(still):
             return found, (_NO_ROTATION,)
-        march = settling(structure, motion, still, _PLACES)
-        if march is None:
-            return unstable or found, (*_grows(unstable), _not_marched(structure, found))
-        for times in march.likely(_REPEATS)[:_TRIED]:
-            values = march.harmonics(times)
-            guess = Guess(values, np.arange(values.shape[1]), _PLACES)
-            tried = self._resolved(structure, several(motion, times), times, guess)
-            if tried.good(self.tolerance) and not tried.grows(structure, times):
-                return tried, _told(times)
-        return unstable or found, (
-            *_grows(unstable),
-            f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
-            f"changes by {100.0 * march.least:.2g} % from one period to later ones",
-        )
+        march = settling(structure, motion, still, PLACES)
+        if march is not None:
+            for times in march.likely(_REPEATS)[:_TRIED]:
+                values = march.harmonics(times)
+                guess = Guess(values, np.arange(values.shape[1]), PLACES)
+                tried = self._resolved(structure, several(motion, times), times, guess)
+                if tried and tried.good(self.tolerance) and not tried.grows(structure, times):
+                    return tried, _told(times)
+        if structure.meshes > 1 and structure.problem.free is None:
+            return self._marched(structure, motion, still, found)
+        return unstable or found, (*_grows(unstable), _unsettled(structure, march))
+
+    def _marched(
+        self, structure: Structure, motion: Motion, still: Orbit, found: Found
+    ) -> tuple[Found, tuple[str, ...]]:
+        """The motion that a march repeats, or what was found before; and remarks."""
+        repeating, march = by_marching(structure, motion, still, self.tolerance)
+        if repeating is not None and march is not None:
+            return repeating, _told(march.times)
+        return found, (_not_repeating(march),)
 
     @staticmethod
     def _guesses(
-        structure: Structure, motion: Motion, near: Neighbour | None
+        structure: Structure, motion: Motion, at_rest: Callable[[], Orbit], near: Neighbour | None
     ) -> Iterator[tuple[int, Guess]]:
         """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
         if near is not None and near.meshes % structure.meshes == 0:
             yield near.meshes // structure.meshes, near.guess
-        still = standing(structure, motion)
-        if shortly := begun_shortly(structure, motion, still, _PLACES):
+        if shortly := begun_shortly(structure, motion, at_rest(), PLACES):
             yield 1, shortly
-        yield 1, begun(structure, motion, still, _PLACES)
+        yield 1, begun(structure, motion, at_rest(), PLACES)
 
-    def _resolved(self, structure: Structure, motion: Motion, times: int, guess: Guess) -> Found:
-        """A motion over some periods with as many harmonics as the tolerance needs."""
+    def _resolved(
+        self, structure: Structure, motion: Motion, times: int, guess: Guess
+    ) -> Found | None:
+        """A motion over some periods with as many harmonics as the tolerance needs.
+
+        None if these are more than the lines of a long period.
+        """
         problem, resolution = structure.problem, first(guess.per_mesh, self.tolerance)
         start, known = guess.values, guess.orders
         while True:
             period = resolution.period(structure, times)
+            if period is None:
+                return None
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
             if not orbit.converged:
                 return Found(motion, orbit, Accuracy({}, {}, {}, {}))
@@ -204,21 +201,39 @@ class SteadySolver:
             resolution = resolution.finer(errors, self.tolerance)
 
 
+def _searched(found: Found) -> bool:
+    """True of places of a whole period, and of a motion that was looked at as finely as can be."""
+    return found.orbit.converged or not found.orbit.resolved.bases
+
+
 def _grows(unstable: Found | None) -> tuple[str, ...]:
     """What is said of a motion that is not stable."""
     return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
 
 
-def _not_marched(structure: Structure, found: Found) -> str:
+def _unsettled(structure: Structure, march: March | None) -> str:
     """Why there is no march that could be followed to a motion."""
-    if structure.meshes < LONG:
+    if structure.meshes >= LONG:
+        return (
+            f"its period of {structure.meshes} meshes is too long for a march in which nothing "
+            "holds the speed; join a drive and a load, or set run-outs and deviations to 0"
+        )
+    if march is None:
         return "a march from equilibrium fails, too"
-    off = found.errors.worst if found.orbit.converged else found.orbit.residual
-    missed = "harmonics miss" if found.orbit.converged else "Newton's method stops at"
     return (
-        f"its period of {structure.meshes} meshes is too long for a march that settles, and "
-        f"{missed} {100.0 * off:.2g} %; set run-outs and deviations to 0, ask for a larger "
-        "tolerance or torque, or run it"
+        f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
+        f"changes by {100.0 * march.least:.2g} % from one period to later ones"
+    )
+
+
+def _not_repeating(march: Repeated | None) -> str:
+    """Why there is no march that repeats, of a period of many meshes."""
+    if march is None:
+        return "a march from equilibrium fails, too"
+    return (
+        f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
+        f"still changes by {100.0 * march.change:.2g} % from one period to later ones; teeth that "
+        "rattle may never repeat: ask for a larger torque, or run it"
     )
 
 

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
+from herringbone.analysis.steady.found import Settled
 from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
@@ -33,6 +34,7 @@ class SteadyState(PeriodicMotion):
         errors: of harmonics left out, and of the last correction.
         tolerance: that was asked for.
         notes: lines that the user should read.
+        settled: how the march has settled by which it was found; None: by harmonic balance.
     """
 
     structure: Structure
@@ -42,6 +44,7 @@ class SteadyState(PeriodicMotion):
     errors: Accuracy
     tolerance: float
     notes: tuple[str, ...] = ()
+    settled: Settled | None = None
 
     def noted(self, notes: Sequence[str]) -> "SteadyState":
         """The same state with further notes."""
@@ -129,8 +132,8 @@ class SteadyState(PeriodicMotion):
 
     @property
     def stable(self) -> bool:
-        """True if small deviations die out; else a run would not stay on the state."""
-        return self.multipliers.largest < 1.0
+        """True if small deviations die out, as they did in a march; a run would leave others."""
+        return self.settled is not None or self.multipliers.largest < 1.0
 
     @property
     def numbers(self) -> np.ndarray:

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 from herringbone.commands.options import (
     add_cells,
+    add_operating_point,
     add_replacements,
     add_scene,
     add_sensitivities,
     add_start_values,
     given_by,
+    operating_point,
     replacements,
     spread_of,
 )
@@ -28,8 +30,7 @@ if TYPE_CHECKING:
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_scene(sub)
-    sub.add_argument("--speed", type=float, help="of the pinion in r/min; the scene's if not given")
-    sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
+    add_operating_point(sub)
     sub.add_argument("--tolerance", type=float, default=1e-3, help="relative error, 1e-3")
     add_start_values(sub)
     add_replacements(sub)
@@ -52,8 +53,7 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong.
     """
-    from herringbone.analysis.steady.report import per_second  # noqa: PLC0415 (numba)
-    from herringbone.running.operating.steady import steady  # noqa: PLC0415
+    from herringbone.running.operating.steady import steady  # noqa: PLC0415 (numba)
 
     spread = spread_of(options)
     if options.output:
@@ -61,8 +61,7 @@ def run(options: argparse.Namespace) -> int:
     state = steady(
         options.system,
         scene=options.scene,
-        speed=None if options.speed is None else per_second(options.speed),
-        torque=options.torque,
+        **operating_point(options),
         **given_by(options),
         replace_parts=replacements(options),
         tolerance=options.tolerance,

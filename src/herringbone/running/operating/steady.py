@@ -11,7 +11,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.at_point import NOTHING, prepared_at
-from herringbone.running.operating.by_hand import warned_by_hand
+from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import with_known_values
 from herringbone.running.operating.lean import lean_notes, lean_of
 from herringbone.running.operating.settled import LONGEST, settled
@@ -72,7 +72,7 @@ def steady(
     solver, notes = _solver_of(found, point, wishes, tolerance)
     state = solver.solve(point, near)
     if state.converged:
-        notes = (*notes, *warned_by_hand(system, scene, wishes, point, state))
+        notes = (*notes, *said_by_hand(system, scene, wishes, point, state).notes)
     return state.noted(notes)
 
 

@@ -12,12 +12,13 @@ import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.structure import Structure
 
 _THINNER = 0.03
 _MOST = 0.7
 _NOTHING = 1e-12
-"""Alternating part of a group, over its size, that is none."""
+"""Alternating part of a group, over the terms of which its means are the sum, that is none."""
 
 
 class Accuracy(NamedTuple):
@@ -71,9 +72,19 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
         alternating = float(np.linalg.norm(values[own, 1:]))
-        if alternating > _NOTHING * np.abs(values[own, 0]).max(initial=0.0):
+        if alternating > _NOTHING * _terms(rows, own, orbit).max(initial=0.0):
             left_out[group] = float(np.linalg.norm(lacking[own, 1:])) / alternating + outside
             thinned[group] = float(np.linalg.norm(lacking[own][:, apart])) / alternating
             besides[group] = float(np.linalg.norm(lacking[own][:, aside])) / alternating + outside
             change[group] = float(np.linalg.norm(moved[own, 1:])) / alternating
     return Accuracy(left_out, thinned, besides, change)
+
+
+def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:
+    """(n,) sizes of what adds up to the means of rows.
+
+    A seat that nothing shakes has a mean velocity of zero, and rounding of its terms shakes it.
+    """
+    modal, q = np.abs(rows.modal[own]), orbit.q
+    found = 0.5 * modal @ (np.abs(q.ahead[:, 0]) + np.abs(q.back[:, 0]))
+    return found + np.abs(rows.of_channels[own]) @ np.abs(orbit.channels[:, 0])

@@ -171,6 +171,25 @@ class Balance:
             self.period,
         )  # fmt: skip
 
+    def along(self, values: np.ndarray, known: np.ndarray) -> Orbit:
+        """The motion that values make; what the laws give and these lack is its last correction.
+
+        Args:
+            values: (values, harmonics) coefficients of the laws' values, less mean tangents.
+            known: (harmonics,) their orders, the first is 0.
+        """
+        now, count = self._begun(values, known), self.problem.values
+        samples = self.problem.laws(self._arguments(now))
+        now, laws = self._with_orders(now, samples)
+        step = np.zeros_like(now.channels)
+        step[:count] = laws - now.channels[:count]
+        moved = now.response.coordinates(step)
+        residual = self._size(samples, step[:count], now.response.orders)
+        return Orbit(
+            now.channels, now.response, now.q, moved, step, now.angle, samples, residual, residual,
+            1, converged=True, resolved=self.period,
+        )  # fmt: skip
+
     def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
         """A motion of given channels, of one mesh, and what the laws give and it lacks.
 

@@ -13,6 +13,11 @@ from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Response
 
+HIGHEST = 64
+"""Order of the mesh beyond which there are no families: the linear part hardly answers to higher
+ones, and inverses cost the third power. Who searches behind these has the exact Jacobian.
+"""
+
 
 class Families:
     """Where the harmonics of a long period stand in their families.
@@ -20,12 +25,12 @@ class Families:
     Args:
         orders: (harmonics,) that are in use, ascending.
         meshes: P.
-        order: highest |k| that is solved for.
+        order: highest |k| that is solved for, but at most `HIGHEST`.
     """
 
     def __init__(self, orders: np.ndarray, meshes: int, order: int) -> None:
-        self._orders, self._meshes, self._order = orders, meshes, order
-        self._size = 2 * order + 1
+        self._orders, self._meshes, self._order = orders, meshes, min(order, HIGHEST)
+        self._size = 2 * self._order + 1
         ahead, back = (self._places(sign * orders) for sign in (1, -1))
         self.rests = np.unique(np.concatenate([ahead[1], back[1]]))
         self._ahead = (ahead[0], np.searchsorted(self.rests, ahead[1]), ahead[2])

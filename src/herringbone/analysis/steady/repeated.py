@@ -1,0 +1,83 @@
+"""A periodic motion by marching: the condensed core goes on until it repeats.
+
+Where deviations of single teeth fill the spectrum of a period of many meshes, Newton has ten
+thousands of unknowns, and tangents that differ from mesh to mesh. The core has forgotten within
+such a period where it began, as everything in it is damped: one period after the other is shooting
+by successive substitution (K. Lust et al., SIAM J. Sci. Comput. 19, 1998, 1188-1209, without a
+subspace for Newton), whose error falls by what a deviation is multiplied by in a period.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.steady.guess import SETTLING, beginnings
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.marched import Following, March
+from herringbone.analysis.steady.structure import Structure
+from herringbone.core import HerringboneError
+
+_MOST, _MOST_TIMES = 8, 3
+"""Periods that are marched at most, and after which it may repeat."""
+_INSIDE = 4
+"""Values kept for each place: laws that bend have harmonics beyond what places tell apart."""
+
+
+class Repeated(NamedTuple):
+    """What a march has come to.
+
+    Attributes:
+        way: which can go on.
+        march: its last periods.
+        times: periods after which it repeats.
+        change: from the last of these to the one before, over the alternating part.
+    """
+
+    way: Following
+    march: March
+    times: int
+    change: float
+
+    def finer(self, inside: int) -> "Repeated":
+        """The same, gone on for as long as it repeats after, with more values for each place."""
+        count = self.times * self.way.places
+        return self._replace(march=self.way.on(count, count, inside * _INSIDE))
+
+
+def repeated(
+    structure: Structure, motion: Motion, still: Orbit, per_mesh: int, close: float
+) -> Repeated | None:
+    """March from equilibrium until the motion repeats, or for some periods.
+
+    Args:
+        structure: the system.
+        motion: what is given.
+        still: equilibrium.
+        per_mesh: places of a mesh period.
+        close: change that counts as none, over the alternating part of the laws' values.
+
+    Returns:
+        What it has come to; its change tells whether it repeats. None if the march fails.
+    """
+    for begin, ramp in beginnings(structure, motion, still):
+        way = Following(structure, motion, begin, structure.meshes * per_mesh, ramp)
+        turned = ramp / abs(structure.turns_of_pinion)
+        try:
+            way.on(int(np.ceil((turned + SETTLING / begin.period) * way.places)), 1)
+            return _until_repeated(way, close)
+        except HerringboneError:
+            continue
+    return None
+
+
+def _until_repeated(way: Following, close: float) -> Repeated:
+    periods: list[March] = []
+    changes = {1: np.inf}
+    for _ in range(_MOST):
+        periods = [*periods[-_MOST_TIMES:], way.on(way.places, way.places, _INSIDE)]
+        whole = periods[0]._replace(values=np.hstack([p.values for p in periods]))
+        changes = {times: whole.change(times) for times in range(1, len(periods))} or changes
+        if min(changes.values()) <= close:
+            break
+    times = next((n for n, change in changes.items() if change <= close), 1)
+    return Repeated(way, whole, times, changes[times])
