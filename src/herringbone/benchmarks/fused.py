@@ -1,11 +1,14 @@
-"""Simulated time per CPU time of the loop's thread: the test rig fused, and coupled by FMI.
+"""Simulated time per CPU time of the loop's thread: the test rig fused, coupled, and as one FMU.
 
-The loops are run by turns. Errors are those of 20 ms against Dormand-Prince on the plain
-equations.
+The loops are run by turns. The rig as one native FMU is stepped from record to record, and all its
+outputs are read; its inner steps have a fixed length. Errors are those of 20 ms against
+Dormand-Prince on the plain equations.
 """
 
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
@@ -16,9 +19,11 @@ from herringbone.analysis.twin.fused.course import Course
 from herringbone.analysis.twin.fused.measured import suited, values_at
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.part import closing_all
-from herringbone.cosim.algorithms import LI
+from herringbone.core.places.part_path import PartPath
+from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.simulation import make_grid, simulate
-from herringbone.cosim.structure.system import System
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.exporting.system_fmu import export_fmu
 from herringbone.running.loading import open_parts
 from herringbone.running.prepared import Wishes, prepared
 
@@ -27,8 +32,13 @@ RECORD_STEP = 1e-4
 """Time between records [s]."""
 _SYSTEM = "test_rig"
 _WINDOW = 0.02
+_TIMES = np.arange(round(_WINDOW / RECORD_STEP) + 1) * RECORD_STEP
 _EXACT = 1e-9
 _SCENES = ("loaded", "separation")
+_AS_FMU = "loaded"
+"""Scene of the rig as one FMU: building it takes a minute."""
+_BOX, _INNER = "rig", 16.7e-6
+"""Name of the rig as one FMU, and its inner step [s], of six to a macro step."""
 _LONG, _SHORT = 1.0, 0.2
 """Simulated times [s]; what a loop costs is the difference, without what comes before it."""
 
@@ -57,7 +67,7 @@ def measure(repeats: int = 5) -> list[Speed]:
     """
     loops: dict[str, Callable[[float], float]] = {}
     errors: dict[str, tuple[float, float]] = {}
-    with one_blas_thread():
+    with one_blas_thread(), TemporaryDirectory() as scratch:
         for scene in _SCENES:
             system = prepared(_SYSTEM, scene, Wishes()).system
             core = Core(system)
@@ -67,11 +77,17 @@ def measure(repeats: int = 5) -> list[Speed]:
             for what, columns in ((f"{len(channels)} channels", channels), ("all", core.names)):
                 name = f"{called}, {what} recorded"
                 loops[name] = _fused(core, steps, columns)
-                errors[name] = _errors(core, steps)
+                errors[name] = _errors(core, channels, values_at(core, _TIMES, steps, channels))
             algorithm = LI(degree=3)
             name = f"{scene}, native FMUs, {algorithm} at {1e6 * algorithm.start_step:g} us"
-            loops[name] = _coupled(system, algorithm)
+            loops[name] = _coupled(system, algorithm, algorithm.start_step)
             errors[name] = (np.nan, np.nan)
+            if scene != _AS_FMU:
+                continue
+            box = _as_fmu(scene, Path(scratch) / f"{_BOX}.fmu")
+            name = f"{scene}, one native FMU, inner steps of {1e6 * _INNER:g} us, all outputs read"
+            loops[name] = _coupled(box, Jacobi(order=0), RECORD_STEP)
+            errors[name] = _errors(core, channels, _of_fmu(box, channels))
         best = dict.fromkeys(loops, np.inf)
         for _ in range(repeats):
             for name, loop in loops.items():
@@ -94,24 +110,38 @@ def _fused(core: Core, steps: Steps, columns: Sequence[str]) -> Callable[[float]
     return run
 
 
-def _coupled(system: System, algorithm: LI) -> Callable[[float], float]:
-    """CPU time [s] of a coupled run of some length [s]."""
+def _coupled(system: System, algorithm: Algorithm, step: float) -> Callable[[float], float]:
+    """CPU time [s] of a coupled run of some length [s], with a macro step [s]."""
 
     def run(t_end: float) -> float:
         parts = open_parts(system, "native")
         begin = time.thread_time()
         with closing_all(parts):
-            simulate(system, parts, algorithm, make_grid(t_end, algorithm.start_step, RECORD_STEP))
+            simulate(system, parts, algorithm, make_grid(t_end, step, RECORD_STEP))
         return time.thread_time() - begin
 
     return run
 
 
-def _errors(core: Core, steps: Steps) -> tuple[float, float]:
-    """Largest error of a group, and of a channel."""
-    groups = core.groups()
-    columns = [name for names in groups.values() for name in names]
-    times = np.arange(round(_WINDOW / RECORD_STEP) + 1) * RECORD_STEP
-    found, exact = values_at(core, times, steps, columns), core.twin.solve(times, columns, _EXACT)
-    off = differences(found, exact, columns, groups)
+def _as_fmu(scene: str, file: Path) -> System:
+    """A system whose only part is the rig as a native FMU, at the start of a scene."""
+    export_fmu(_SYSTEM, file, scene=scene)
+    part = PartSpec(PartPath(_BOX), fmu=file)
+    one = System(_BOX, "the rig as one FMU", (part,), ())
+    return prepared(one, None, Wishes(values={f"{_BOX}.micro_step": _INNER})).system
+
+
+def _of_fmu(box: System, columns: Sequence[str]) -> np.ndarray:
+    """Outputs (times, columns) of the rig as one FMU over the window."""
+    parts = open_parts(box, "native")
+    with closing_all(parts):
+        grid = make_grid(_WINDOW, RECORD_STEP, RECORD_STEP)
+        found = simulate(box, parts, Jacobi(order=0), grid)
+    return np.array([found.values[:, found.names.index(f"{_BOX}.{name}")] for name in columns]).T
+
+
+def _errors(core: Core, columns: Sequence[str], found: np.ndarray) -> tuple[float, float]:
+    """Largest error of a group, and of a channel, of values (times, columns) over the window."""
+    exact = core.twin.solve(_TIMES, columns, _EXACT)
+    off = differences(found, exact, columns, core.groups())
     return max(off.groups.values()), off.worst_difference

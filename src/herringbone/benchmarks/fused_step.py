@@ -38,10 +38,7 @@ def _measured(repeats: int, steps: int) -> list[StepPart]:
     run.enter(0.0, _BEFORE)
     run.part(0.0, _BEFORE, STEP, np.array([np.inf]))
     arrays, rungs = run.arrays, run.rungs_of(STEP)
-    u = arrays.state.u.reshape(-1, arrays.fixed.nodes.size)
-    given = np.concatenate([u[:, :1], u[:, 1:] - u[:, :1]], axis=1).ravel()
-    chosen = np.flatnonzero(given)
-    laws = int(np.searchsorted(chosen, arrays.table.unknown.size * u.shape[1]))
+    given, chosen, laws = repeated.given(arrays)
     found = {
         f"laws at {_STEPS.degree} nodes": lambda: repeated.laws(_AGAIN, arrays, _BEFORE),
         "products of matrices": lambda: repeated.products(

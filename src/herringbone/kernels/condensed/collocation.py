@@ -26,6 +26,8 @@ class Table(NamedTuple):
         mean: (tangents,).
         unknown: (values,) row of a stiff value among the unknowns, else -1.
         scale: (values,) largest size that each had, so far.
+        least: (channels,) size of a value, or of its change over a step, that moves no coordinate
+            by a share of the tolerance of what the stiff values do; 0 of other channels.
     """
 
     first: np.ndarray
@@ -35,6 +37,7 @@ class Table(NamedTuple):
     mean: np.ndarray
     unknown: np.ndarray
     scale: np.ndarray
+    least: np.ndarray
 
 
 class Nodes(NamedTuple):
@@ -67,13 +70,13 @@ def less_tangents(table: Table, value: int, force: float, z: np.ndarray) -> floa
 def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float:
     """What the values at the nodes differ from the inputs; returns the largest, over its scale.
 
-    Stiff values stand in `r` (unknowns x nodes); the inputs of the others are replaced at once.
+    Stiff values stand in `r` (unknowns x nodes); the inputs of the others, in `u` (channels,
+    nodes), are replaced at once.
     """
     inner = len(nodes.z)
     largest = 0.0
     for value in range(table.unknown.size):
-        unknown = table.unknown[value]
-        own = u[value * (inner + 1) + 1 : (value + 1) * (inner + 1)]
+        unknown, own = table.unknown[value], u[value, 1:]
         if unknown < 0:
             for i in range(inner):
                 own[i] = nodes.f[i, value]
@@ -84,9 +87,10 @@ def residuals(table: Table, nodes: Nodes, u: np.ndarray, r: np.ndarray) -> float
             force = nodes.f[i, value]
             scale = max(scale, abs(force))
             # the input last, so that a solution leaves nothing, not even rounding
-            to[i] = less_tangents(table, value, force, nodes.z[i]) - own[i]
-            if not abs(to[i]) <= max(off, _ROUNDED * abs(own[i])):
-                off = abs(to[i])
+            miss = less_tangents(table, value, force, nodes.z[i]) - own[i]
+            to[i] = miss
+            if not abs(miss) <= max(off, _ROUNDED * abs(own[i])):
+                off = abs(miss)
         table.scale[value] = scale
         if not off <= largest * scale:
             largest = off / scale

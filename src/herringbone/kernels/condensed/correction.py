@@ -6,7 +6,7 @@ import numpy as np
 
 from herringbone.kernels.compiling.jit import inlined
 from herringbone.kernels.condensed.collocation import Nodes, Table
-from herringbone.kernels.condensed.modal import copy, solve
+from herringbone.kernels.condensed.modal import add_product, copy, solve
 
 _SWEPT = 0.1
 """Change by a sweep, over the largest correction, after which they end: the next is far smaller."""
@@ -20,17 +20,27 @@ class Room(NamedTuple):
         matrix: (unknowns x nodes, the same).
         r: (unknowns x nodes,) residuals, then corrections.
         x: of the same length.
+        miss: (unknowns,) what a node's corrections lack.
+        answers: (nodes x tangents,) along the directions of the tangents.
     """
 
     matrix: np.ndarray
     r: np.ndarray
     x: np.ndarray
+    miss: np.ndarray
+    answers: np.ndarray
 
 
-def make_room(unknowns: int, inner: int) -> Room:
-    """Room for so many unknowns at so many nodes."""
+def make_room(unknowns: int, inner: int, tangents: int) -> Room:
+    """Room for so many unknowns at so many nodes, and so many tangents at each."""
     size = unknowns * inner
-    return Room(np.empty((size, size)), np.empty(size), np.empty(size))
+    return Room(
+        np.empty((size, size)),
+        np.empty(size),
+        np.empty(size),
+        np.empty(unknowns),
+        np.empty(inner * tangents),
+    )
 
 
 @inlined
@@ -55,36 +65,46 @@ def _bent(table: Table, nodes: Nodes, r: np.ndarray) -> tuple[int, int]:
 
 @inlined
 def _swept(
-    table: Table, nodes: Nodes, along: np.ndarray, first: int, r: np.ndarray, x: np.ndarray
+    table: Table, nodes: Nodes, along: np.ndarray, first: int, r: np.ndarray, room: Room
 ) -> bool:
-    """Write corrections to `x` by sweeps over the nodes in the order of time (Gauss and Seidel).
+    """Write corrections to `room.x` by sweeps over the nodes in the order of time.
 
     What the laws give at a node acts on later ones far more than on earlier ones, so that one or
-    two sweeps do.
+    two sweeps (Gauss and Seidel, a node at once) do.
 
     Args:
         table, nodes, along: see `correct`.
         first: unknown with which `r` begins.
         r: residuals.
+        room: its answers are those of all directions to the corrections so far.
 
     Returns:
         False if the sweeps do not end.
     """
-    inner, begin, size = len(nodes.z), first * len(nodes.z), r.size
-    copy(r, x)
+    inner, tangents = nodes.k.shape
+    begin, unknowns = first * inner, r.size // inner
+    x, miss, answers = room.x, room.miss, room.answers
+    copy(r, x[: r.size])
+    for i in range(answers.size):
+        answers[i] = 0.0
+    add_product(along[begin : begin + r.size], r, answers)
     for _ in range(_MOST_SWEEPS):
         change, largest = 0.0, 0.0
         for i in range(inner):
-            for row in range(i, size, inner):
-                unknown, miss = first + row // inner, r[row] - x[row]
-                for t in range(table.value.size):
-                    if table.unknown[table.value[t]] == unknown:
-                        own, answer = along[i, t, begin : begin + size], 0.0
-                        for column in range(size):
-                            answer += own[column] * x[column]
-                        miss += (nodes.k[i, t] - table.mean[t]) * answer
-                x[row] += miss
-                change, largest = max(change, abs(miss)), max(largest, abs(x[row]))
+            k, of_node = nodes.k[i], answers[i * tangents : (i + 1) * tangents]
+            for n in range(unknowns):
+                miss[n] = r[n * inner + i] - x[n * inner + i]
+            for t in range(tangents):
+                n = table.unknown[table.value[t]] - first
+                if 0 <= n < unknowns:
+                    miss[n] += (k[t] - table.mean[t]) * of_node[t]
+            for n in range(unknowns):
+                row, by = n * inner + i, miss[n]
+                x[row] += by
+                change, largest = max(change, abs(by)), max(largest, abs(x[row]))
+                column = along[begin + row]
+                for m in range(answers.size):
+                    answers[m] += column[m] * by
         if change <= _SWEPT * largest:
             return True
     return False
@@ -95,18 +115,19 @@ def _eliminate(
     table: Table, nodes: Nodes, along: np.ndarray, first: int, matrix: np.ndarray, r: np.ndarray
 ) -> None:
     """Replace residuals by corrections; arguments as of `_swept`, and room for a matrix."""
-    inner, begin, size = len(nodes.z), first * len(nodes.z), r.size
+    inner, tangents = nodes.k.shape
+    begin, size = first * inner, r.size
     for row in range(size):
         for column in range(size):
             matrix[row, column] = 0.0
         matrix[row, row] = 1.0
-    for t in range(table.value.size):
+    for t in range(tangents):
         place = (table.unknown[table.value[t]] - first) * inner
         if 0 <= place < size:
             for i in range(inner):
                 rest = nodes.k[i, t] - table.mean[t]
                 for column in range(size):
-                    matrix[place + i, column] -= rest * along[i, t, begin + column]
+                    matrix[place + i, column] -= rest * along[begin + column, i * tangents + t]
     solve(matrix, r)
 
 
@@ -116,15 +137,16 @@ def correct(table: Table, nodes: Nodes, along: np.ndarray, room: Room) -> None:
 
     Args:
         table, nodes: with tangents.
-        along: (nodes - 1, tangents, unknowns x nodes): directions of the tangents over the inputs.
+        along: (unknowns x nodes, nodes x tangents) what each input does along the directions of the
+            tangents at all nodes.
         room: with residuals.
     """
     inner = len(nodes.z)
     first, end = _bent(table, nodes, room.r)
     if end <= first:
         return
-    r, x = room.r[first * inner : end * inner], room.x[: (end - first) * inner]
-    if _swept(table, nodes, along, first, r, x):
-        copy(x, r)
+    r = room.r[first * inner : end * inner]
+    if _swept(table, nodes, along, first, r, room):
+        copy(room.x, r)
     else:
         _eliminate(table, nodes, along, first, room.matrix, r)

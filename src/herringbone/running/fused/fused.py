@@ -15,11 +15,12 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
+from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
 from herringbone.running.fused.beside import KIND, with_channels
 from herringbone.running.fused.loop import FusedRun
-from herringbone.running.operating.lean import lean_of, refuse_frozen, with_model_row
+from herringbone.running.operating.lean import lean_of, refuse_frozen, with_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress, told
 from herringbone.running.reporting.run_result import (
@@ -43,12 +44,14 @@ class FusedAsked:
         tolerance: for which the step is chosen.
         record: patterns of outputs, or groups of channels, that are recorded; all if empty.
         notes: lines that the user should read.
+        left_out: row of the error budget, of what the model leaves out.
     """
 
     step: float | None = None
     tolerance: float | None = None
     record: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    left_out: BudgetRow | None = None
 
 
 def refuse_strangers(system: System) -> None:
@@ -101,7 +104,7 @@ def fused(
         recording = _marched(core, trial.steps, columns, system, scene, progress, streaming)
     every = make_result(system, scene, KIND, KIND, recording, lines)
     every = replace(every, verification=_verification(trial))
-    every = with_model_row(judged(every, system, None), scene.model)
+    every = with_row(judged(every, system, None), asked.left_out)
     result = every if output is None else output.seen(every)
     if recorded:
         recorded(result)

@@ -22,13 +22,21 @@ def corrected(answers, rest, residuals):
     """
     values = np.arange(UNKNOWNS)
     table = Table(
-        NO_INTEGERS, NO_INTEGERS, NO_REALS, values, np.full(UNKNOWNS, MEAN), values, NO_REALS
+        NO_INTEGERS,
+        NO_INTEGERS,
+        NO_REALS,
+        values,
+        np.full(UNKNOWNS, MEAN),
+        values,
+        NO_REALS,
+        NO_REALS,
     )
     empty = np.zeros((INNER, 0))
     nodes = Nodes(empty.copy(), empty.copy(), MEAN + rest, empty.copy(), NO_REALS)
-    room = make_room(UNKNOWNS, INNER)
+    room = make_room(UNKNOWNS, INNER, UNKNOWNS)
     room.r[:] = residuals
-    correct(table, nodes, np.ascontiguousarray(answers), room)
+    along = np.ascontiguousarray(answers.transpose(2, 0, 1)).reshape(SIZE, -1)
+    correct(table, nodes, along, room)
     rows = (rest[:, :, None] * answers).transpose(1, 0, 2).reshape(SIZE, SIZE)
     return room.r, np.linalg.solve(np.eye(SIZE) - rows, residuals)
 

@@ -82,18 +82,12 @@ def held_states(twin: Twin, lean: Lean) -> list[int]:
         StructureError: one is not there, or grows with every turn.
     """
     names = {name: k for k, name in enumerate(state_names(twin))}
-    turning = {
-        f"{instance.name}.{state.name}"
-        for instance in twin.instances
-        for state in instance.component.declaration.states
-        if state.steady == "rotating"
-    }
     for name in lean.held:
         if name not in names:
             raise StructureError(
                 f"{twin.system.name}: model: it has no state {shown(name, 60)} that could be held"
             )
-        if name in turning:
+        if names[name] in twin.turning:
             raise StructureError(f"{name}: model: an angle that turns cannot be held")
     return [names[name] for name in lean.held]
 

@@ -6,6 +6,7 @@ from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Sampl
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.compiling.jit import allocating, inlined, kernel
+from herringbone.kernels.condensed.channels import inputs, predict
 from herringbone.kernels.condensed.collocation import (
     Nodes,
     Table,
@@ -62,76 +63,35 @@ def call_sources(calls: Calls, t: float) -> None:
 
 @inlined
 def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np.ndarray) -> None:
-    """Write the signals at the nodes of a step from t [s] on, and the last channel."""
-    count, signals = fixed.nodes.size, calls.signal.size
-    first = u.size - count * (signals + 1)
-    for i in range(count):
-        now = t + h * fixed.nodes[i]
-        if calls.source.size > 0:
-            call_sources(calls, now)
-        for k in range(signals):
-            if calls.source.size > 0 and calls.signal[k] >= 0:
-                u[first + k * count + i] = calls.blocks[calls.signal[k]]
-            else:
-                curve = state.curve[k]
-                since, last = now - curve[0], curve.size - 1
-                while last > 1 and curve[last] == 0.0:
-                    last -= 1
-                value = curve[last]
-                for j in range(last - 1, 0, -1):
-                    value = curve[j] + since * value
-                u[first + k * count + i] = value
-        u[u.size - count + i] = fixed.one
+    """Write the signals at the nodes of a step from t [s] on, and the last channel.
 
-
-@inlined
-def _predict(
-    fixed: Fixed, values: int, rung: int, last: int, u: np.ndarray, ahead: np.ndarray
-) -> None:
-    """Write the laws' inputs of the next step: those of the last one, continued or (-1) held."""
-    count = fixed.nodes.size
-    for value in range(values):
-        own, to = u[value * count : (value + 1) * count], ahead[value * count : (value + 1) * count]
-        end = own[count - 1]
-        changes = False
-        for i in range(count):
-            to[i] = end
-            changes |= own[i] != end
-        if changes and last >= 0:
-            on = fixed.ahead[rung - last + len(fixed.ahead) // 2]
-            for i in range(1, count):
-                row, total = on[i], end
-                for n in range(count - 1):
-                    total += row[n] * (own[n] - end)
-                to[i] = total
-
-
-@inlined
-def _inputs(
-    u: np.ndarray, nodes: int, first: int, end: int, v: np.ndarray, chosen: np.ndarray
-) -> int:
-    """Write the inputs of some channels, see `Rungs`, from the values at the nodes.
-
-    Returns:
-        How many are not zero; these are `chosen`.
+    Args:
+        calls, fixed, state: of the march.
+        t, h: start and length of the step [s].
+        u: (channels, nodes).
     """
-    count = 0
-    for channel in range(first, end):
-        at = channel * nodes
-        start = u[at]
-        v[at] = start
-        change = 0.0
-        for i in range(1, nodes):
-            v[at + i] = u[at + i] - start
-            change += abs(v[at + i])
-        if start != 0.0:
-            chosen[count] = at
-            count += 1
-        if change != 0.0:
-            for i in range(1, nodes):
-                chosen[count] = at + i
-                count += 1
-    return count
+    count, channels = fixed.nodes.size, len(u)
+    own = u[channels - 1 - calls.signal.size :]
+    if calls.source.size > 0:
+        for i in range(count):
+            call_sources(calls, t + h * fixed.nodes[i])
+            for k in range(calls.signal.size):
+                if calls.signal[k] >= 0:
+                    own[k, i] = calls.blocks[calls.signal[k]]
+    for k in range(calls.signal.size):
+        if calls.source.size > 0 and calls.signal[k] >= 0:
+            continue
+        curve = state.curve[k]
+        since, last = t - curve[0], curve.size - 1
+        while last > 1 and curve[last] == 0.0:
+            last -= 1
+        for i in range(count):
+            now, value = since + h * fixed.nodes[i], curve[last]
+            for j in range(last - 1, 0, -1):
+                value = curve[j] + now * value
+            own[k, i] = value
+    for i in range(count):
+        own[calls.signal.size, i] = fixed.one
 
 
 @inlined
@@ -158,15 +118,16 @@ def _solve_step(
         calls, fixed, table, nodes, state: of the march.
         of_inputs, along: of the rung.
         t, h: start and length of the step [s].
-        u: inputs of the step.
+        u: (channels, nodes) values of the step.
         free: rows without the laws' inputs.
         rows, room, v, chosen: room for the iteration.
     """
     inner, values = len(nodes.z), table.unknown.size
-    z = nodes.z.reshape(nodes.z.size)
+    z, flat = nodes.z.reshape(nodes.z.size), v.reshape(v.size)
     for _ in range(MOST_ITERATIONS):
         copy(free, rows)
-        add_chosen(of_inputs, v, chosen, _inputs(u, inner + 1, 0, values, v, chosen), rows)
+        given = inputs(fixed.nodes, table.least, u, 0, values, v, chosen)
+        add_chosen(of_inputs, flat, chosen, given, rows)
         if fixed.lean:
             spread(fixed.sharp, nodes, rows)
         else:
@@ -186,8 +147,9 @@ def _solve_step(
         for value in range(values):
             row = table.unknown[value]
             if row >= 0:
+                own, by = u[value, 1:], room.r[row * inner : (row + 1) * inner]
                 for i in range(inner):
-                    u[value * (inner + 1) + i + 1] += room.r[row * inner + i]
+                    own[i] += by[i]
         if residual <= fixed.close:
             return True
     return False
@@ -201,7 +163,7 @@ def _keep(
     size = state.q.size
     while n < samples.times.size and samples.times[n] < end:
         copy(state.q, samples.held[n, :size])
-        copy(u, samples.held[n, size:])
+        copy(u.reshape(u.size), samples.held[n, size:])
         samples.since[n], samples.length[n] = max(0.0, samples.times[n] - t), h
         n += 1
     return n
@@ -222,6 +184,7 @@ def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> 
 @inlined
 def _advance(
     fixed: Fixed,
+    table: Table,
     rungs: Rungs,
     rung: int,
     free: np.ndarray,
@@ -230,14 +193,14 @@ def _advance(
     chosen: np.ndarray,
     state: State,
 ) -> None:
-    modes, q = rungs.turn.shape[2], state.q
+    modes, q, flat = rungs.turn.shape[2], state.q, v.reshape(v.size)
     rotations = rungs.rows.shape[1] - 2 * modes
     for k in range(rotations):
         q[2 * modes + k] += free[free.size - rotations + k]
     turn(rungs.turn[rung, 0], rungs.turn[rung, 1], q)
-    count = _inputs(u, fixed.nodes.size, 0, u.size // fixed.nodes.size, v, chosen)
-    add_chosen(rungs.push[rung], v, chosen, count, q)
-    copy(u, state.u)
+    count = inputs(fixed.nodes, table.least, u, 0, len(u), v, chosen)
+    add_chosen(rungs.push[rung], flat, chosen, count, q)
+    copy(u.reshape(u.size), state.u)
 
 
 @allocating
@@ -296,9 +259,11 @@ def march_in(
     """As `march`, in a room that is there."""
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
-    u, v, free, rows, chosen = work
-    count, values = len(nodes.e), table.unknown.size
-    place = state.place
+    count, values, place = len(nodes.e), table.unknown.size, state.place
+    free, rows, chosen = work.free, work.rows, work.chosen
+    channels = state.u.size // count
+    u, v = work.u.reshape(channels, count), work.v.reshape(channels, count)
+    before = state.u.reshape(channels, count)
     while place[BASE] < steps:
         rung = place[RUNG]
         if not rungs.made[rung]:
@@ -308,13 +273,14 @@ def march_in(
         if place[TRIED] == 1:
             place[TRIED] = 0
             for value in range(values):
-                u[value * count] = state.u[value * count + count - 1]
+                u[value, 0] = before[value, count - 1]
         else:
-            _predict(fixed, values, rung, place[LAST], state.u, u)
+            on, apart = place[LAST] >= 0, len(fixed.ahead) // 2
+            predict(fixed.ahead[apart + (rung - place[LAST]) * on], on, values, before, u)
         copy(fixed.offset, free)
         add_product(rungs.rows[rung], state.q[: rungs.rows.shape[1]], free)
-        given = _inputs(u, count, values, u.size // count, v, chosen)
-        add_chosen(rungs.of_inputs[rung], v, chosen, given, free)
+        given = inputs(fixed.nodes, table.least, u, values, channels, v, chosen)
+        add_chosen(rungs.of_inputs[rung], v.reshape(v.size), chosen, given, free)
         solved = _solve_step(
             calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, t, h,
             u, free, rows, room, v, chosen,
@@ -335,7 +301,7 @@ def march_in(
         place[KEPT] = _keep(samples, place[KEPT], state, u, t, h, end)
         if place[KEPT] == samples.times.size:  # the next one may lie in this step, too
             return DONE
-        _advance(fixed, rungs, rung, free, u, v, chosen, state)
+        _advance(fixed, table, rungs, rung, free, u, v, chosen, state)
         if not np.isfinite(state.q[0]):
             return NOT_FINITE
         copy(nodes.e[count - 1], nodes.e[0])

@@ -116,7 +116,7 @@ def make_modes(
     a = equations.a + equations.b[:, :values] @ tangent @ equations.c
     b = equations.b.copy()
     b[:, values:] += equations.b[:, :values] @ tangent @ equations.d[:, values:]
-    moving = _moving(a, b)
+    moving = _moving(a, b, twin.turning)
     constant = np.where(moving, 0.0, x0)
     b[:, -1] += a @ constant
     rigid, references = _rotations(twin, a, references)
@@ -151,10 +151,13 @@ def make_modes(
     )
 
 
-def _moving(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """States that can change, (n,); the others have neither a rate nor anything that gives one."""
+def _moving(a: np.ndarray, b: np.ndarray, turning: Sequence[int]) -> np.ndarray:
+    """States that can change, (n,); the others have neither a rate nor anything that gives one.
+
+    Speeds of what turns are of the first kind: one that is held is a rotation at any speed.
+    """
     moving = np.ones(len(a), dtype=bool)
-    driven = b.any(axis=1)
+    driven = b.any(axis=1) | a[list(turning)].any(axis=0)
     while True:
         now = moving & (driven | a[:, moving].any(axis=1))
         if (now == moving).all():
@@ -166,12 +169,7 @@ def _rotations(
     twin: Twin, a: np.ndarray, wanted: Sequence[int]
 ) -> tuple[np.ndarray, Sequence[int]]:
     """Rigid rotations (n, k), 1 at its own reference and 0 at those of the others; references."""
-    turning = [
-        first + i
-        for first, instance in zip(twin.layout.state_first, twin.instances, strict=False)
-        for i, state in enumerate(instance.component.declaration.states)
-        if state.steady == "rotating"
-    ]
+    turning = twin.turning
     if not turning:
         return np.zeros((len(a), 0)), []
     _, sizes, rows = np.linalg.svd(a[:, turning])

@@ -134,8 +134,11 @@ class _Rows:
         """Values (times, rows) at a share, in units of the grid, of a step [s]."""
         key = (length if share else 0.0, share)
         if key not in self._kept:
-            self._kept[key] = np.ascontiguousarray(self.at(length, _GRID * share).T)
-        values: np.ndarray = held @ self._kept[key]
+            rows = self.at(length, _GRID * share).T
+            used = 1 + np.flatnonzero(rows.any(axis=1)).max(initial=-1)
+            self._kept[key] = np.ascontiguousarray(rows[:used])
+        kept = self._kept[key]
+        values: np.ndarray = held[:, : len(kept)] @ kept
         values += self._still
         return values
 

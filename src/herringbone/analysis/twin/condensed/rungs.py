@@ -69,8 +69,8 @@ class Rungs(NamedTuple):
 
     Both are padded with zeros where sums are formed over many of them at once.
 
-    Of each channel, the first input stands for a value at all nodes, the others for differences
-    from it at the other nodes.
+    Of each channel, the first input stands for its value at the start, the last one for its rise
+    along a straight line, and the others for what it is above that line at the other nodes.
 
     Attributes:
         made: (rungs,) 1 where there are matrices, which are made when they are asked for.
@@ -79,7 +79,7 @@ class Rungs(NamedTuple):
             are the growth of the angles.
         of_inputs: (rungs, inputs, rows) the same of the inputs.
         push: (rungs, inputs, q) state at the end of the inputs.
-        along: (rungs, nodes - 1, tangents, unknowns x (nodes - 1)), see `collocation`.
+        along: (rungs, unknowns x (nodes - 1), (nodes - 1) x tangents), see `correction.correct`.
         lengths: (rungs,) [s].
     """
 
@@ -155,10 +155,11 @@ def parts(values: np.ndarray) -> np.ndarray:
     return np.concatenate([values.real, -values.imag])
 
 
-def _differences(matrix: np.ndarray) -> np.ndarray:
+def _of_inputs(matrix: np.ndarray, nodes: Sequence[float]) -> np.ndarray:
     """Matrix over inputs, from one over values (channels, nodes, n)."""
     found = matrix.copy()
     found[:, 0] = matrix.sum(axis=1)
+    found[:, -1] = np.einsum("i,cin->cn", nodes, matrix)
     return found.reshape(matrix.shape[0] * matrix.shape[1], matrix.shape[2])
 
 
@@ -175,7 +176,7 @@ def empty_rungs(modes: Modes, lengths: Sequence[float], shape: Shape) -> Rungs:
         aligned(rungs, size, rows),
         aligned(rungs, inputs, rows),
         aligned(rungs, inputs, padded(size)),
-        np.zeros((rungs, degree, len(shape.directions), unknowns)),
+        np.zeros((rungs, unknowns, degree * len(shape.directions))),
         np.array(lengths, dtype=float),
     )
 
@@ -213,10 +214,10 @@ def make_rung(rungs: Rungs, rung: int, modes: Modes, shape: Shape) -> None:
     rungs.rows[rung, : 2 * m, :count] = at_nodes
     of_angles = np.broadcast_to(modes.of_angles.T[:, None], (len(modes.turns), degree, arguments))
     rungs.rows[rung, 2 * m :, :count] = shape.rows(of_angles)
-    rungs.of_inputs[rung, :, :count] = _differences(shape.rows(inputs))
+    rungs.of_inputs[rung, :, :count] = _of_inputs(shape.rows(inputs), nodes)
     angles = parts((modes.turns * growth).T)
     rungs.rows[rung, : 2 * m, rungs.rows.shape[2] - angles.shape[1] :] = angles
-    rungs.push[rung, :, :size] = _differences(ends)
-    along = np.einsum("ta,snia->itsn", shape.directions, inputs[list(shape.stiff), 1:])
-    rungs.along[rung] = along.reshape(*along.shape[:2], len(shape.stiff) * degree)
+    rungs.push[rung, :, :size] = _of_inputs(ends, nodes)
+    along = inputs[list(shape.stiff), 1:] @ shape.directions.T
+    rungs.along[rung] = along.reshape(rungs.along.shape[1:])
     rungs.made[rung] = 1

@@ -43,6 +43,9 @@ COARSE = 0.1
 """Such a residual from which on errors of 1e-3 are wanted: fine directions are left out then."""
 _LEAN_AHEAD = 2
 """Degree of the prediction over long steps, where a higher one goes farther off."""
+_NEGLIGIBLE = 1e-5
+"""Of `Fixed.close`: what a value moves a coordinate by, at most, to be left out of lean steps; 1e-3
+of the tolerance, see `fused.core.closeness`."""
 _AT_ONCE = 4096  # times that are kept by one call of the march
 _GRID = 1e-9  # of a step: a time this close to its start is its start
 
@@ -86,7 +89,7 @@ class Solution:
             np.ones((degree + 1, calls.indicator[-1])),
             np.zeros(calls.argument[-1]),
         )
-        self._corrections = make_room(len(system.stiff), degree)
+        self._corrections = make_room(len(system.stiff), degree, calls.tangent[-1])
         channels = system.equations.channels
         self._size = 2 * modes.rates.size + modes.angles.size
         sharp = system.sharp
@@ -136,8 +139,10 @@ class Solution:
 
     def _remembered(self) -> dict[str, np.ndarray]:
         nodes = self._nodes
-        more = {"scale": self._table.scale, "indicators": nodes.e[0], "arguments": nodes.start}
-        return {**self.state._asdict(), **more}
+        table = {"scale": self._table.scale, "least": self._table.least}
+        return {
+            **self.state._asdict(), **table, "indicators": nodes.e[0], "arguments": nodes.start
+        }  # fmt: skip
 
     def enter(self, t0: float, t1: float) -> None:
         """Begin a piece [s]: what came before says nothing about the laws' inputs."""
@@ -227,6 +232,20 @@ class Solution:
         )
         self._nodes.start[:] = self._nodes.z[0]
         begin(calls, self._table, self._nodes, t, state.u)
+        if self._fixed.lean:
+            self._neglect()
+
+    def _neglect(self) -> None:
+        """Find what is left out of a piece, from the laws' values at its start."""
+        table, stiff = self._table, list(self._system.stiff)
+        moved = np.abs(self._modes.inputs)
+        size = np.maximum(table.scale, np.abs(self._nodes.f[0]))
+        by_stiff = (moved[:, stiff] * size[stiff]).max(axis=1, initial=0.0)
+        for value in np.setdiff1d(np.arange(size.size), stiff):
+            of_value = moved[:, value]
+            felt = of_value > 0.0
+            least = np.min(by_stiff[felt] / of_value[felt], initial=np.inf)
+            table.least[value] = _NEGLIGIBLE * self._fixed.close * least if felt.any() else 0.0
 
     @property
     def _ends(self) -> np.ndarray:

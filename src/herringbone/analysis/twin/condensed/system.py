@@ -137,6 +137,7 @@ class Condensed:
             np.array(mean, dtype=float),
             unknown,
             np.full(calls.value[-1], np.finfo(float).tiny),
+            np.zeros(self.equations.channels),
         )
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from herringbone.analysis.twin.condensed.march import BENDS, EVALUATIONS, HALVINGS, STEPS
 from herringbone.analysis.twin.fused.core import Core, Steps
 
-_AT_ONCE = 2000
-"""Base steps of a portion: some milliseconds of computing."""
+_AT_ONCE = 250
+"""Base steps of a portion: a millisecond of computing, whose steps are kept in the cache."""
 _MOST_ROWS = 2048
 _SAME = 1e-9
 """Relative difference of lengths that are one: rounding of times."""

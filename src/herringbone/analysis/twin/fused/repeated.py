@@ -6,6 +6,7 @@ from herringbone.analysis.twin.condensed.march import call_laws
 from herringbone.analysis.twin.condensed.march_arrays import Arrays
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.kernels.compiling.jit import allocating
+from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import residuals, spread
 from herringbone.kernels.condensed.correction import correct
 from herringbone.kernels.condensed.modal import add_chosen, add_product
@@ -18,6 +19,17 @@ def laws(count: int, arrays: Arrays, t: float) -> None:
     for _ in range(count):
         for i in range(len(nodes.z)):
             call_laws(arrays.calls, t, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
+
+
+@allocating
+def given(arrays: Arrays) -> tuple[np.ndarray, np.ndarray, int]:
+    """Inputs of the last step, places of those that are not zero, how many of them the laws'."""
+    nodes, count = arrays.fixed.nodes, arrays.fixed.nodes.size
+    u = arrays.state.u.reshape(arrays.state.u.size // count, count)
+    v, chosen = np.zeros_like(u), np.empty(u.size, dtype=np.int64)
+    laws = inputs(nodes, arrays.table.least, u, 0, arrays.table.unknown.size, v, chosen)
+    every = inputs(nodes, arrays.table.least, u, 0, len(u), v, chosen)
+    return v.reshape(v.size), chosen[:every], laws
 
 
 @allocating
@@ -49,6 +61,8 @@ def arguments(count: int, arrays: Arrays) -> None:
 @allocating
 def corrections(count: int, arrays: Arrays, rungs: Rungs) -> None:
     """Residuals, and what they change."""
+    nodes = arrays.nodes
+    u = arrays.state.u.reshape(arrays.state.u.size // len(nodes.e), len(nodes.e))
     for _ in range(count):
-        residuals(arrays.table, arrays.nodes, arrays.state.u, arrays.room.r)
-        correct(arrays.table, arrays.nodes, rungs.along[0], arrays.room)
+        residuals(arrays.table, nodes, u, arrays.room.r)
+        correct(arrays.table, nodes, rungs.along[0], arrays.room)
