@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from support.c_housing import c_housing_fmu
 
 import herringbone as hb
 from herringbone.analysis.leaner.form import Form
@@ -14,6 +15,7 @@ from herringbone.commands.main import main
 from herringbone.components.registry import component_for
 from herringbone.core.declaring.roles import Role
 from herringbone.housing import default_housing, write_housing
+from herringbone.running.reporting.summary import summary_text
 from herringbone.scenes import Ask, Scene
 
 _R_MIN = math.pi / 30.0
@@ -59,6 +61,10 @@ def test_a_housing_of_800_hz_is_warned_of_with_its_error_at_this_speed(tmp_path,
         assert warning.startswith("warning: housing")
         assert "reduced to 800 Hz" in warning
         said.append(_said(warning))
+        (row,) = (row for row in found.budget if row.source == "model left out")
+        assert row.quantity == f"spectrum of {_SEATS}"
+        assert row.value == pytest.approx(said[-1], rel=0.01)
+        assert "800 Hz" in row.how
         assert said[-1] == pytest.approx(_truth(speed, housing=housing), rel=0.01)
     assert min(said) > 0.5  # core of the matter: the largest line of the rig is beyond 800 Hz
     steady = hb.steady("test_rig", scene=_ASKING, housing=housing, speed=1000.0 * _R_MIN)
@@ -78,6 +84,20 @@ def test_what_the_system_or_the_whole_data_have_is_no_warning():
     assert not [note for note in whole.info.notes if "model error" in note]
     ground = hb.run("on_ground", t_end=1e-3, fmu="in-process")
     assert not [note for note in ground.info.notes if "model error" in note]
+    assert not [row for run in (whole, ground) for row in run.budget if "left out" in row.source]
+
+
+def test_of_a_housing_fmu_the_budget_says_that_nobody_knows(tmp_path):
+    file = c_housing_fmu(tmp_path)
+    found = hb.run("gearbox", replace_parts={"modal_housing": file}, t_end=5e-3)
+    (row,) = (row for row in found.budget if row.source == "model left out")
+    assert row.value is None
+    assert row.how == (
+        "modal_housing, replaced by an FMU: not known at this operating point: modal_housing: "
+        "nobody knows the equations"
+    )
+    assert f"{row.source} ({row.how})" in " ".join(summary_text(found).split())
+    assert not _warning(found.info.notes).startswith("warning")
 
 
 def test_an_error_that_nobody_can_know_is_told_as_unknown(tmp_path, capsys):

@@ -18,30 +18,36 @@ class Cut(NamedTuple):
     Attributes:
         name: for people.
         lean: the same for a model.
+        steady: only for steady states: a run, or an FMU, would not follow its set points, or
+            refuses it.
     """
 
     name: str
     lean: Lean
+    steady: bool = False
 
 
 def cuts_of(structure: Structure) -> list[Cut]:
     """What a system's roles allow to leave out, but for single modes."""
     known = anatomy(structure.system)
     housings = known.with_role(Role.HOUSING)
+    drive, load = (Lean(tuple(own)) for own in (_speeds(structure), _controls(structure)))
     found = [
         Cut("halves of the gears joined", Lean(tuple(_twists(structure)))),
-        Cut("ideal load", Lean(tuple(_controls(structure)))),
+        Cut("ideal load", load),
+        Cut("ideal drive", drive, steady=True),
+        *([Cut("ideal motors", drive | load, steady=True)] if drive and load else []),
         Cut("axial motion locked", Lean(tuple(_journals(structure, "z")))),
         Cut("torsion only", Lean(tuple(_journals(structure, "xyz")))),
     ]
     if pairs := known.with_role(Role.GEAR_PAIR):
         found += [
-            Cut("contact frozen, slopes over the angle", Lean(frozen=tuple(pairs))),
-            Cut("contact frozen, mean slopes", Lean(linear=tuple(pairs))),
+            Cut("contact frozen, slopes over the angle", Lean(frozen=tuple(pairs)), steady=True),
+            Cut("contact frozen, mean slopes", Lean(linear=tuple(pairs)), steady=True),
         ]
     if housings:
         found += [
-            Cut("housing driven one way", Lean((), housings)),
+            Cut("housing driven one way", Lean((), housings), steady=True),
             Cut("housing rigid", Lean(tuple(_states(structure, housings)))),
         ]
     return [cut for cut in found if cut.lean]
@@ -83,18 +89,27 @@ def _twists(structure: Structure) -> Iterator[str]:
 
 def _controls(structure: Structure) -> Iterator[str]:
     """States of loads that neither turn nor are the rate of what turns: their torques stay."""
-    core, known = structure.core, anatomy(structure.system)
-    names, a = state_names(core.twin), core.condensed.equations.a
-    loads = set(known.with_role(Role.LOAD))
-    for p, instance in enumerate(core.twin.instances):
-        if instance.name in loads:
-            first = core.twin.layout.state_first[p]
-            states = instance.component.declaration.states
-            turning = [k for k, s in enumerate(states) if s.steady == "rotating"]
-            rates = np.flatnonzero(a[[first + k for k in turning]].any(axis=0)) - first
-            yield from (
-                names[first + k] for k in range(len(states)) if k not in {*turning, *rates.tolist()}
-            )
+    core = structure.core
+    names, turning = state_names(core.twin), structure.core.twin.turning
+    rates = np.flatnonzero(core.condensed.equations.a[turning].any(axis=0))
+    for own in _of_role(structure, Role.LOAD):
+        yield from (names[k] for k in own if k not in {*turning, *rates.tolist()})
+
+
+def _speeds(structure: Structure) -> Iterator[str]:
+    """States of drives that do not turn: their speeds stay, whatever torque that takes."""
+    twin = structure.core.twin
+    names = state_names(twin)
+    for own in _of_role(structure, Role.DRIVE):
+        yield from (names[k] for k in own if k not in twin.turning)
+
+
+def _of_role(structure: Structure, role: Role) -> Iterator[range]:
+    """Indices of the states of each part with a role."""
+    twin, parts = structure.core.twin, set(anatomy(structure.system).with_role(role))
+    for p, instance in enumerate(twin.instances):
+        if instance.name in parts:
+            yield range(twin.layout.state_first[p], twin.layout.state_first[p + 1])
 
 
 def _journals(structure: Structure, axes: str) -> Iterator[str]:

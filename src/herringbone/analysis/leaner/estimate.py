@@ -67,6 +67,11 @@ class Estimates:
             self._still = np.zeros_like(orbit.channels)
             self._moving = self._reactions.moving(orbit.channels)
             self._moving[:, 0] -= self._reactions.start
+            self._unmoved = self._reactions.moving(self._still)
+            self._given = Rows(problem.arguments, problem.of_angle, problem.of_channels)
+            self._given_still, self._rows_still = (
+                self._of(rows, self._still) for rows in (self._given, self._rows)
+            )
             self._were = self._laws()
             self._whole = coefficients_of(self._wanted, orbit)
 
@@ -81,15 +86,15 @@ class Estimates:
         places = self._reactions.places
         own = [places[name] for name in names if name in places]
         with one_blas_thread(), np.errstate(all="ignore"):
-            push = self._reactions.holding(own, self._moving)
+            holding = self._reactions.holding(own)
+            push = holding(self._moving)
             step = self._answered(own, push)
             channels = self._still.copy()
             channels[self._found.unknown] = step
-            moving = self._reactions.moving
-            push = push + self._reactions.holding(own, moving(channels) - moving(self._still))
+            push = push + holding(self._reactions.moving(channels) - self._unmoved)
             bent = self._still.copy()
             bent[self._found.unknown] = self._inverse(self._lacking(own, push, channels))
-            push = push + self._reactions.holding(own, moving(bent) - moving(self._still))
+            push = push + holding(self._reactions.moving(bent) - self._unmoved)
             changed = self._changed(own, push, channels + bent)
             return self._apart(self._whole + changed)
 
@@ -97,10 +102,8 @@ class Estimates:
         """What the laws give at the changed motion, beyond their slopes (unknowns, harmonics)."""
         orbit, problem = self._state.orbit, self._state.structure.problem
         response, unknown = orbit.response, self._found.unknown
-        rows = Rows(problem.arguments, problem.of_angle, problem.of_channels)
-        change = np.einsum("crh,rh->ch", self._reactions.arguments[:, list(own)], push)
-        change += response.outputs(rows, response.coordinates(channels), channels)
-        change -= response.outputs(rows, response.coordinates(self._still), self._still)
+        change = _added(self._reactions.arguments[:, list(own)], push)
+        change += self._of(self._given, channels) - self._given_still
         z = orbit.samples.z + in_time(change, response.orders, orbit.places).T
         given = problem.laws(np.ascontiguousarray(z)).f - z @ problem.tangent.T
         laws = in_frequency(np.ascontiguousarray(given[:, unknown].T), response.orders)
@@ -159,17 +162,19 @@ class Estimates:
         """Changes of the laws' unknown values (unknowns, harmonics) under reactions."""
         found, orbit = self._found, self._state.orbit
         orders = orbit.response.orders
-        along = np.einsum("trh,rh->th", self._reactions.along[:, list(own)], push)
+        along = _added(self._reactions.along[:, list(own)], push)
         moved = in_time(along, orders, orbit.places)
         return self._inverse(in_frequency(bent_by(found, moved), orders))
 
     def _changed(self, own: Sequence[int], push: np.ndarray, channels: np.ndarray) -> np.ndarray:
         """What outputs change by under reactions and changes of the channels."""
+        by = _added(self._reactions.outputs[:, list(own)], push)
+        return by + self._of(self._rows, channels) - self._rows_still
+
+    def _of(self, rows: Rows, channels: np.ndarray) -> np.ndarray:
+        """Rows (n, harmonics) under channels; a rotation that nothing drives has its speed."""
         response = self._state.orbit.response
-        by = np.einsum("crh,rh->ch", self._reactions.outputs[:, list(own)], push)
-        by += response.outputs(self._rows, response.coordinates(channels), channels)
-        still = response.coordinates(self._still)  # a rotation that nothing drives has its speed
-        return by - response.outputs(self._rows, still, self._still)
+        return response.outputs(rows, response.coordinates(channels), channels)
 
     def _apart(
         self, rows: np.ndarray, wanted: Wanted | None = None, orbit: Orbit | None = None
@@ -186,6 +191,11 @@ class Estimates:
             ours = Lines(made, orders, theirs.meshes, theirs.frequency)
             found[question.name] = apart(question, ours, theirs)
         return found
+
+
+def _added(gains: np.ndarray, push: np.ndarray) -> np.ndarray:
+    """Sums (n, harmonics) over reactions (reactions, harmonics) of gains (n, the same)."""
+    return np.einsum("crh,rh->ch", gains, push)
 
 
 def _wanted(structure: Structure, columns: Sequence[str]) -> Wanted:

@@ -10,10 +10,11 @@ so that nothing is taken apart or decomposed again, whatever is held (the recept
 R. E. D. Bishop and D. C. Johnson, The Mechanics of Vibration, 1960).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg.lapack import zgetrf, zgetrs
 
 from herringbone.analysis.steady.harmonic_balance.correction import Bent
 from herringbone.analysis.steady.harmonic_balance.response import Response, Rows
@@ -51,7 +52,7 @@ class Reactions:
         places = [position.get(k, k) for k in own]
         self.places = {every_state[k]: at for at, k in enumerate(own)}
         self.start: np.ndarray = state.structure.core.twin.state[places]
-        orders, self._count = orbit.response.orders, problem.inputs.shape[1]
+        orders, count = orbit.response.orders, problem.inputs.shape[1]
         extended = replace(
             problem,
             inputs=np.hstack([problem.inputs, modes.back[:, own]]),
@@ -62,34 +63,49 @@ class Reactions:
         every = np.vstack([found.along, shapes, rows.modal, problem.arguments])
         still = np.zeros(len(own))
         angle = np.concatenate([found.along_angle, still, rows.of_angle, problem.of_angle])
-        gains = answer.gain(every, angle, self._count + np.arange(len(own)), orders.size)
+        gains = answer.gain(every, angle, count + np.arange(len(own)), orders.size)
         ends = np.cumsum([len(found.along), len(own), len(rows.modal)])
         self.along, self._held, self.outputs, self.arguments = np.split(gains, ends)
         self._shapes, self._positions = shapes, modes.shapes[places]
-        chosen = self._count + np.arange(len(own))
+        chosen = count + np.arange(len(own))
         self._held[:, :, 0] = answer.gain(self._positions, still, chosen, 1)[:, :, 0]
-        self._answer: Response = answer
+        self._answer: Response = orbit.response
+        speeds = np.flatnonzero(_speeds(state, places))
+        self.start[speeds] = self.moving(orbit.channels)[speeds, 0].real
 
     def moving(self, channels: np.ndarray) -> np.ndarray:
         """Rates (reactions, harmonics) of the states under channels; first, their mean places."""
-        more = np.zeros((len(self._shapes), channels.shape[1]), dtype=complex)
-        q = self._answer.coordinates(np.vstack([channels, more]))
+        q = self._answer.coordinates(channels)
         found = self._answer.of(self._shapes, q)
         found[:, 0] = self._answer.of(self._positions, q)[:, 0]
         return found
 
-    def holding(self, places: Sequence[int], moving: np.ndarray) -> np.ndarray:
-        """What takes away the motion of some states (chosen, harmonics)."""
+    def holding(self, places: Sequence[int]) -> Callable[[np.ndarray], np.ndarray]:
+        """What takes away motions (reactions, harmonics) of some states (chosen, harmonics)."""
         own = list(places)
         if not own:
-            return np.zeros((0, moving.shape[1]), dtype=complex)
+            return lambda moving: np.zeros((0, moving.shape[1]), dtype=complex)
         gains = self._held[np.ix_(own, own)].transpose(2, 0, 1)
-        return -np.linalg.solve(gains, moving[own].T[:, :, None])[:, :, 0].T
+        factors = [zgetrf(gain)[:2] for gain in gains]
+
+        def solve(moving: np.ndarray) -> np.ndarray:
+            off = -moving[own].T
+            pairs = zip(factors, off, strict=True)
+            return np.array([zgetrs(lu, pivots, each)[0] for (lu, pivots), each in pairs]).T
+
+        return solve
 
     def alone(self, moving: np.ndarray) -> np.ndarray:
         """What takes away the motion of each state if no other is held (reactions, harmonics)."""
         own = np.arange(len(moving))
         return -moving / self._held[own, own]
+
+
+def _speeds(state: SteadyState, places: Sequence[int]) -> np.ndarray:
+    """(n,) which states are speeds of what turns; held, they are those of the operating point."""
+    core = state.structure.core
+    rates = core.condensed.equations.a[core.twin.turning].any(axis=0)
+    return np.isin(places, np.flatnonzero(rates))
 
 
 def _rates(equations: Equations, states: Sequence[int]) -> dict[int, int]:

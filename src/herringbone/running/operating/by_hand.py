@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.anatomy import anatomy, value_at
 from herringbone.analysis.steady.set_points import Point
 from herringbone.components.registry import component_for
 from herringbone.core import HerringboneError
@@ -15,10 +15,11 @@ from herringbone.core.places.files import is_folder
 from herringbone.cosim.structure.system import System
 from herringbone.housing import ModalHousing, read_housing
 from herringbone.housing.files.file_format import DATA
+from herringbone.result.budget import BudgetRow, Known
 from herringbone.running.housings import split_housings
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import with_known_values
-from herringbone.running.operating.lean import certified
+from herringbone.running.operating.lean import SOURCE, certified
 from herringbone.running.prepared import Wishes, housings_of
 from herringbone.running.rigid_ground import rigid_bearings
 from herringbone.scenes import Model, Scene
@@ -26,6 +27,7 @@ from herringbone.scenes import Model, Scene
 if TYPE_CHECKING:
     from herringbone.analysis.steady.state import SteadyState
 
+_ASKED = "what the scene asks"
 _ALIKE = 1e-6
 """Relative difference of static compliances that are the same: a reduction keeps them exactly."""
 
@@ -38,22 +40,36 @@ class ByHand:
         names: of what is left out, for people.
         scene, wishes: with which nothing is.
         unknown: why the whole model is not known; "" if it is.
+        is_leaner: False if parts are replaced by what may know as much as they.
     """
 
     names: tuple[str, ...]
     scene: Scene
     wishes: Wishes
     unknown: str = ""
+    is_leaner: bool = True
 
 
-def warned_by_hand(
+class SaidByHand(NamedTuple):
+    """What is said of what a user left out.
+
+    Attributes:
+        notes: a line; none if nothing is left out.
+        row: of the error budget; None likewise.
+    """
+
+    notes: tuple[str, ...] = ()
+    row: BudgetRow | None = None
+
+
+def said_by_hand(
     system: str | Path | System,
     scene: str | Path | Scene | None,
     wishes: Wishes,
     point: Point,
     state: "SteadyState | None" = None,
-) -> tuple[str, ...]:
-    """A line with the model error of what a user left out by hand; none if nothing is.
+) -> SaidByHand:
+    """The model error of what a user left out by hand, as a line and as a row of the budget.
 
     Model errors are those of the steady state of the operating point, for what the scene asks, or
     for bearing forces and seat velocities if it asks nothing.
@@ -65,22 +81,30 @@ def warned_by_hand(
     """
     own = _left_out(system, scene, wishes, point)
     if not own.names:
-        return ()
+        return SaidByHand()
     what = " and ".join(own.names)
     if own.unknown:
-        return (_unknown(what, own.unknown),)
+        return _unknown(what, own.unknown, warn=own.is_leaner)
     from herringbone.running.operating.model_error import model_errors  # noqa: PLC0415 (numba)
 
     whole = (system, own.scene, own.wishes)
     try:
-        said, is_large = model_errors(whole, (system, scene, wishes), point, state)
+        found = model_errors(whole, (system, scene, wishes), point, state)
     except HerringboneError as error:
-        return (_unknown(what, str(error)),)
-    return (f"{'warning: ' if is_large else ''}{what}: {said}",)
+        return _unknown(what, str(error), warn=True)
+    line = f"{'warning: ' if found.is_large else ''}{what}: {found}"
+    how = f"{what}: {found.where}"
+    worst = found.worst
+    return SaidByHand(
+        (line,), BudgetRow(SOURCE, worst.name, found.errors[worst], Known.MEASURED, how)
+    )
 
 
-def _unknown(what: str, why: str) -> str:
-    return f"warning: {what}: the model error is not known at this operating point: {why}"
+def _unknown(what: str, why: str, *, warn: bool) -> SaidByHand:
+    line = f"{what}: the model error is not known at this operating point: {why}"
+    how = f"{what}: not known at this operating point: {why}"
+    row = BudgetRow(SOURCE, _ASKED, None, Known.UNKNOWN, how)
+    return SaidByHand((f"warning: {line}" if warn else line,), row)
 
 
 def _left_out(
@@ -103,6 +127,12 @@ def _left_out(
         else:
             housings[part] = full
     known = with_known_values(structure, chosen, wishes)
+    leaner = bool(names)
+    names += [
+        f"{part}, replaced by an FMU"
+        for part in anatomy(structure).with_role(Role.HOUSING)
+        if part in known.foreign_parts and part not in structure.foreign_parts
+    ]
     one_way = [b for b in rigid_bearings(known) if value_at(structure, b.column) != 0.0]
     names += [f"{', '.join(bearing.housings)} driven one way" for bearing in one_way]
     if known.foreign_parts:
@@ -113,6 +143,7 @@ def _left_out(
         replace(chosen, model=Model()),
         replace(wishes, housing=housings, values=values),
         "; ".join(unknown),
+        leaner or bool(one_way),
     )
 
 

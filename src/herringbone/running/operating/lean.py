@@ -15,6 +15,8 @@ from herringbone.scenes.asking import Range
 if TYPE_CHECKING:
     from herringbone.analysis.twin.condensed.lean import Lean
 
+SOURCE = "model left out"
+"""Row of the error budget that tells a model's error."""
 _R_MIN = 30.0 / math.pi
 
 
@@ -86,13 +88,18 @@ def certified(
     return known and _within(speed, model.speed) and _within(torque, model.torque)
 
 
-def with_model_row(result: Result, model: Model) -> Result:
-    """The result of a run, with what its model leaves out in the error budget."""
+def certified_row(model: Model) -> BudgetRow | None:
+    """What a plan certified of a leaner model, for the error budget; None of a whole one."""
     if not model:
+        return None
+    how = f"steady states{_where(model)}"
+    return BudgetRow(SOURCE, "what the scene asks", model.error, Known.MEASURED, how)
+
+
+def with_row(result: Result, row: BudgetRow | None) -> Result:
+    """The result of a run, with a row besides in its error budget, if it has one."""
+    if row is None or not result.budget:
         return result
-    known = Known.UNKNOWN if model.error is None else Known.MEASURED
-    how = "no plan certified it" if model.error is None else f"steady states{_where(model)}"
-    row = BudgetRow("model left out", "what the scene asks", model.error, known, how)
     return replace(result, budget=by_size([*result.budget, row]))
 
 

@@ -1,6 +1,7 @@
 """How far a leaner model is from the whole one, for what a scene asks."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.analysis.steady.periodic import R_MIN
@@ -21,10 +22,38 @@ _FINER, _LEAST = 10.0, 1e-6
 """How much finer than what is asked models are compared, and the least tolerance of that."""
 
 
+class ModelErrors(NamedTuple):
+    """Model errors at an operating point.
+
+    Attributes:
+        where: the operating point, for people.
+        errors: by question, over the alternating part [1].
+        asked: the questions are of the user.
+    """
+
+    where: str
+    errors: dict[Question, float]
+    asked: bool
+
+    @property
+    def worst(self) -> Question:
+        """The question whose error is largest over what is asked."""
+        return max(self.errors, key=lambda q: self.errors[q] / q.tolerance)
+
+    @property
+    def is_large(self) -> bool:
+        """True if one is larger than what is asked."""
+        return self.errors[self.worst] > self.worst.tolerance
+
+    def __str__(self) -> str:
+        said = ", ".join(_told(q, error, asked=self.asked) for q, error in self.errors.items())
+        return f"model error {self.where}: {said}"
+
+
 def model_errors(
     whole: Run, leaner: Run, point: Point, state: SteadyState | None = None
-) -> tuple[str, bool]:
-    """Model errors as a line, and whether one of them is larger than what is asked.
+) -> ModelErrors:
+    """Model errors of what is asked.
 
     Args:
         whole, leaner: what is compared; the scene of the whole one asks.
@@ -50,10 +79,8 @@ def model_errors(
         q: apart(q, lines_of(state, own), lines_of(theirs, q)).error
         for own, q in zip(own_questions, questions, strict=True)
     }
-    said = ", ".join(_told(q, error, asked=bool(asked)) for q, error in errors.items())
-    at = f"steady at {abs(theirs.speed) * R_MIN:.5g} r/min"
-    is_large = any(error > q.tolerance for q, error in errors.items())
-    return f"model error against the whole model, {at}: {said}", is_large
+    where = f"against the whole model, steady at {abs(theirs.speed) * R_MIN:.5g} r/min"
+    return ModelErrors(where, errors, bool(asked))
 
 
 def _told(question: Question, error: float, *, asked: bool) -> str:

@@ -67,8 +67,8 @@ class Ladder:
         """The model without the modes that matter least."""
         return Lean(tuple(name for pair in self.modes[:count] for name in pair))
 
-    def rungs(self) -> Iterator[Rung]:
-        """Leaner models, those that leave out least first."""
+    def rungs(self, *, for_fmu: bool = False) -> Iterator[Rung]:
+        """Leaner models, those that leave out least first; of an FMU such as follow set points."""
         total = len(self.modes)
         counts = {round(total * k / _STAIRS) for k in range(1, _STAIRS)} - {0, total}
         most = self._most() if total else 0
@@ -76,6 +76,8 @@ class Ladder:
             name = f"{total - count} of {total} modes, by influence"
             yield self._rung(name, self.without(count))
         for cut in self._cuts:
+            if for_fmu and cut.steady:
+                continue
             rung = self._rung(cut.name, cut.lean)
             yield rung
             if most and self.allowed(rung) and cut.lean.only_held:

@@ -53,7 +53,7 @@ def steady_rungs(
     for point in points_to_probe(scene.operating):
         states.append(_steady(solver, point, states[-1] if states else None))
     ladder = Ladder(solver, states, questions)
-    rungs = [rung for rung in ladder.rungs() if rung.lean.only_held or not for_fmu]
+    rungs = list(ladder.rungs(for_fmu=for_fmu))
     long = any(state.meshes > 1 for state in states)
     certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
     if by_hand:

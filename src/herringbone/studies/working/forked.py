@@ -47,6 +47,7 @@ class ForkedProcess:
             _compute(calls, answers)
         calls.close()
         answers.close()
+        self.stdout.read(1)  # until it holds nothing of this process: locks of folders above all
         self._code: int | None = None
         self._reaping = threading.Lock()
 
@@ -77,6 +78,8 @@ def _compute(calls: BinaryIO, answers: BinaryIO) -> NoReturn:
         os.setsid()  # an interrupt is of the parent, which ends it
         gc.freeze()  # what is shared stays so
         _let_go({calls.fileno(), answers.fileno()})
+        answers.write(b".")
+        answers.flush()
         serve(calls, answers)
     finally:
         os._exit(1)

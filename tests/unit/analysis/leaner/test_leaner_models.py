@@ -103,6 +103,30 @@ def test_frozen_laws_differ_by_what_is_estimated_and_are_straight() -> None:
     assert np.abs(off[2] - off[0]).max() > 1e3  # 30 um against 1e8 N/m and more
 
 
+def test_a_drive_of_prescribed_speed_has_that_of_each_operating_point() -> None:
+    """No matter at which speed the system was prepared; the estimate is off by its second order."""
+    solver, state, questions = _rig()
+    lean = next(cut.lean for cut in cuts_of(solver.structure) if cut.name == "ideal drive")
+    for whole in (state, solver.solve(Point(speed=1.3 * _SPEED))):
+        found = solver.leaner(lean).solve(whole.point, whole)
+        assert found.converged
+        assert abs(found.speed) == pytest.approx(abs(whole.point.speed), rel=1e-9)
+        expected = Estimates(whole, questions, lean.held).held(lean.held)
+        for question in questions:
+            error = apart(question, lines_of(found, question), lines_of(whole, question)).error
+            assert 1e-3 < error < 1e-2  # the rotor's own swing
+            assert expected[question.name].error == pytest.approx(error, rel=error)
+
+
+def test_a_housing_that_nothing_shakes_is_not_looked_at_more_finely_for_its_rounding() -> None:
+    solver, state, _ = _rig()
+    cuts = {cut.name: cut.lean for cut in cuts_of(solver.structure)}
+    found = solver.leaner(cuts["torsion only"]).solve(state.point, state)
+    assert found.converged
+    assert not found.errors.left_out  # neither group of channels alternates
+    assert found.orbit.resolved.per_mesh <= state.orbit.resolved.per_mesh
+
+
 def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
     """Run-outs of a pair without common factors: constant slopes leave other lines."""
     gear = tmp_path / "pair.toml"
