@@ -22,10 +22,12 @@ from herringbone.commands.options import (
     add_cells,
     add_command,
     add_kind,
+    add_operating_point,
     add_replacements,
     add_scene,
     add_start_values,
     given_by,
+    operating_point,
     replacements,
     start_values,
 )
@@ -125,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
 def _comparison_options(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compare algorithms on a scene."""
     add_scene(sub)
+    add_operating_point(sub)
     sub.add_argument("--algorithm", nargs="+", help="NAME or NAME:key=value,...; all if not given")
 
 
@@ -176,6 +179,7 @@ def _chart(options: argparse.Namespace) -> int:
         scene=options.scene,
         fmu=options.fmu,
         fuse=options.fuse,
+        **operating_point(options),
         **given_by(options),
         replace_parts=replacements(options),
         **{name: value for name, value in given.items() if value is not None},

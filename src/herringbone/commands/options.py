@@ -9,6 +9,8 @@ from typing import Any, TypedDict
 from herringbone.core import ParameterError
 
 _SET, _REPLACE = "INSTANCE.VARIABLE=VALUE", "INSTANCE=FILE.fmu"
+_R_MIN = 30.0 / math.pi
+"""r/min in 1 rad/s."""
 _WHOLE = 2.0**53
 """Up to here doubles hold all whole numbers."""
 
@@ -35,6 +37,12 @@ def add_scene(sub: argparse.ArgumentParser, *, optional: bool = False) -> None:
         help="name of a shipped system, folder, or .ssp file",
     )  # fmt: skip
     sub.add_argument("--scene", help="name or TOML file; 'loaded' if the system has it")
+
+
+def add_operating_point(sub: argparse.ArgumentParser) -> None:
+    """Declare speed and torque; see `operating_point`."""
+    sub.add_argument("--speed", type=float, help="of the pinion in r/min; the scene's if not given")
+    sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
 
 
 def add_kind(sub: argparse.ArgumentParser) -> None:
@@ -155,6 +163,19 @@ def _number(text: str) -> float:
         return int(text)
     except ValueError:
         return value
+
+
+class OperatingPoint(TypedDict):
+    """Speed [rad/s] and torque [N m] at the pinion; None: the scene's."""
+
+    speed: float | None
+    torque: float | None
+
+
+def operating_point(options: argparse.Namespace) -> OperatingPoint:
+    """What `add_operating_point` declares, as whatever takes a system takes it."""
+    speed = None if options.speed is None else options.speed / _R_MIN
+    return OperatingPoint(speed=speed, torque=options.torque)
 
 
 class PartFiles(TypedDict):

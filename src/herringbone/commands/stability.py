@@ -10,9 +10,9 @@ from pathlib import Path
 from tqdm import tqdm
 
 from herringbone.commands.checking import flange
-from herringbone.commands.options import files_of_parts, replacements
+from herringbone.commands.options import files_of_parts, operating_point, replacements
 from herringbone.commands.output import check_writable, say
-from herringbone.core import FmuError, ParameterError
+from herringbone.core import ParameterError
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -41,8 +41,13 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
     from herringbone.analysis.stability.steps.step_verdict import step_verdicts  # noqa: PLC0415
     from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
-    from herringbone.running.foreign.surrogates import opened_surrogates, under_load  # noqa: PLC0415
+    from herringbone.running.foreign.surrogates import (  # noqa: PLC0415
+        opened_surrogates,
+        under_load,
+        without_missing,
+    )
     from herringbone.running.known_limits import KnownLimits  # noqa: PLC0415
+    from herringbone.running.operating.commanded import operated  # noqa: PLC0415
     from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
     from herringbone.scenes import Start  # noqa: PLC0415
 
@@ -61,14 +66,16 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         **files_of_parts(options),
         replace_parts=replacements(options),
     )
+    wishes = operated(options.system, options.scene, wishes, **operating_point(options))
     structure, scene, notes = prepared(options.system, options.scene, wishes)
     for note in notes:
         say(note)
     structure = under_load(structure)
     bar, trials = tqdm(unit=" matrices", disable=None), LI().start_step
     with bar, opened_surrogates(structure, trials) as foreign:
-        if foreign.missing:
-            raise FmuError("; ".join(foreign.lines))
+        structure, missing = without_missing(structure, foreign)
+        for line in missing:
+            say(line)
         if foreign.strangers and options.atlas:
             raise ParameterError("--atlas takes no foreign FMUs; leave it out")
 
@@ -92,6 +99,7 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             strangers=foreign.strangers,
             remember=KnownLimits(structure, trials),
         )
+        found = replace(found, notes=(*missing, *found.notes))
         panels = atlas(structure, progress=show) if options.atlas else ()
         if options.atlas:
             found = replace(found, notes=(*found.notes, *unscaled(structure)))

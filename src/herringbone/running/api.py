@@ -21,9 +21,9 @@ from herringbone.running.fused.fused import (
     check_record,
 )
 from herringbone.running.housing_check import HousingFault, with_faults
-from herringbone.running.operating.by_hand import warned_by_hand
+from herringbone.running.operating.by_hand import said_by_hand
 from herringbone.running.operating.commanded import operated
-from herringbone.running.operating.lean import lean_notes
+from herringbone.running.operating.lean import certified_row, lean_notes
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Wishes, prepared
@@ -140,14 +140,15 @@ def run(
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
             faulty=faults.append,
         )
-        notes += warned_by_hand(system, scene, wishes, Point(speed, torque))
+        by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
+        notes, left_out = notes + by_hand.notes, by_hand.row or certified_row(chosen.model)
         for line in (line for fault in faults for line in fault.lines):
             tell(line)
         heard = Heard(progress, recorded, output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)
             said = (*notes, *lean_notes(chosen.model, values or {}, speed, torque))
-            wanted = FusedAsked(step, tolerance, tuple(record), notes=said)
+            wanted = FusedAsked(step, tolerance, tuple(record), said, left_out)
             return fused_run(structure, chosen, wanted, heard, reference=reference, verify=verify)
         asked = Asked(
             fmu,
@@ -160,6 +161,7 @@ def run(
             notes=notes,
             fuse=fuse,
             record=tuple(record),
+            left_out=left_out,
         )
         found = coupled_run(structure, chosen, asked, heard, reference=reference, verify=verify)
         return with_faults(found, faults)

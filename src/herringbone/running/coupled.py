@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from herringbone.analysis.stability.instability import warn_if_unstable
+from herringbone.analysis.stability.steps.step_limits import clocks_of
+from herringbone.core import HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.core.places.files import same_folder
@@ -24,6 +26,7 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import System
+from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
@@ -37,6 +40,7 @@ from herringbone.running.fused.beside import (
     with_recorded_channels,
 )
 from herringbone.running.loading import instances, open_parts
+from herringbone.running.operating.lean import with_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.remembered_answers import bond_of, stability_warning
 from herringbone.running.reporting.progress import Progress, told
@@ -76,6 +80,7 @@ class Asked:
         core_step: longest base step of the condensed parts [s].
         judge: make the error budget, and lines on what does not fit together; False for runs that
             only tell the error of another.
+        left_out: row of the error budget, of what the model leaves out.
     """
 
     fmu: str
@@ -94,6 +99,7 @@ class Asked:
     record: tuple[str, ...] = ()
     core_step: float | None = None
     judge: bool = True
+    left_out: BudgetRow | None = None
 
 
 class Coupled(NamedTuple):
@@ -195,7 +201,7 @@ def _coupled(
         lines += _step_notes(asked.step, algorithm, recording)
         every = make_result(system, scene, algorithm, kind, recording, lines)
         if asked.judge:
-            every = judged(every, system, bond)
+            every = with_row(judged(every, system, bond), asked.left_out)
         _log_end(recording)
         if asked.all_points:
             result = decimated(every, scene.record_step)
@@ -252,6 +258,11 @@ def _stability_notes(
     with activity(what), surrogates_of(system, parts, step) as found:
         if found.missing:
             return [f"whether the step is stable is not known: {found.why}"]
+        for clock in clocks_of(found.strangers):
+            try:
+                clock.parts_of_period(step)
+            except HerringboneError as error:
+                return [f"whether the step is stable is not known: {error}"]
         warning = warn_if_unstable(
             under_load(system), algorithm, step, t_end, strangers=found.strangers
         )

@@ -42,3 +42,30 @@ def test_much_is_told_in_plain_digits():
     force = np.where(time < 0.75, 0.01, 1.0) * result.data["a.f"]
     (line,) = unsettled(replace(result, data=result.data.assign(**{"a.f": force})))
     assert re.search(r"changes by \d+ % of", line), line
+
+
+def turning(share, *, ripple=0.0, unit=""):
+    """20 rad/s, which falls by a share from the third to the last quarter of a second."""
+    time = np.linspace(0.0, 1.0, 4001)
+    angle = 20.0 * time - 40.0 * share * np.maximum(time - 0.5, 0.0) ** 2
+    values = angle + ripple * np.sin(160.0 * np.pi * time)
+    data = pd.DataFrame({"time": time, "a.phi": values})
+    return replace(
+        make_foreign_result(), data=data, units={"time": "s", "a.phi": unit}, channels={}
+    )
+
+
+@pytest.mark.parametrize("ripple", [0.0, 0.1])
+def test_an_angle_without_unit_is_judged_by_its_rate(ripple):
+    """A steady rotation has settled; one whose rate falls by more than 5 % from quarter to quarter
+    (means of the rate there: the middles are a quarter of a second apart) has not."""
+    assert unsettled(turning(0.0, ripple=ripple)) == []
+    assert unsettled(turning(0.04, ripple=ripple)) == []
+    (line,) = unsettled(turning(0.08, ripple=ripple))
+    assert "outputs without unit" in line
+
+
+def test_growth_of_a_known_unit_is_no_rotation():
+    """A temperature that rises evenly: 5 K in a quarter over 5 / sqrt(12) K of rms."""
+    (line,) = unsettled(turning(0.0, unit="K"))
+    assert f"changes by {100.0 * np.sqrt(12.0):.0f} %" in line

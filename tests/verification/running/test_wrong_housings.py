@@ -61,6 +61,10 @@ def test_a_housing_that_makes_energy_is_no_success(capsys, caplog, tmp_path):
     assert result.outcome.reached_end
 
 
+CROSSING = 0.01
+"""To twice which limits are found, by bisection."""
+
+
 def test_a_right_one_completes(capsys, caplog, tmp_path):
     code, found = run(capsys, tmp_path, c_housing_fmu(tmp_path), "0.001")
     assert (code, found["outcome"]) == (0, "completed")
@@ -85,9 +89,18 @@ def test_units_of_a_housing_without_are_si(tmp_path):
     assert " mm/s at " in line
 
 
-def test_stability_of_one_that_saves_no_state_says_what_helps(capsys, tmp_path):
-    file = c_housing_fmu(tmp_path)
-    assert cli.main(["stability", "gearbox", "--replace", f"modal_housing={file}"]) == 2
-    said = capsys.readouterr().err
-    assert "nothing is promised: modal_housing: it cannot repeat a step (it saves no state)" in said
-    assert "'herringbone run' with --step" in said
+def test_stability_of_one_that_saves_no_state(capsys, tmp_path):
+    """Its limits are those of the same housing that saves its state: jacobi repeats no step."""
+    limits = []
+    for saves in (False, True):
+        folder = tmp_path / str(saves)
+        folder.mkdir()
+        file = c_housing_fmu(folder, ("SAVES",) if saves else (), saves=saves)
+        command = ["stability", "gearbox", "--replace", f"modal_housing={file}", "--json"]
+        assert cli.main([*command, "--algorithm", "jacobi:order=2"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert ("modal_housing" in found["foreign_instances"]) != saves
+        (algorithm,) = found["algorithms"]
+        assert algorithm["promised"]
+        limits.append(algorithm["limit"])
+    assert limits[0] == pytest.approx(limits[1], rel=CROSSING)

@@ -16,6 +16,10 @@ _MUCH = 0.05
 _FEWEST_ROWS = 80
 _FEWEST_PERIODS = 8.0
 _ROUNDING = 1e-9
+_WITHOUT_UNIT = {"", "1"}
+_GROWN = 4.0
+"""Growth in a quarter over the rms of what is beside it, above which an output turns: that of a
+vibration of its own, which does not grow, is at most 3 where the quarter has a period or more."""
 ROTATING = {"rad", "m", "deg", "rev"}
 """Units of outputs, in no group of channels, that may go on for ever."""
 
@@ -65,8 +69,7 @@ def changes(result: Result, *, smooth: bool = False) -> dict[str, float] | None:
     return {
         name: change
         for name, columns in settling_groups(result).items()
-        if (change := _change(result.data[columns].to_numpy(float), time, smooth=smooth))
-        is not None
+        if (change := _change(_judged(result, columns, time), time, smooth=smooth)) is not None
     }
 
 
@@ -79,11 +82,39 @@ def settling_groups(result: Result) -> dict[str, list[str]]:
     }
 
 
+def _judged(result: Result, columns: list[str], time: np.ndarray) -> np.ndarray:
+    """(times, n) channels; of outputs without unit that turn steadily, what is beside that."""
+    values = result.data[columns].to_numpy(float)
+    if result.units[columns[0]] not in _WITHOUT_UNIT:
+        return values
+    quarters, times = _quarters(values, time), _quarters(time, time)
+    apart = times[1].mean() - times[0].mean()
+    rate = (quarters[1].mean(axis=0) - quarters[0].mean(axis=0)) / apart
+    lines = [
+        np.polynomial.polynomial.polyfit(t, v, 1) for t, v in zip(times, quarters, strict=True)
+    ]
+    beside = [
+        (v - np.polynomial.polynomial.polyval(t, line).T).std(axis=0)
+        for t, v, line in zip(times, quarters, lines, strict=True)
+    ]
+    turns = np.abs(rate) * apart > _GROWN * np.max(beside, axis=0)
+    steady = np.abs(lines[1][1] - lines[0][1]) <= _MUCH * np.abs(rate)
+    flat = values - np.outer(time - time[0], np.where(turns & steady, rate, 0.0))
+    rounding = _ROUNDING * np.abs(values).max(axis=0, initial=0.0)
+    return np.where(turns & steady & (np.ptp(flat, axis=0) <= rounding), 0.0, flat)
+
+
+def _quarters(values: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of the third and of the last quarter."""
+    since = time - time[0]  # of a long run, the last rows are there
+    return values[(since >= 0.5 * since[-1]) & (since < 0.75 * since[-1])], values[
+        since >= 0.75 * since[-1]
+    ]
+
+
 def _change(values: np.ndarray, time: np.ndarray, *, smooth: bool) -> float | None:
     """Larger of both changes, of channels (times, n) together; None if they stand still."""
-    since = time - time[0]  # of a long run, the last rows are there
-    third = values[(since >= 0.5 * since[-1]) & (since < 0.75 * since[-1])]
-    last = values[since >= 0.75 * since[-1]]
+    third, last = _quarters(values, time)
     if smooth:
         return _smooth_change(third, last)
     before, after = (float(np.sqrt(part.var(axis=0).sum())) for part in (third, last))

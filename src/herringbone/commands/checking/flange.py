@@ -22,7 +22,8 @@ _NAMES = {
 }
 _ONLY_HERE = ("inertia", "stiffness", "damping")
 _NOT_HERE = (
-    "scene", "algorithm", "step", "simulate", "atlas", "output", "gear", "housing", "replace"
+    "scene", "speed", "torque", "algorithm", "step", "simulate", "atlas", "output", "gear",
+    "housing", "replace",
 )  # fmt: skip
 
 
@@ -59,7 +60,7 @@ def is_asked(options: argparse.Namespace) -> bool:
             "--stiffness and --damping of the host's shaft if the flange takes torque"
         )
     for name in _NOT_HERE:
-        if getattr(options, name):
+        if getattr(options, name) not in (None, False, []):
             raise ParameterError(f"--{name} is of systems; leave it out for an FMU")
     return True
 

@@ -9,6 +9,7 @@ from herringbone.commands.options import (
     ANY_KIND,
     assignments,
     given_by,
+    operating_point,
     replacements,
 )
 from herringbone.commands.output import check_writable, limits_told, say, show
@@ -65,7 +66,6 @@ def _missed(result: "Result") -> int:
 
 def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Result":
     """The result of a run, with its files."""
-    from herringbone.analysis.steady.report import per_second  # noqa: PLC0415
     from herringbone.cosim.structure.system_file import short_name  # noqa: PLC0415
     from herringbone.running import api  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.running.output.run_output import RunOutput  # noqa: PLC0415
@@ -90,8 +90,7 @@ def _ran(options: argparse.Namespace, resumed: "Resumed | None" = None) -> "Resu
         result = api.run(
             options.system,
             **optional,
-            speed=None if options.speed is None else per_second(options.speed),
-            torque=options.torque,
+            **operating_point(options),
             fmu=options.fmu,
             replace_parts=replacements(options),
             **own,

@@ -6,6 +6,7 @@ from pathlib import Path
 from herringbone.commands.options import (
     add_cells,
     add_kind,
+    add_operating_point,
     add_replacements,
     add_scene,
     add_start_values,
@@ -18,8 +19,7 @@ SLOW = "INSTANCE=N,..."
 def add_options(sub: argparse.ArgumentParser) -> None:
     """Declare the command's options."""
     add_scene(sub, optional=True)
-    sub.add_argument("--speed", type=float, help="of the pinion in r/min; the scene's if not given")
-    sub.add_argument("--torque", type=float, help="at the pinion in N m; the scene's if not given")
+    add_operating_point(sub)
     sub.add_argument(
         "--algorithm", help="NAME or NAME:key=value,..., e.g. li:degree=3; auto if not given"
     )

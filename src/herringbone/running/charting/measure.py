@@ -25,6 +25,7 @@ from herringbone.running.charting.fused_curves import fused_points
 from herringbone.running.foreign.foreign_parts import alike, understood
 from herringbone.running.fused.fused import refuse_strangers
 from herringbone.running.loading import instances, open_parts
+from herringbone.running.operating.commanded import operated
 from herringbone.running.pairs.gears import Gear
 from herringbone.running.prepared import Named, Wishes, prepared
 
@@ -38,6 +39,8 @@ def measure(
     system: str | Path,
     *,
     scene: str | None = None,
+    speed: float | None = None,
+    torque: float | None = None,
     algorithms: Sequence[str] = (),
     steps: Sequence[float] = STEPS,
     tolerances: Sequence[float] = (),
@@ -55,6 +58,7 @@ def measure(
     Args:
         system: name of a shipped system, folder with system.toml, or .ssp file.
         scene: name or file of a scene; the system's "loaded" if not given.
+        speed, torque: set points at the pinion [rad/s], [N m], as in `herringbone.run`.
         algorithms: such as "jacobi:order=2"; all, in the variants worth showing, if none is given.
         steps: communication step sizes [s].
         tolerances: relative errors for which li adapts its step, one more curve; none if not given.
@@ -75,6 +79,7 @@ def measure(
         housing=housing,
         replace_parts=replace_parts or {},
     )
+    wishes = operated(system, scene, wishes, speed, torque)
     structure, options, notes = prepared(system, scene, wishes)
     fmu, why = choose_kind(fmu)
     grids = ladder(steps, options.t_end)
