@@ -7,6 +7,7 @@ from numba import types
 from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
+from herringbone.kernels.compiling import elements  # noqa: F401 (registers itself with numba)
 from herringbone.kernels.compiling.cache import cached
 from herringbone.kernels.compiling.linking import (
     LINKED,

@@ -16,6 +16,7 @@ What it leans on inside of numba is tested for every minor version that is admit
 import gc
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import cached_property
 from types import MappingProxyType
 
 import llvmlite.binding as llvm
@@ -75,9 +76,12 @@ class Piece(JITCodeLibrary):
         ll_module.data_layout = self._codegen._data_layout
 
     def finalize(self) -> None:
-        """Nothing more is added; callers link it."""
+        """Nothing more is added; callers link it, for which numba would copy it once more."""
         self._raise_if_finalized()
         self._finalize_dynamic_globals()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                function.linkage = "linkonce_odr"
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:
@@ -221,10 +225,15 @@ class KernelDispatcher(CPUDispatcher):
 
     def __init__(self, py_func, targetoptions, pipeline_class=WHOLE, piece_class=PIECE) -> None:  # noqa: ANN001
         super().__init__(py_func, {}, {**targetoptions, "no_cfunc_wrapper": True}, pipeline_class)
-        self.piece = _PieceDispatcher(py_func, {}, targetoptions, piece_class)
+        self._piece_class = piece_class
         self._compiler = _WholeCompiler(
             py_func, self.targetdescr, self.targetoptions, self.locals, pipeline_class
         )
+
+    @cached_property
+    def piece(self) -> _PieceDispatcher:
+        """Gives pieces to other kernels."""
+        return _PieceDispatcher(self.py_func, {}, self.targetoptions, self._piece_class)
 
     def compile(self, sig: Signature | tuple) -> Callable:
         """Compile for a signature, unless it is compiled or cached."""

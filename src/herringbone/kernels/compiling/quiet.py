@@ -1,8 +1,9 @@
 """What numba prepares in case that somebody debugs it, or that it has to warn, left out.
 
-It describes each statement to loggers that nobody hears, and changes the filters of Python's
-warnings around each, to collect what it may say of it: together a twentieth of the time that a
-kernel takes before LLVM. Here warnings go to Python's filters as they are.
+It describes each statement to loggers that nobody hears, changes the filters of Python's warnings
+around each, to collect what it may say of it, and, where colorama is installed, sets up a
+terminal's colours for each template that refuses a call: together a tenth of the time that a kernel
+takes before LLVM. Here warnings go to Python's filters as they are, and messages have no colours.
 
 What it leans on inside of numba is tested for every minor version that is admitted.
 """
@@ -12,13 +13,16 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from numba.core import byteflow, ssa
-from numba.core.errors import WarningsFixer
+from numba.core.errors import WarningsFixer, termcolor
 
 _TALKING = (byteflow, ssa)
 """Modules that describe each statement."""
 _loggers = {module: module._logger for module in _TALKING}
 _catch = WarningsFixer.catch_warnings
 _as_they_are: AbstractContextManager[None] = nullcontext()
+_Colours = type(termcolor())
+_COLOURED = "_markup"
+"""Method of numba's colours that sets up the terminal; none without colorama."""
 
 
 class _Unheard:
@@ -38,6 +42,11 @@ def _caught(
     return _as_they_are
 
 
+def _plain(colours: object, message: str, *style: str | None) -> str:
+    del colours, style
+    return message
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """While kernels are compiled; who debugs numba hears it as ever."""
@@ -45,6 +54,9 @@ def quiet() -> Iterator[None]:
         yield
         return
     WarningsFixer.catch_warnings = _caught
+    coloured = getattr(_Colours, _COLOURED, None)
+    if coloured is not None:
+        setattr(_Colours, _COLOURED, _plain)
     for module, logger in _loggers.items():
         if not logger.isEnabledFor(logging.DEBUG):
             module._logger = _UNHEARD
@@ -52,5 +64,7 @@ def quiet() -> Iterator[None]:
         yield
     finally:
         WarningsFixer.catch_warnings = _catch
+        if coloured is not None:
+            setattr(_Colours, _COLOURED, coloured)
         for module, logger in _loggers.items():
             module._logger = logger
