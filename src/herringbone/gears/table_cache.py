@@ -4,6 +4,7 @@ from pathlib import Path
 
 from herringbone.core.caching.files import is_stored, store
 from herringbone.core.caching.keys import digest_of
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.places.paths import cache_folder
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.files.pair_law_file import pair_law_text, tooth_deviations_text
@@ -12,6 +13,9 @@ from herringbone.gears.job import GearJob
 from herringbone.gears.job_pair_law import pair_law_for
 from herringbone.gears.job_stiffness import stiffness_for
 from herringbone.gears.pair_values import coast_periods
+
+_law_texts: Remembered[str] = Remembered(8)
+"""Of sixty thousand numbers each, for studies of one pair."""
 
 
 def cached_table(job: GearJob) -> Path:
@@ -25,7 +29,9 @@ def cached_table(job: GearJob) -> Path:
 
 def cached_pair_law(job: GearJob) -> Path:
     """File of the force law of one pair of teeth, as `cached_table`."""
-    return _cached("pair_law", job, pair_law_text(pair_law_for(job)))
+    law = pair_law_for(job)
+    key = law.pair, law.method, law.per_period, law.first, law.unit, law.stiffness.tobytes()
+    return _cached("pair_law", job, _law_texts(key, lambda: pair_law_text(law)))
 
 
 def cached_deviations(job: GearJob, deviations: GivenDeviations) -> Path:

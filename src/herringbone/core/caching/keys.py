@@ -67,11 +67,15 @@ def module_key(module: str, file: str) -> str:
 
 def versions_of(*libraries: str) -> list[str]:
     """Names and versions of the libraries that are installed."""
-    found = []
-    for library in libraries:
-        with suppress(PackageNotFoundError):
-            found.append(f"{library} {version(library)}")
-    return found
+    return [known for library in libraries if (known := _version_of(library))]
+
+
+@cache
+def _version_of(library: str) -> str:
+    """Name and version; "" of one that is not installed."""
+    with suppress(PackageNotFoundError):
+        return f"{library} {version(library)}"
+    return ""
 
 
 @cache
