@@ -81,6 +81,7 @@ ONLY_IN: dict[str, set[str]] = {
         "cosim/fmu/fmi3/steps.py",
         "fmi/native/objects.py",
         "kernels/compiling/linking.py",
+        "kernels/compiling/elements.py",
     },
     "pythonfmu": {"fmi"},
     "fmpy": {"cosim", "fmi"},
