@@ -198,6 +198,9 @@ def estimated(found: Result) -> float:
 
 def main(count: int = 0, seed: str | None = None, *names: str) -> int:
     """Print; 0 if every line holds."""
+    if unknown := set(names) - set(SYSTEMS):
+        tell(f"unknown: {', '.join(sorted(unknown))}; there are: {', '.join(SYSTEMS)}")
+        return 2
     seed = last_commit() if seed in {None, "-"} else seed
     tell(f"seed {seed}")
     missed = 0
