@@ -37,6 +37,12 @@ def refused(capsys, tmp_path, monkeypatch):
     return run
 
 
+@pytest.fixture
+def without_pictures(monkeypatch):
+    """Drawing takes longer than these runs, and runs that fail by their step are drawn."""
+    monkeypatch.setattr("herringbone.plotting.write_pictures", lambda result, folder: [])
+
+
 @pytest.mark.parametrize("fmu", KINDS)
 @pytest.mark.parametrize(
     ("assignment", "said"),
@@ -327,6 +333,7 @@ def test_results_are_written_before_the_diagnosis(tmp_path, monkeypatch):
     assert {"overview.png", "results.csv", "summary.json", "summary.txt"} <= set(there)
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_a_shortened_step_is_noted(tmp_path, capsys):
     command = ["run", "test_rig", "--t-end=1.5e-4", "--fmu=in-process", "--json"]
     main([*command, "--overwrite", "-o", str(tmp_path), "--step=4e-5"])
@@ -357,6 +364,7 @@ def stranger(tmp_path_factory):
     return build
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_foreign_housing_runs(tmp_path, capsys, stranger):
     file = stranger()
     arguments = ["run", "test_rig", "--t-end", "0.001", "--json", "-o", str(tmp_path)]
@@ -371,6 +379,7 @@ def test_foreign_housing_runs(tmp_path, capsys, stranger):
     assert table["gearbox.modal_housing.pinion_left.v_y"].abs().max() > 0.0
 
 
+@pytest.mark.usefixtures("without_pictures")
 def test_foreign_housing_is_tested(tmp_path, capsys, stranger):
     """One that feeds power into the vibration runs, with a note; the check fails."""
     assert main(["check", str(stranger("Fair")), "--as", "housing"]) == 0
@@ -414,6 +423,7 @@ FAILURES = {
 }
 
 
+@pytest.mark.usefixtures("without_pictures")
 @pytest.mark.parametrize("name", FAILURES)
 def test_foreign_housing_fails_during_the_run(tmp_path, capsys, stranger, name):
     old, new, outcome = FAILURES[name]

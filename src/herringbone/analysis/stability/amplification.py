@@ -100,9 +100,10 @@ class Amplification:
         self._used = np.empty(0, int)
         standing = [part for part in self._parts if isinstance(part, StandIn)]
         self._clocks = [part.clock for part in standing if part.clock]
-        # Many macro steps in one call: of parts that are what their values are.
-        by_values = not self._rates.size and not any(part.remembers for part in standing)
-        self._starts, self._moves = starts_of(arrays, seen) if by_values else None, 0
+        # Many macro steps in one call: of parts that are what their values and last steps are.
+        last_steps = [part.last_step for part in standing]
+        known = starts_of([*arrays, *last_steps], [*seen, *[0] * len(last_steps)])
+        self._starts, self._moves = None if self._rates.size else known, 0
 
     def _signal_changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each signal that an algorithm looks back to."""

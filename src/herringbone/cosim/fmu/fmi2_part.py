@@ -20,6 +20,7 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 from herringbone.core.part import Addresses
+from herringbone.cosim.fmu.functions import KnownFunctions
 from herringbone.cosim.fmu.log import FmuLog
 from herringbone.cosim.fmu.part import FmuPart
 
@@ -48,6 +49,10 @@ def _callbacks(key: int) -> fmi2CallbackFunctions:
     return callbacks
 
 
+class FMU2Known(KnownFunctions, FMU2Slave):
+    """fmpy tells the version by the name of the class."""
+
+
 class Fmu2Part(FmuPart):
     """An instantiated FMU 2.0 for co-simulation."""
 
@@ -57,7 +62,7 @@ class Fmu2Part(FmuPart):
         self._key = next(_keys)
         self._callbacks = _callbacks(self._key)
         if self._alike is None:
-            return FMU2Slave(**options)
+            return FMU2Known(**options)
         slave = copy(self._alike.slave)  # finding its functions takes longer than all the rest
         slave.dll, slave.instanceName = ctypes.CDLL(slave.dll._name), options["instanceName"]
         return slave

@@ -119,7 +119,12 @@ class NodalPart(PartAdapter):
 
     def forget_step(self) -> None:
         """The next step is none that was taken already, though it may begin at the same time."""
-        self._memory["taken_time"] = np.nan
+        self.last_step[:] = np.nan
+
+    @property
+    def last_step(self) -> np.ndarray:
+        """(1,) when it began [s], NaN if there is none to take again; a view of what is known."""
+        return self._memory["taken_time"]
 
     @property
     def answers_again(self) -> bool:

@@ -153,9 +153,13 @@ class Laboratory:
 
     def at_rest(self, h: float) -> np.ndarray:
         """(m,) outputs after one step of h [s] on the start inputs; kept. Raises Refused."""
-        if h not in self._rest:
-            self._rest[h] = self.run([self.start], h)[-1]
-        return self._rest[h]
+        return self.resting(h, 1)[0]
+
+    def resting(self, h: float, steps: int) -> np.ndarray:
+        """(steps, m) outputs after steps of h [s] on the start inputs; kept. Raises Refused."""
+        if h not in self._rest or len(self._rest[h]) < steps:
+            self._rest[h] = self.run([self.start] * steps, h)[1:]
+        return self._rest[h][:steps]
 
     def _instance(self) -> Trial:
         stop = self.start_time + 1e6 * self.step

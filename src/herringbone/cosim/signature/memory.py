@@ -63,7 +63,7 @@ def _differences(lab: Laboratory, number: int, change: float, h: float, steps: i
     changed = lab.start.copy()
     changed[number] += change
     rest = [lab.start] * (steps - 1)
-    base = lab.run([lab.start, *rest], h)[1:]
+    base = lab.resting(h, steps)
     pulse = lab.run([changed, *rest], h)[1:]
     apart = pulse - base
     floor = np.maximum(_ROUNDING * np.abs(base).max(axis=0), _NOTHING * np.abs(apart).max(axis=0))

@@ -46,6 +46,10 @@ class Trial:
             np.array([part.variables[name].reference for name in names], dtype=np.uint32)
             for names in (inputs, outputs)
         )
+        # Asking an array for its address takes as long as a small part's step.
+        self._given, self._found = np.zeros(self._inputs.size), np.zeros(self._outputs.size)
+        self._given_at, self._found_at = self._given.ctypes.data, self._found.ctypes.data
+        self._inputs_at, self._outputs_at = self._inputs.ctypes.data, self._outputs.ctypes.data
         self._saved: dict[int, float] = {}
         try:
             part.enter_initialization(start_time, stop_time)
@@ -57,16 +61,21 @@ class Trial:
 
     def set(self, values: np.ndarray) -> None:
         """Set all inputs (n,); raises Refused."""
-        given = np.ascontiguousarray(values, dtype=float)
-        if self._inputs.size:
-            self._exchange(self._at.set_real, self._inputs, given, "an input value")
+        self._given[:] = values
+        status = self._exchange(
+            self._at.set_real, self._inputs_at, self._given.size, self._given_at
+        )
+        if status > LAST_GOOD:
+            raise Refused(self._refusal("an input value", status))
 
     def values(self) -> np.ndarray:
         """(m,) all outputs; raises Refused."""
-        found = np.empty(self._outputs.size)
-        if found.size:
-            self._exchange(self._at.get_real, self._outputs, found, "to give its outputs")
-        return found
+        status = self._exchange(
+            self._at.get_real, self._outputs_at, self._found.size, self._found_at
+        )
+        if status > LAST_GOOD:
+            raise Refused(self._refusal("to give its outputs", status))
+        return self._found.copy()
 
     def set_derivatives(self, values: np.ndarray) -> None:
         """Set derivatives (orders n,) of all inputs at the start of a step; raises Refused."""
@@ -142,18 +151,11 @@ class Trial:
             state_call(self._at.free_state, self._at.component, ctypes.addressof(kept))
         self.part.close()
 
-    def _exchange(
-        self, address: int, references: np.ndarray, values: np.ndarray, what: str
-    ) -> None:
-        status = exchange_reals(
-            address,
-            self._at.component,
-            references.ctypes.data,
-            references.size,
-            values.ctypes.data,
-        )
-        if status > LAST_GOOD:
-            raise Refused(self._refusal(what, status))
+    def _exchange(self, address: int, references: int, count: int, values: int) -> int:
+        """Status of a call, of none if there is nothing to set or get."""
+        if count == 0:
+            return 0
+        return exchange_reals(address, self._at.component, references, count, values)
 
     def _refusal(self, what: str, status: int) -> str:
         """The message; after an error FMI allows nothing but to free the part."""

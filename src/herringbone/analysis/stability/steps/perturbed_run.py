@@ -61,8 +61,10 @@ def perturbation_growth(
         Positive in an unstable coupling; infinite if a run ends early.
     """
     kicked = _forces(system, _kicked(make()), algorithm, step, steps)
+    if not np.isfinite(kicked).all():
+        return math.inf
     plain = kicked[:1] if at_rest else _forces(system, make(), algorithm, step, steps)
-    if not (np.isfinite(kicked).all() and np.isfinite(plain).all()):
+    if not np.isfinite(plain).all():
         return math.inf
     return _rate(np.diff(kicked - plain, n=2, axis=0), power=0 if at_rest else 1)
 

@@ -73,9 +73,9 @@ class StandIn:
         self._lengths: tuple[float, ...] = ()
 
     @property
-    def remembers(self) -> bool:
-        """True if what it does in a step follows from more than its values."""
-        return bool(self._adapter)
+    def last_step(self) -> np.ndarray:
+        """What it does in a step follows from its values and from this, in memory that it keeps."""
+        return self._adapter.last_step if self._adapter else np.empty(0)
 
     def prepare(self, step: float, degree: int) -> None:
         """Make ready for macro steps at an interface degree; lengths are learnt as they come."""

@@ -21,6 +21,7 @@ from herringbone.cosim.fmu.float_modes import keeping_modes
 from herringbone.cosim.fmu.fmi3 import memory
 from herringbone.cosim.fmu.fmi3.adapters import adapter
 from herringbone.cosim.fmu.fmi3.updates import inputs_within
+from herringbone.cosim.fmu.functions import KnownFunctions
 from herringbone.cosim.fmu.others import OtherValues
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.fmu.variables import Element, read_elements, resized
@@ -52,6 +53,10 @@ _ENDS = {
 _EXCHANGE = CFUNCTYPE(c_int, c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double))
 
 
+class FMU3Known(KnownFunctions, FMU3Slave):
+    """fmpy tells the version by the name of the class."""
+
+
 class Fmu3Part(FmuPart):
     """An instantiated FMU 3.0 for co-simulation.
 
@@ -71,7 +76,7 @@ class Fmu3Part(FmuPart):
         self._memory = np.zeros(1, memory.MEMORY)
         self._within = inputs_within(self.model, Path(options["unzipDirectory"]))
         self._make_memory(read_elements(self.model))
-        return FMU3Slave(**options)
+        return FMU3Known(**options)
 
     def _make_memory(self, elements: list[Element]) -> None:
         """The memory of the adapters, with the declared start values."""
