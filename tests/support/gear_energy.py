@@ -1,6 +1,7 @@
 """Phases, depths and energies of a gear pair by the formulas of its README."""
 
 import math
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ def angles(x: np.ndarray, gear: Instance, offset: int = 0) -> np.ndarray:
     return np.array([angle, angle + twist_p, theta3, theta3 + twist_w])
 
 
-def apex(p: dict[str, float], th: np.ndarray) -> tuple[float, float, float]:
+def apex(p: Instance | dict[str, float], th: np.ndarray) -> tuple[float, float, float]:
     """eps_z [m], and its slopes over the mean angles of pinion and wheel [m/rad]."""
     offset, slopes = p["symmetry_constant"], []
     for name, mean in (("pinion", 0.5 * (th[0] + th[1])), ("wheel", 0.5 * (th[2] + th[3]))):
@@ -46,15 +47,21 @@ def ramp(gear: Instance, th: np.ndarray) -> tuple[float, float]:
     return 10 * tau**3 - 15 * tau**4 + 6 * tau**5, math.copysign(slope / whole, turned)
 
 
+@cache
+def _rows(file: Path, _written: int) -> list[tuple]:
+    """Side, flank, gear, order, amplitude and phase of each tooth error, as it was written then."""
+    rows = [line.split(",") for line in file.read_text().splitlines()]
+    return [(*row[:3], *map(float, row[3:])) for row in rows if row[0] in {"left", "right"}]
+
+
 def error(gear: Instance, th: np.ndarray, side: int, f: int) -> tuple[float, float, float]:
     """R e [m] of a flank (f: 1, -1), and R de/dtheta of pinion and wheel half [m/rad]."""
     file = Path(gear.resources / gear.texts["tooth_errors"])
     total = np.zeros(3)
-    for line in file.read_text().splitlines():
-        row = line.split(",")
-        if row[:2] == [("left", "right")[side], "drive" if f > 0 else "coast"]:
-            order, amplitude, phase = map(float, row[3:])
-            body = GEARS.index(row[2])
+    for row in _rows(file, file.stat().st_mtime_ns):
+        if row[:2] == (("left", "right")[side], "drive" if f > 0 else "coast"):
+            _, _, gear_name, order, amplitude, phase = row
+            body = GEARS.index(gear_name)
             psi = order * th[side + 2 * body] + phase
             total[0] += amplitude * math.cos(psi)
             total[1 + body] -= amplitude * order * math.sin(psi)
@@ -83,22 +90,21 @@ def elastic(
 
 def contacts(gear: Instance, x: np.ndarray) -> list[tuple[float, float, float]]:
     """Of each mesh: which flank (1, -1), phase and depth; by the docstring's formulas."""
-    p = {n: gear[n] for n in INDEX}
     th, found = angles(x, gear), []
-    beta, rho = p["base_helix_angle"], p["pinion.number_of_teeth"] / (2 * math.pi)
+    beta, rho = gear["base_helix_angle"], gear["pinion.number_of_teeth"] / (2 * math.pi)
     for side, s in ((0, 1), (1, -1)):
         path = x[side] - x[side + 2]
-        path += p["pinion.base_radius"] * th[side] - p["wheel.base_radius"] * th[side + 2]
-        axial = x[4 + side] - x[6 + side] + apex(p, th)[0]
+        path += gear["pinion.base_radius"] * th[side] - gear["wheel.base_radius"] * th[side + 2]
+        axial = x[4 + side] - x[6 + side] + apex(gear, th)[0]
         delta = math.cos(beta) * path + s * math.sin(beta) * axial
-        shift = rho * math.tan(beta) * axial / p["pinion.base_radius"]
-        phase = rho * th[side] + s * shift + side * p["stagger"]
+        shift = rho * math.tan(beta) * axial / gear["pinion.base_radius"]
+        phase = rho * th[side] + s * shift + side * gear["stagger"]
         depth = delta - error(gear, th, side, 1)[0]
         if depth > 0.0 or deviates(gear, side, 1):
             found.append((1, phase, depth))
         else:
-            depth = -p["backlash"] - delta - error(gear, th, side, -1)[0]
-            found.append((-1, p["coast_phase"] - phase, depth))
+            depth = -gear["backlash"] - delta - error(gear, th, side, -1)[0]
+            found.append((-1, gear["coast_phase"] - phase, depth))
     return found
 
 
@@ -116,19 +122,18 @@ def mesh_energy(gear: Instance, x: np.ndarray) -> float:
 
 def stored_energy(gear: Instance, x: np.ndarray) -> float:
     """Kinetic energy, and elastic energy of shafts and meshes [J]; the restraint's, too."""
-    p = {n: gear[n] for n in INDEX}
     th, w = angles(x, gear), angles(x, gear, 12)
     share = ramp(gear, th)[0]
-    total = mesh_energy(gear, x) + p["pinion_restraint"] / 8 * (x[4] + x[5]) ** 2
+    total = mesh_energy(gear, x) + gear["pinion_restraint"] / 8 * (x[4] + x[5]) ** 2
     for body in range(4):
         name = GEARS[body // 2]
-        total += 0.5 * p[f"{name}.mass"] * (x[12 + body] ** 2 + x[16 + body] ** 2)
-        total += 0.5 * p[f"{name}.inertia"] * w[body] ** 2
-        psi = th[body] + p[f"{name}.unbalance_phase"]
-        total -= 0.5 * share * p[f"{name}.unbalance"] * math.sin(psi) * w[body] * x[12 + body]
+        total += 0.5 * gear[f"{name}.mass"] * (x[12 + body] ** 2 + x[16 + body] ** 2)
+        total += 0.5 * gear[f"{name}.inertia"] * w[body] ** 2
+        psi = th[body] + gear[f"{name}.unbalance_phase"]
+        total -= 0.5 * share * gear[f"{name}.unbalance"] * math.sin(psi) * w[body] * x[12 + body]
     for i, name in ((0, "pinion"), (2, "wheel")):
         for axis, s in (("y", x[0:4]), ("z", x[4:8]), ("t", th)):
-            total += 0.5 * p[f"{name}.shaft_stiffness_{axis}"] * (s[i] - s[i + 1]) ** 2
+            total += 0.5 * gear[f"{name}.shaft_stiffness_{axis}"] * (s[i] - s[i + 1]) ** 2
     return total
 
 
@@ -140,14 +145,13 @@ def power_in(gear: Instance) -> float:
 
 def depth_rates(gear: Instance, x: np.ndarray) -> list[float]:
     """d(depth)/dt of both meshes on the flanks in contact [m/s]."""
-    p = {n: gear[n] for n in INDEX}
     th, w, vy, vz = angles(x, gear), angles(x, gear, 12), x[12:16], x[16:20]
-    _, per_pinion, per_wheel = apex(p, th)
+    _, per_pinion, per_wheel = apex(gear, th)
     apex_rate = per_pinion * (w[0] + w[1]) / 2 + per_wheel * (w[2] + w[3]) / 2
-    c, s = math.cos(p["base_helix_angle"]), math.sin(p["base_helix_angle"])
+    c, s = math.cos(gear["base_helix_angle"]), math.sin(gear["base_helix_angle"])
     rates = []
     for side, (f, _, _) in enumerate(contacts(gear, x)):
-        rolled = p["pinion.base_radius"] * w[side] - p["wheel.base_radius"] * w[side + 2]
+        rolled = gear["pinion.base_radius"] * w[side] - gear["wheel.base_radius"] * w[side + 2]
         rate = c * (vy[side] - vy[side + 2] + rolled)
         rate += (1 - 2 * side) * s * (vz[side] - vz[side + 2] + apex_rate)
         e, of_pinion, of_wheel = error(gear, th, side, f)
@@ -159,16 +163,15 @@ def depth_rates(gear: Instance, x: np.ndarray) -> list[float]:
 
 def power_lost(gear: Instance, x: np.ndarray) -> float:
     """Power of dampers and drags [W], from the outputs and the elastic law."""
-    p = {n: gear[n] for n in INDEX}
     w, vy, vz = angles(x, gear, 12), x[12:16], x[16:20]
-    total = p["pinion_axial_drag"] * (vz[0] ** 2 + vz[1] ** 2)
-    total += sum(p["drag_torque"] * v * v / math.hypot(1, v) / 2 for v in w[:2])
+    total = gear["pinion_axial_drag"] * (vz[0] ** 2 + vz[1] ** 2)
+    total += sum(gear["drag_torque"] * v * v / math.hypot(1, v) / 2 for v in w[:2])
     for i, name in ((0, "pinion"), (2, "wheel")):
         for axis, v in (("y", vy), ("z", vz), ("t", w)):
-            total += p[f"{name}.shaft_damping_{axis}"] * (v[i] - v[i + 1]) ** 2
+            total += gear[f"{name}.shaft_damping_{axis}"] * (v[i] - v[i + 1]) ** 2
     rates = depth_rates(gear, x)
     for side, (f, *at) in enumerate(contacts(gear, x)):
-        pressure = abs(p[("mesh_left.force", "mesh_right.force")[side]])
+        pressure = abs(gear[("mesh_left.force", "mesh_right.force")[side]])
         total += (pressure - elastic(gear, x, side, f, *at)[0]) * rates[side]
     return total
 

@@ -11,7 +11,8 @@ Here the angle and the speed stay, and all else follows its rates f(x) by implic
 
 which go to stable rest as the motion would, the larger h the faster (pseudo-transient continuation,
 C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523). What is left is the
-acceleration of the speed over the angle. Where it changes its sign, the search begins again.
+acceleration of the speed over the angle. Where it changes its sign, the search begins again. Where
+it is larger at all angles than the angle changes it, no angle balances these torques.
 """
 
 from collections.abc import Iterator
@@ -19,9 +20,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from herringbone.analysis.rigid_rotation import rigid_rotation, steady_rows
+from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation, steady_rows
 from herringbone.analysis.slopes import slopes
 from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import EquilibriumError
 
 _TURN, _TURNS = 0.02, 32
 """Between angles that are tried [rad], and how many: over two meshes of 20 teeth."""
@@ -33,8 +35,14 @@ _FIRST, _LONGEST = 1e-5, 1e4
 _AT_REST = 1e-6
 _STRAIGHT, _BENT = 0.05, 0.3
 """What a step leaves of what it was to do: below, the next is longer; above, it is not taken."""
+_KEPT = 0.01
+"""As above: below, the slopes serve the next step, too."""
 _SMALL = 1.0
 """Over the size of a state: what is left is no matter then."""
+
+
+class NoBalanceError(EquilibriumError):
+    """Given torques do not balance at any angle."""
 
 
 def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np.ndarray]:
@@ -46,6 +54,9 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
         twin: the system.
         x: states (n,) to begin from.
         scale: sizes of the states (n,).
+
+    Raises:
+        NoBalanceError: after the last one, if angles change less than what the torques leave.
     """
     turning = np.flatnonzero(rigid_rotation(twin, x))
     rotating, _ = steady_rows(twin)
@@ -56,13 +67,15 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
     found = rest.reached(x)
     if found is None:
         return
+    left = [rest.rate(found)[speed]]
     for _ in range(_TURNS):
         before = found
         found = rest.reached(_turned(before, angle, before[angle] + _TURN))
         if found is None:
             return
+        left.append(rest.rate(found)[speed])
         ends = before[angle], found[angle]
-        if rest.rate(before)[speed] * rest.rate(found)[speed] > 0.0:
+        if left[-2] * left[-1] > 0.0:
             continue
 
         def acceleration(at: float, near: np.ndarray = before) -> float:
@@ -72,6 +85,18 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
         balance = rest.reached(_turned(before, angle, brentq(acceleration, *ends, xtol=_NEAR)))
         if balance is not None:
             yield balance
+    _refuse_unbalanced(twin, names_of_states(twin)[speed], np.array(left))
+
+
+def _refuse_unbalanced(twin: Twin, speed: str, accelerations: np.ndarray) -> None:
+    """Raise NoBalanceError if no angle could make up for the rates of a speed over the angle."""
+    least = np.abs(accelerations).min()
+    if least > np.ptp(accelerations):
+        raise NoBalanceError(
+            f"no steady rotation of '{twin.system.name}' was found: {speed} changes by "
+            f"{least:.4g} rad/s^2 at any angle; look for a load there that nothing balances, or "
+            "start with --start rest"
+        )
 
 
 def _turned(x: np.ndarray, angle: int, at: float) -> np.ndarray:
@@ -100,8 +125,11 @@ class _Rest:
         """The states (n,) at rest; None if they do not get there."""
         x, h, rate = x.copy(), _FIRST, self.rate(x)
         moving, size_of = self._moving, self._scale[self._moving]
+        taken_at = slope = None
         for _ in range(_STEPS):
-            slope = slopes(self.rate, x, rate, self._scale, moving)[moving]
+            if slope is None:
+                taken_at = x
+                slope = slopes(self.rate, x, rate, self._scale, moving)[moving]
             euler = np.diag(size_of / h) - slope
             step = np.linalg.solve(euler, rate[moving])
             new = x.copy()
@@ -111,10 +139,16 @@ class _Rest:
             left = np.abs(np.linalg.solve(euler, change)).max()
             size = np.abs(step).max()
             if not left <= max(_BENT * size, _SMALL):
-                h *= 0.25
+                if taken_at is x:
+                    h *= 0.25
+                else:
+                    slope = None
                 continue
             x, rate = new, after
             if h >= _LONGEST and size < _AT_REST:
                 return x
-            h = min(h * (4.0 if left < _STRAIGHT * size + _AT_REST else 1.5), _LONGEST)
+            if left > _KEPT * size + _AT_REST:
+                slope = None
+            faster = 4.0 if left < _STRAIGHT * size + _AT_REST else 1.5
+            h = _LONGEST if size < _AT_REST else min(h * faster, _LONGEST)
         return None

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
-from herringbone.analysis.balanced_angle import balanced_angles
+from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.rigid_rotation import (
+    names_of_states,
     rigid_rotation,
     steady_rows,
     turning,
@@ -53,23 +54,31 @@ class Equilibrium:
     residual: float
 
 
-def equilibrium(system: System) -> Equilibrium:
+def equilibrium(system: System, angles: bool = True) -> Equilibrium:
     """Start values for steady rotation of a system of components.
 
     Where a controller holds the speed, the first gear pair stays at its angle: what a mesh gives
     back depends on its phase, and the angle would be moved to where that is least. At given torques
     nothing else is left to balance them, and the angle is free.
 
+    Args:
+        system: of components.
+        angles: look for angles at which given torques balance, where the search finds none.
+
     Raises:
         StructureError: a part is a foreign FMU.
+        NoBalanceError: given torques balance at no angle.
         EquilibriumError: no equilibrium was found.
     """
     twin = Twin(system)
     with one_blas_thread():
         held, guess = _held(system, twin), _guess(twin)
         strayed, failures = None, list[EquilibriumError]()
-        for x in _beginnings(twin, held, guess):
+        beginnings = _beginnings(twin, held, guess, angles)
+        while True:
             try:
+                if (x := next(beginnings, None)) is None:
+                    break
                 found, residual = _solved(system, twin, held, x)
             except EquilibriumError as error:
                 failures.append(error)
@@ -79,14 +88,16 @@ def equilibrium(system: System) -> Equilibrium:
             strayed = strayed or (found, residual)
         if strayed is not None:  # its speed is what its drag leaves
             return Equilibrium(_start_values(twin, strayed[0]), strayed[1])
-        raise failures[0]
+        raise max(failures, key=lambda error: isinstance(error, NoBalanceError))
 
 
-def _beginnings(twin: Twin, held: int | None, guess: np.ndarray) -> Iterator[np.ndarray]:
+def _beginnings(
+    twin: Twin, held: int | None, guess: np.ndarray, angles: bool
+) -> Iterator[np.ndarray]:
     """States (n,) from which steady rotation is looked for, one after the other."""
     yield guess
     yield from turning(twin, guess)
-    if held is None:
+    if held is None and angles:
         yield from balanced_angles(twin, guess, _scales(twin))
 
 
@@ -159,7 +170,8 @@ def _solved(
             break
         step = np.linalg.lstsq(jacobian / rows[:, None], -r / rows, rcond=_RANK)[0] * scale * free
         x, r = _line_search(residual, x, r, step, rows)
-    worst = _row_names(twin, keep, zero)[int(np.argmax(np.abs(r / rows)))]
+    names = [f"the rate of {name}" for name in names_of_states(twin)]
+    worst = [*(names[k] for k in keep), *zero][int(np.argmax(np.abs(r / rows)))]
     raise EquilibriumError(
         f"no steady rotation of '{system.name}' was found in {iteration + 1} iterations: {worst} "
         "does not vanish; look for a load there that nothing balances, or start with --start rest"
@@ -176,17 +188,6 @@ def _guess(twin: Twin) -> np.ndarray:
         instance.component.guess(block)
         x[states[p] : states[p + 1]] = block[: states[p + 1] - states[p]]
     return x
-
-
-def _row_names(twin: Twin, keep: np.ndarray, zero: list[str]) -> list[str]:
-    """What the rows of the residual are, for messages."""
-    names = []
-    for instance in twin.instances:
-        declaration = instance.component.declaration
-        names += [f"the rate of {instance.name}.{v.name}" for v in declaration.states]
-        for v in declaration.vectors:
-            names += [f"the rate of {instance.name}.{v.element(k + 1)}" for k in range(v.capacity)]
-    return [names[k] for k in keep] + zero
 
 
 def _scales(twin: Twin) -> np.ndarray:

@@ -78,6 +78,17 @@ def units_of_states(twin: Twin) -> np.ndarray:
     return np.array(units)
 
 
+def names_of_states(twin: Twin) -> list[str]:
+    """Paths of all states."""
+    names = []
+    for instance in twin.instances:
+        declaration = instance.component.declaration
+        names += [f"{instance.name}.{v.name}" for v in declaration.states]
+        for v in declaration.vectors:
+            names += [f"{instance.name}.{v.element(k + 1)}" for k in range(v.capacity)]
+    return names
+
+
 def steady_rows(twin: Twin) -> tuple[np.ndarray, list[str]]:
     """States that rotate, and outputs that vanish, in steady rotation."""
     zero = [

@@ -1,6 +1,7 @@
 """Periodic motion of bodies whose exact motion is known, or found by a long run."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -32,13 +33,18 @@ def swing(b: np.ndarray, t: float, dx: np.ndarray) -> None:
     dx[3] = 0.0
 
 
+@cache
+def search_of(rates, name):
+    """The search for periodic motion under some rates, compiled once."""
+    sizes = (1e-6, 1e-6)
+    return periodic_motion(rates, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, name)
+
+
 def start(depth, slow, w):
     """States of the periodic motion at angle 0, and the status."""
     b = np.zeros(FIRST + periodic_scratch(STATES, 2))
     b[:FIRST] = FORCE / OMEGA**2, 0.0, 0.0, w, depth, slow
-    sizes = (1e-6, 1e-6)
-    search = periodic_motion(swing, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, "test")
-    status = search(b, 2.0 * math.pi / w, (1.0, 1.0))
+    status = search_of(swing, "test")(b, 2.0 * math.pi / w, (1.0, 1.0))
     return b[:STATES].copy(), status
 
 
@@ -88,9 +94,7 @@ def test_what_returns_with_a_turn_swings(turns):
     w, second = 50.0 * 0.7 * OMEGA, float(80.0 in turns)
     b = np.zeros(FIRST + periodic_scratch(STATES, 2))
     b[3], b[SLOW] = w, second
-    sizes = (1e-6, 1e-6)
-    search = periodic_motion(run_out, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, "run_out")
-    assert search(b, 2.0 * math.pi / w, turns) == SETTLED
+    assert search_of(run_out, "run_out")(b, 2.0 * math.pi / w, turns) == SETTLED
     exact = 0.0
     for force, rate in ((np.exp(0.3j), w / 50.0), (-1j * second, w / 80.0)):
         answer = FORCE * force / (OMEGA**2 - rate**2 + 2j * ZETA * OMEGA * rate)

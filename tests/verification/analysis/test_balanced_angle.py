@@ -1,14 +1,17 @@
 """A gearbox between given torques, inside of its bearings' clearances: where it can stand."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
 
+from herringbone.analysis import equilibrium
 from herringbone.analysis.balanced_angle import balanced_angles
 from herringbone.analysis.equilibrium import SCALE
 from herringbone.analysis.rigid_rotation import steady_rows, units_of_states
 from herringbone.analysis.twin.monolithic import Twin
+from herringbone.core import EquilibriumError
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.running.prepared import Wishes, prepared
 
@@ -50,3 +53,26 @@ def test_a_gearbox_between_given_torques_starts_at_its_speed(torque, deviation):
     start = prepared("gearbox", None, Wishes(values={**own, **clearances})).system
     speed = start.part("gear_mesh").values["der(angle)"]
     assert speed == pytest.approx(VALUES["gear_mesh.der(angle)"], rel=1e-3)
+
+
+def test_torques_that_balance_at_no_angle(monkeypatch):
+    """T_pinion + T_wheel r_p / r_w accelerates twice J_p + J_w (r_p / r_w)^2 of halves.
+
+    Phases of the mesh change that by less than a thousandth. All angles are looked at once on each
+    flank.
+    """
+    looked = []
+
+    def counted(*arguments):
+        looked.append(arguments)
+        return balanced_angles(*arguments)
+
+    monkeypatch.setattr(equilibrium, "balanced_angles", counted)
+    torques = {"gear_mesh.pinion.tau": 200.0, "gear_mesh.wheel.tau": -200.0}
+    with pytest.raises(EquilibriumError, match=r"der\(angle\) changes by") as caught:
+        prepared("gearbox", None, Wishes(values=torques))
+    assert len(looked) == 2
+    twin = looked[0][0]
+    pinion, wheel = (twin.block[twin.index(f"gear_mesh.{g}.inertia")] for g in ("pinion", "wheel"))
+    said = float(re.search(r"changes by ([\d.]+) rad", str(caught.value))[1])
+    assert said == pytest.approx((200.0 - 200.0 / 3.0) / (2.0 * (pinion + wheel / 9.0)), rel=1e-3)

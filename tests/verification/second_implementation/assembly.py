@@ -41,7 +41,8 @@ class Gearbox:
         """Rates of the state."""
         gear, q, v, rest = self._parts(x)
         f_y, f_z, on_seats = self._bearing_forces(gear, q, v)
-        rates = self.gear.derivative(gear, f_y, f_z, self.torques(x))
+        # Plain numbers: arithmetic by single elements of arrays takes several times longer.
+        rates = self.gear.derivative(gear.tolist(), f_y.tolist(), f_z.tolist(), self.torques(x))
         modes = self.housing.acceleration(q, v, on_seats)
         return np.concatenate([rates, v, modes, self._outer(t, gear, rates, rest)])
 
@@ -63,7 +64,7 @@ class Gearbox:
         """Outputs in a state, by the product's names without the parts' paths."""
         gear, q, v, _ = self._parts(x)
         f_y, f_z, _ = self._bearing_forces(gear, q, v)
-        meshes = self.gear.reactions(gear)
+        meshes = self.gear.reactions(gear.tolist())
         velocities = self.housing.seats(v)
         found = {
             "gear_mesh.mesh_left.force": meshes[0].force,

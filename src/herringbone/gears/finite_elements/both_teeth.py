@@ -17,7 +17,7 @@ from herringbone.gears.geometry.gear_pair import GearPair
 from herringbone.gears.stored import Arrays, content_key, stored_arrays
 
 _LARGE = 1e10
-"""Work from which another process, and a file in the cache, are worth it; about two seconds."""
+"""Work from which another process, and a file in the cache, are worth it; some three seconds."""
 
 Teeth = tuple[ToothCompliance, ToothCompliance]
 Done = Callable[[float], None]
@@ -59,7 +59,7 @@ def both_teeth(pair: GearPair, resolution: Resolution, ahead: int, progress: Don
 
 
 def _work(pair: GearPair, gear: int, resolution: Resolution) -> float:
-    """Floating-point operations of the elimination, but for a factor."""
+    """Operations of an elimination section by section: tells large meshes from small ones."""
     section = tooth_mesh(pair, gear, resolution)
     return section.points.shape[1] ** 3 * layer_count(pair, resolution, section)
 

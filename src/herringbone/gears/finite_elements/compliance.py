@@ -56,9 +56,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from herringbone.gears.finite_elements.blocks import Profile, Resolution
+from herringbone.gears.finite_elements.dissection import stack_compliance
 from herringbone.gears.finite_elements.layer import layer_stiffness
 from herringbone.gears.finite_elements.section import Section, mesh_section
-from herringbone.gears.finite_elements.sweep import stack_compliance
 from herringbone.gears.finite_elements.unit_loads import sweep_lead, unit_loads
 from herringbone.gears.geometry.gear_pair import GearPair
 
@@ -195,5 +195,5 @@ def tooth_compliance(
         np.linspace(0.0, pair.face_width, layers + 1),
         full,
         asymmetry,
-        (layers + 1) * len(layer.lower) + layers * layer.inner,
+        (layers + 1) * layer.size + layers * layer.inner,
     )

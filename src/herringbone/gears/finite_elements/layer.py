@@ -6,16 +6,12 @@ in axes that turn with the section, all layers have the same matrix.
 
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from herringbone.core import ParameterError
 from herringbone.gears.finite_elements.section import Section
-
-if TYPE_CHECKING:
-    from scipy import sparse
 
 _POINTS = 4
 """Polynomial order that the quadrature integrates exactly: 3 x 3 x 3 points."""
@@ -23,22 +19,32 @@ _POINTS = 4
 
 @dataclass(frozen=True)
 class Layer:
-    """Stiffness of a layer over the displacements of its two sections.
+    """Stiffness of the elements of a layer, in axes that turn with its sections.
+
+    Unknowns are numbered: those of the lower section, those between the sections, those of the
+    upper section in the order of the lower one.
 
     Attributes:
-        lower: block of the lower section, shape (n, n) [N/m].
-        upper: block of the upper section, shape (n, n) [N/m].
-        coupling: rows of the lower, columns of the upper section, shape (n, n) [N/m].
+        matrices: of the elements, shape (elements, 60, 60) [N/m].
+        places: number of the unknown of each of their rows, -1 where it is held; (elements, 60).
+        centers: of the elements in the lower section, shape (elements, 2) [m].
         unknowns: number of the unknown of each node and direction in a section, -1 where the node
             is held or has none, shape (nodes, 3).
-        inner: number of unknowns between the sections, which are condensed.
+        size: number of the unknowns of a section.
+        inner: number of the unknowns between two sections.
     """
 
-    lower: np.ndarray
-    upper: np.ndarray
-    coupling: np.ndarray
+    matrices: np.ndarray
+    places: np.ndarray
+    centers: np.ndarray
     unknowns: np.ndarray
+    size: int
     inner: int
+
+    @property
+    def stride(self) -> int:
+        """From an unknown to that of the next layer."""
+        return self.size + self.inner
 
 
 def layer_stiffness(
@@ -56,18 +62,22 @@ def layer_stiffness(
     Raises:
         ParameterError: scikit-fem is missing.
     """
-    matrix, node, level = _assembled(section, thickness, twist, young, poisson)
+    fem = scikit_fem()
+    elasticity = fem.models.elasticity
+    element = fem.ElementVector(fem.ElementHexS2())
+    basis = fem.Basis(_mesh(fem, section, thickness, twist), element, intorder=_POINTS)
+    axes = _axes(element, twist)
+    matrices = axes.T @ _matrices(basis, *elasticity.lame_parameters(young, poisson)) @ axes
+    node, level, _ = _places(section, basis.dofs, element)
     level = np.where(np.isin(node, section.bore), -1, level)
     lower, middle, upper = (_rows(node, level, i) for i in range(3))
-    ends = np.r_[lower, upper]
-    inner = matrix[middle][:, middle].toarray()
-    link = matrix[middle][:, ends].toarray()
-    full = matrix[ends][:, ends].toarray()
-    full -= link.T @ cho_solve(cho_factor(inner, overwrite_a=True), link, check_finite=False)
-    n = lower.size
+    numbers = np.full(node.size, -1)
+    numbers[np.r_[lower, middle, upper]] = np.arange(lower.size + middle.size + upper.size)
     unknowns = np.full((section.points.shape[1], 3), -1)
-    unknowns[node[lower[::3]]] = np.arange(n).reshape(-1, 3)
-    return Layer(full[:n, :n], full[n:, n:], full[:n, n:], unknowns, middle.size)
+    unknowns[node[lower[::3]]] = np.arange(lower.size).reshape(-1, 3)
+    centers = section.points[:, section.nodes[:, 1, 1]].T
+    places = numbers[basis.element_dofs].T
+    return Layer(matrices, places, centers, unknowns, lower.size, middle.size)
 
 
 def _rows(node: np.ndarray, level: np.ndarray, wanted: int) -> np.ndarray:
@@ -76,29 +86,26 @@ def _rows(node: np.ndarray, level: np.ndarray, wanted: int) -> np.ndarray:
     return rows[np.argsort(node[rows], kind="stable")]
 
 
-def _assembled(
-    section: Section, thickness: float, twist: float, young: float, poisson: float
-) -> "tuple[sparse.csr_matrix, np.ndarray, np.ndarray]":
-    """Stiffness in axes that turn with the section; section node and level of each row."""
-    from scipy import sparse  # noqa: PLC0415 (lazy)
+def _matrices(basis: Any, first: float, second: float) -> np.ndarray:  # noqa: ANN401 (skfem's)
+    """Stiffness (elements, 60, 60) of linear elasticity with Lame's parameters [N/m].
 
-    fem = scikit_fem()
-    elasticity = fem.models.elasticity
-    mesh = _mesh(fem, section, thickness, twist)
-    element = fem.ElementVector(fem.ElementHexS2())
-    basis = fem.Basis(mesh, element, intorder=_POINTS)
-    node, level, direction = _places(section, basis.dofs, element)
-    matrix = elasticity.linear_elasticity(*elasticity.lame_parameters(young, poisson)).assemble(
-        basis
-    )
-    turn = _turn(twist * level / 2)
-    plane = np.flatnonzero(direction < 2)
-    partner = np.where(direction == 0, 1, -1)[plane] + plane
-    axes = sparse.eye(matrix.shape[0], format="lil")
-    axes[plane, plane] = turn[0, 0, plane]
-    axes[plane, partner] = turn[direction[plane], 1 - direction[plane], plane]
-    axes = axes.tocsr()
-    return (axes.T @ matrix @ axes).tocsr(), node, level
+    All rows at once, where skfem's own assembly takes each pair of rows by itself.
+    """
+    slopes = np.array([shape[0].grad for shape in basis.basis]) * np.sqrt(basis.dx)
+    strain = 0.5 * (slopes + slopes.swapaxes(1, 2))
+    volume = np.trace(strain, axis1=1, axis2=2).transpose(1, 0, 2)
+    strain = strain.reshape(len(strain), -1, *basis.dx.shape).transpose(2, 0, 1, 3)
+    strain = strain.reshape(*strain.shape[:2], -1)
+    return 2.0 * second * (strain @ strain.mT) + first * (volume @ volume.mT)
+
+
+def _axes(element: Any, twist: float) -> np.ndarray:  # noqa: ANN401 (skfem's)
+    """(60, 60) displacements of an element's rows from those in axes that turn with the section."""
+    height = element.doflocs[:, 2]
+    axes = np.eye(height.size)
+    for row in range(0, height.size, 3):
+        axes[row : row + 2, row : row + 2] = _turn(twist * height[row])
+    return axes
 
 
 def scikit_fem() -> ModuleType:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from herringbone.analysis.anatomy import anatomy, value_at
+from herringbone.analysis.balanced_angle import NoBalanceError
 from herringbone.analysis.equilibrium import equilibrium
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import EquilibriumError
@@ -31,10 +32,11 @@ def steady_values(system: System) -> Values:
     """
     try:
         return equilibrium(system).values
-    except EquilibriumError:
+    except EquilibriumError as error:
+        angles = not isinstance(error, NoBalanceError)  # else all have been looked at
         for values in _other_angles(system):
             with suppress(EquilibriumError):
-                return equilibrium(system.with_values(values)).values
+                return equilibrium(system.with_values(values), angles).values
         raise
 
 
