@@ -2,7 +2,7 @@
 
 | artefact | key |
 |---|---|
-| kernel | syntax of its module and of all modules of the package that this one imports |
+| kernel, piece | syntax of its module and of all modules of the package that this one imports |
 | generated module | its text; as a kernel's source it is a module like others |
 | object code of a component or system | syntax of its modules and of the compiler; the wiring |
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
