@@ -58,11 +58,16 @@ def kernels_key(*modules: str, without: str = "") -> str:
 
 @cache
 def module_key(module: str, file: str) -> str:
-    """Key of the kernels of a module: of the package, or a file outside that may import from it."""
+    """Key of the kernels of a module: of the package, or a file outside that may import from it.
+
+    Of generated modules that import others, these count with what they import.
+    """
     if module in _MODULES:
         return kernels_key(module)
     syntax = syntax_of(Path(file).read_text(encoding="utf-8"))
-    return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)))
+    generated = (sys.modules.get(m) for m in syntax.imports if m.startswith(f"{_NAME}_"))
+    keys = [module_key(m.__name__, m.__file__) for m in generated if m and m.__file__]
+    return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)), *keys)
 
 
 def versions_of(*libraries: str) -> list[str]:
