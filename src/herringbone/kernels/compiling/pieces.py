@@ -63,7 +63,9 @@ class Copy(NamedTuple):
 
 
 _copies: dict[str, "Piece"] = {}
-_copied: WeakKeyDictionary[CodeLibrary, tuple[Copy, dict[str, str]]] = WeakKeyDictionary()
+_copied: WeakKeyDictionary[CodeLibrary, dict[int, tuple[Copy, dict[str, str]]]] = (
+    WeakKeyDictionary()
+)
 
 
 class Piece(JITCodeLibrary):
@@ -113,9 +115,12 @@ class Piece(JITCodeLibrary):
         """A library that it calls, or the copy that it calls instead."""
         if isinstance(library, Piece) or library is rtsys.library:
             return library
-        if library not in _copied:
-            _copied[library] = _copy_of(library)
-        copy, names = _copied[library]
+        declared = {function.name for function in self._final_module.functions}
+        number = 0  # numba makes some functions twice: LLVM would call the second one otherwise
+        copy, names = _copy_of(library, number)
+        while not declared.isdisjoint(names.values()):
+            number += 1
+            copy, names = _copy_of(library, number)
         for function in self._final_module.functions:
             if function.name in names:
                 function.name = names[function.name]
@@ -145,14 +150,21 @@ class Rare(Piece):
                 function.add_function_attribute("cold")
 
 
-def _copy_of(library: CodeLibrary) -> tuple[Copy, dict[str, str]]:
+def _copy_of(library: CodeLibrary, number: int) -> tuple[Copy, dict[str, str]]:
     """A copy of a library of numba, and the new names of its functions by the old ones."""
+    known = _copied.setdefault(library, {})
+    if number not in known:
+        known[number] = _copied_anew(library, number)
+    return known[number]
+
+
+def _copied_anew(library: CodeLibrary, number: int) -> tuple[Copy, dict[str, str]]:
     code = library._get_module_for_linking().clone()
     functions = [f for f in code.functions if not f.is_declaration]
     old = [f.name for f in functions]
     for place, item in enumerate([*functions, *code.global_variables]):
         item.name = f"{_ANY}.{place}"
-    name = f"{library.name}.{digest_of(str(code))}"
+    name = f"{library.name}.{digest_of(str(code))}.{number}"
     for place, function in enumerate(functions):
         function.name = f"{name}.{place}"
     for variable in code.global_variables:
