@@ -231,3 +231,22 @@ def test_two_processes_that_save_at_once_do_not_take_each_others_code(tmp_path, 
     reader = _CheckedData(str(tmp_path), "kernel", "stamp")
     assert reader.load(("int64",)) in {("code for int64",), None}
     assert reader.load(("float64",)) in {("code for float64",), None}
+
+
+def test_a_generated_module_depends_on_what_those_import_that_it_imports(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def key(of):
+        (tmp_path / "herringbone_inside.py").write_text(f"import {of}\n")
+        outer = tmp_path / "herringbone_outer.py"
+        outer.write_text("import herringbone_inside\n")
+        for name in ("herringbone_inside", "herringbone_outer"):
+            monkeypatch.delitem(sys.modules, name, raising=False)
+        importlib.invalidate_caches()
+        importlib.import_module("herringbone_outer")
+        cache_keys.module_key.cache_clear()
+        return cache_keys.module_key("herringbone_outer", str(outer))
+
+    found = key("herringbone.kernels.elementary")
+    assert key("herringbone.kernels.derivatives.dual_expressions") != found
+    assert key("herringbone.kernels.elementary") == found

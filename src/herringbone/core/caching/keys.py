@@ -2,7 +2,7 @@
 
 | artefact | key |
 |---|---|
-| kernel | syntax of its module and of all modules of the package that this one imports |
+| kernel, piece | syntax of its module and of all modules of the package that this one imports |
 | generated module | its text; as a kernel's source it is a module like others |
 | object code of a component or system | syntax of its modules and of the compiler; the wiring |
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
@@ -58,11 +58,16 @@ def kernels_key(*modules: str, without: str = "") -> str:
 
 @cache
 def module_key(module: str, file: str) -> str:
-    """Key of the kernels of a module: of the package, or a file outside that may import from it."""
+    """Key of the kernels of a module: of the package, or a file outside that may import from it.
+
+    Of generated modules that import others, these count with what they import.
+    """
     if module in _MODULES:
         return kernels_key(module)
     syntax = syntax_of(Path(file).read_text(encoding="utf-8"))
-    return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)))
+    generated = (sys.modules.get(m) for m in syntax.imports if m.startswith(f"{_NAME}_"))
+    keys = [module_key(m.__name__, m.__file__) for m in generated if m and m.__file__]
+    return digest_of(syntax.digest, kernels_key(*_known(syntax.imports)), *keys)
 
 
 def versions_of(*libraries: str) -> list[str]:

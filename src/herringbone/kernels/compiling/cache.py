@@ -61,7 +61,7 @@ class _Locator(_CacheLocator):
         return cls(py_func, py_file)
 
 
-class _Files(CompileResultCacheImpl):
+class KernelFiles(CompileResultCacheImpl):
     """numba's files, under names of ours."""
 
     def __init__(self, py_func: Callable) -> None:
@@ -125,7 +125,7 @@ class _CheckedData(IndexDataCacheFile):
 class KernelCache(FunctionCache):
     """numba's cache of a function, with our keys; it survives damaged files."""
 
-    _impl_class = _Files
+    _impl_class = KernelFiles
 
     def __init__(self, py_func: Callable) -> None:
         super().__init__(py_func)

@@ -7,8 +7,9 @@ from numba import types
 from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
-from herringbone.kernels.compiling import elements  # noqa: F401 (registers itself with numba)
+from herringbone.kernels.compiling import constants, elements  # noqa: F401 (register themselves)
 from herringbone.kernels.compiling.cache import cached
+from herringbone.kernels.compiling.kept_pieces import kept
 from herringbone.kernels.compiling.linking import (
     LINKED,
     QUICK,
@@ -30,7 +31,7 @@ def kernel(function: Callable[P, T]) -> Callable[P, T]:
     It makes no arrays, so that references to arrays need not be counted: in the compiled loop,
     which passes dozens of them on, that would take most of the time.
     """
-    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}), function)
+    return kept(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}), function)
 
 
 def inlined(function: Callable[P, T]) -> Callable[P, T]:
@@ -39,21 +40,21 @@ def inlined(function: Callable[P, T]) -> Callable[P, T]:
     A tuple of arrays is passed by copying every field of every array; with dozens of arrays that
     takes longer than most functions.
     """
-    return cached(
+    return kept(
         KernelDispatcher(function, {**_OPTIONS, "_nrt": False, "forceinline": True}), function
     )
 
 
 def allocating(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for a function that makes arrays of its own."""
-    return cached(
+    return kept(
         KernelDispatcher(function, {**_OPTIONS, "_nrt": True}), function
     )  # whoever calls it
 
 
 def finding(function: Callable[P, T]) -> Callable[P, T]:
     """As `inlined`, for a function that finds arrays at addresses."""
-    return cached(
+    return kept(
         KernelDispatcher(function, {**_OPTIONS, "_nrt": True, "forceinline": True}), function
     )
 
@@ -61,12 +62,12 @@ def finding(function: Callable[P, T]) -> Callable[P, T]:
 def rare(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for what seldom happens: its callers call it, and keep their registers."""
     options = {**_OPTIONS, "_nrt": False}
-    return cached(KernelDispatcher(function, options, piece_class=RARE), function)
+    return kept(KernelDispatcher(function, options, piece_class=RARE), function)
 
 
 def seldom(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for a function that is called a few times: it is compiled quickly."""
-    return cached(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, QUICK), function)
+    return kept(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, QUICK), function)
 
 
 def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:

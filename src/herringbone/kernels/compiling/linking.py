@@ -2,9 +2,9 @@
 
 numba optimises a function and makes machine code of it, then does so again with every caller that
 contains it; in a deep call tree that takes most of the time of a first run. Here a kernel that is
-called by other kernels is a `Piece`: LLVM code as numba writes it, and no more. Whoever is called
-from Python or through a C address is a `Whole`: it takes in all pieces that it reaches, makes them
-its own, and is optimised once.
+called by other kernels is a `Piece`: LLVM code as numba writes it, and no more, which the cache
+keeps (see `kept_pieces`). Whoever is called from Python or through a C address is a `Whole`: it
+takes in all pieces that it reaches, makes them its own, and is optimised once.
 
 No piece can be seen from outside of its whole. numba tells closures of one factory apart by a
 counter of the process, so that pieces of the same name in callers that different processes cached
@@ -36,6 +36,7 @@ from numba.core.untyped_passes import (
 )
 
 from herringbone.core.activity import COMPILING
+from herringbone.kernels.compiling.pieces import Piece, Rare, is_global
 from herringbone.kernels.compiling.quiet import quiet
 from herringbone.kernels.compiling.typed_calls import remembered_calls
 
@@ -67,45 +68,6 @@ def quickly() -> Iterator[None]:
     finally:
         if collects:
             gc.enable()
-
-
-class Piece(JITCodeLibrary):
-    """LLVM code of one kernel, neither linked with what it calls nor optimised."""
-
-    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
-        ll_module.data_layout = self._codegen._data_layout
-
-    def finalize(self) -> None:
-        """Nothing more is added; callers link it, for which numba would copy it once more."""
-        self._raise_if_finalized()
-        self._finalize_dynamic_globals()
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage == llvm.Linkage.external:
-                function.linkage = "linkonce_odr"
-        self._finalized = True
-
-    def get_pointer_to_function(self, name: str) -> int:
-        """No address: there is no machine code."""
-        del name
-        self._ensure_finalized()
-        return 0
-
-    def reached(self) -> Iterator[CodeLibrary]:
-        """Itself and, as often as they are called, all libraries that it needs."""
-        yield self
-        for library in self._linking_libraries:
-            yield from library.reached() if isinstance(library, Piece) else (library,)
-
-
-class Rare(Piece):
-    """As `Piece`, for what seldom happens in a kernel that often runs: it stays outside."""
-
-    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
-        super()._optimize_functions(ll_module)
-        for function in ll_module.functions:
-            if not function.is_declaration:
-                function.add_function_attribute("noinline")
-                function.add_function_attribute("cold")
 
 
 class Whole(JITCodeLibrary):
@@ -162,7 +124,10 @@ def _pipeline(library_class: type[JITCodeLibrary]) -> type[compiler.Compiler]:
 
     class Pipeline(compiler.Compiler):
         def define_pipelines(self) -> list:
-            codegen, name = self.state.targetctx.codegen(), self.state.func_id.func_qualname
+            function = self.state.func_id
+            codegen, name = self.state.targetctx.codegen(), function.func_qualname
+            if issubclass(library_class, Piece) and is_global(function.func):
+                function.unique_name, function.unique_id = name, None  # the same in all processes
             self.state.library = library_class(codegen, name)
             self.state.library.enable_object_caching()
             (passes,) = super().define_pipelines()
@@ -186,6 +151,12 @@ class _Flags(compiler.Flags):
         return isinstance(other, _Flags) and self._values == other._values
 
 
+def entry_name() -> Callable:
+    """A built-in function of its own, by which callers find the code of a piece."""
+    own: list[None] = []
+    return own.count
+
+
 class _PieceCompiler(_FunctionCompiler):
     """numba's, without wrappers and without an environment: a piece is not called from Python."""
 
@@ -196,8 +167,7 @@ class _PieceCompiler(_FunctionCompiler):
 
     def _compile_core(self, args: tuple, return_type: types.Type | None) -> CompileResult:
         found = super()._compile_core(args, return_type)
-        own: list[None] = []
-        name = own.count  # a built-in function of its own, by which callers find the code
+        name = entry_name()
         self.targetdescr.target_context.insert_user_function(name, found.fndesc, [found.library])
         return found._replace(entry_point=name)
 
@@ -223,6 +193,9 @@ class _WholeCompiler(_FunctionCompiler):
 class KernelDispatcher(CPUDispatcher):
     """Compiles a whole when it is called from Python, and gives pieces to other kernels."""
 
+    cache_of_pieces: Callable[[Callable], object] | None = None
+    """Makes the cache of its pieces; None if they are not kept."""
+
     def __init__(self, py_func, targetoptions, pipeline_class=WHOLE, piece_class=PIECE) -> None:  # noqa: ANN001
         super().__init__(py_func, {}, {**targetoptions, "no_cfunc_wrapper": True}, pipeline_class)
         self._piece_class = piece_class
@@ -233,7 +206,10 @@ class KernelDispatcher(CPUDispatcher):
     @cached_property
     def piece(self) -> _PieceDispatcher:
         """Gives pieces to other kernels."""
-        return _PieceDispatcher(self.py_func, {}, self.targetoptions, self._piece_class)
+        found = _PieceDispatcher(self.py_func, {}, self.targetoptions, self._piece_class)
+        if self.cache_of_pieces is not None:
+            found._cache = self.cache_of_pieces(self.py_func)
+        return found
 
     def compile(self, sig: Signature | tuple) -> Callable:
         """Compile for a signature, unless it is compiled or cached."""

@@ -11,13 +11,10 @@ kernels, + - * / **, min, max, abs, sqrt and the elementary functions.
 """
 
 import ast
-import math
 import textwrap
 from collections.abc import Callable
 
-from numba.core.dispatcher import Dispatcher
-
-from herringbone.core.caching.generated import load_generated
+from herringbone.kernels.derivatives.derivative_modules import Derivatives
 from herringbone.kernels.derivatives.dual_expressions import (
     SUFFIX,
     DualExpressions,
@@ -25,18 +22,9 @@ from herringbone.kernels.derivatives.dual_expressions import (
     definition_of,
     dotted,
     is_real,
-    mangled,
     returned_values,
     zero,
 )
-
-_HEADER = '''"""Tangents of kernels; generated, not to be edited."""
-
-import math
-
-from herringbone.kernels.elementary import cosine, exponential, sine
-from herringbone.kernels.compiling.jit import kernel
-'''
 
 
 def differentiate(*kernels: Callable) -> list[Callable]:
@@ -49,45 +37,10 @@ def differentiate(*kernels: Callable) -> list[Callable]:
     Raises:
         NotDifferentiableError: a kernel uses what forward mode does not know.
     """
-    program = _Program()
-    names = [program.derivative(k) for k in kernels]
-    module = load_generated("tangent", program.source())
-    return [getattr(module, name) for name in names]
-
-
-class _Program:
-    """The generated module: derivatives of all kernels that are reached, and their constants."""
-
-    def __init__(self) -> None:
-        self._constants: dict[str, str] = {}
-        self._imports: dict[str, str] = {}
-        self._functions: dict[str, str] = {}
-
-    def derivative(self, kernel: Dispatcher) -> str:
-        """Name of a kernel's derivative."""
-        name = mangled(kernel.py_func) + SUFFIX
-        if name not in self._functions:
-            self._functions[name] = _Function(self, kernel).source(name)
-        return name
-
-    def original(self, kernel: Dispatcher) -> str:
-        """Name under which a kernel itself can be called."""
-        function = kernel.py_func
-        name = mangled(function)
-        self._imports[name] = f"from {function.__module__} import {function.__name__} as {name}"
-        return name
-
-    def constant(self, owner: str, name: str, value: object) -> str:
-        """Name of a constant that stands in the module `owner`."""
-        unique = f"{owner.rpartition('.')[2]}_{name}"
-        self._constants[unique] = "math.inf" if value == math.inf else repr(value)
-        return unique
-
-    def source(self) -> str:
-        """The module's source; callees stand before their callers."""
-        lines = [_HEADER, *self._imports.values(), ""]
-        lines += [f"{name} = {value}" for name, value in self._constants.items()]
-        return "\n".join([*lines, *self._functions.values()]) + "\n"
+    program = Derivatives(lambda module, kernel, name: _Function(module, kernel).source(name))
+    modules = [program.module_of(k) for k in kernels]
+    names = [module.make(k) for module, k in zip(modules, kernels, strict=True)]
+    return [getattr(m.loaded, name) for m, name in zip(modules, names, strict=True)]
 
 
 class _Function(DualExpressions):
