@@ -67,6 +67,7 @@ def shown(tmp_path):
         "PATH": "/usr/bin:/bin",
         "PYTHONPATH": str(tmp_path),
         "HERRINGBONE_CACHE": str(tmp_path / "cache"),
+        "PYTHONDONTWRITEBYTECODE": "1",  # the old one serves what has the same size and second
     }
 
     def show(name, more):
