@@ -75,6 +75,7 @@ class Model:
         speed, torque: where that was certified.
         frozen: parts whose laws are straight lines about their mean deflections.
         linear: parts whose laws have mean slopes besides.
+        harmonics: parts, and how many harmonics of their laws' tables are kept.
     """
 
     hold: tuple[str, ...] = ()
@@ -84,6 +85,7 @@ class Model:
     torque: Range | None = None
     frozen: tuple[str, ...] = ()
     linear: tuple[str, ...] = ()
+    harmonics: tuple[tuple[str, int], ...] = ()
 
     def __bool__(self) -> bool:
         return bool(self.hold or self.parts)
@@ -91,4 +93,5 @@ class Model:
     @property
     def parts(self) -> tuple[str, ...]:
         """Parts of which something is left out."""
-        return (*self.one_way, *self.frozen, *self.linear)
+        tables = (part for part, _ in self.harmonics)
+        return (*self.one_way, *self.frozen, *self.linear, *tables)

@@ -85,7 +85,7 @@ def _operating(data: Any) -> Operating:  # noqa: ANN401
 
 
 def _model(data: Any) -> Model:  # noqa: ANN401
-    _known(data, "model", {"hold", *_PARTS, "error", "speed", "torque"})
+    _known(data, "model", {"hold", *_PARTS, "harmonics", "error", "speed", "torque"})
     error = None if "error" not in data else _number(data["error"], "model: error")
     speed = _range(data, "model", "speed")
     return Model(
@@ -95,7 +95,18 @@ def _model(data: Any) -> Model:  # noqa: ANN401
         None if speed is None else (speed[0] / _R_MIN, speed[1] / _R_MIN),
         _range(data, "model", "torque"),
         *(_texts(data.get(key, []), f"model: {key}") for key in ("frozen", "linear")),
+        _counts(data.get("harmonics", {})),
     )
+
+
+def _counts(given: Any) -> tuple[tuple[str, int], ...]:  # noqa: ANN401
+    """Harmonics that are kept, by part."""
+    whole = isinstance(given, dict) and all(type(count) is int for count in given.values())
+    if not whole or any(count < 0 for count in given.values()):
+        raise ParameterError(
+            f"model: harmonics = {given!r}: it takes {{ PART = COUNT }}, whole numbers from 0"
+        )
+    return tuple(given.items())
 
 
 def _known(data: Any, name: str, keys: set[str]) -> None:  # noqa: ANN401
@@ -149,6 +160,9 @@ def asking_text(asks: tuple[Ask, ...], operating: Operating, model: Model) -> It
     if model:
         yield from ("", "[model]", f"hold = {_listed(model.hold)}")
         yield from (f"{key} = {_listed(own)}" for key in _PARTS if (own := getattr(model, key)))
+        if model.harmonics:
+            kept = (f'"{part}" = {count}' for part, count in model.harmonics)
+            yield f"harmonics = {{ {', '.join(kept)} }}"
         if model.error is not None:
             yield f"error = {model.error:.3g}"
         yield from _ranges({"speed": model.speed, "torque": model.torque})

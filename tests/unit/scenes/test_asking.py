@@ -24,6 +24,7 @@ orders = [1, 2]
 tolerance = 0.05
 [model]
 hold = ["housing.q[7]"]
+harmonics = { "first.gear_mesh" = 8, second = 0 }
 error = 0.002
 speed = 1000
 """
@@ -46,7 +47,8 @@ def test_all_that_can_be_asked(tmp_path):
         Ask(("bearing_force", "*.torque"), Form.ORDER, 0.05, math.inf, (1.0, 2.0)),
     )
     at = 1000.0 / _R_MIN
-    assert found.model == Model(("housing.q[7]",), (), 0.002, (at, at))
+    tables = (("first.gear_mesh", 8), ("second", 0))
+    assert found.model == Model(("housing.q[7]",), (), 0.002, (at, at), harmonics=tables)
 
 
 def test_what_is_written_is_read_again(tmp_path):
@@ -69,8 +71,11 @@ def test_what_is_written_is_read_again(tmp_path):
         ('[operating]\nmotion = "transient"\nspeed = 9', "a transient has those of its cycle"),
         (
             "[model]\nholds = []",
-            "model: unknown key holds; known: error, frozen, hold, linear, one_way, speed",
+            "model: unknown key holds; known: error, frozen, harmonics, hold, linear, one_way",
         ),
+        ("[model]\nharmonics = { x = true }", "it takes { PART = COUNT }, whole numbers from 0"),
+        ("[model]\nharmonics = { x = -1 }", "it takes { PART = COUNT }, whole numbers from 0"),
+        ("[model]\nharmonics = 4", "model: harmonics = 4: it takes { PART = COUNT }"),
     ],
 )
 def test_refused_in_one_line(tmp_path, text, message):

@@ -1,15 +1,20 @@
 """What can be left out of a system, found by roles, ports and declared state vectors."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.steady.structure import Structure
-from herringbone.analysis.twin.condensed.lean import Lean, state_names
+from herringbone.analysis.twin.condensed.lean import Lean, state_names, with_harmonics
 from herringbone.analysis.twin.condensed.wanted import places_seen
+from herringbone.core import StructureError
 from herringbone.core.declaring.roles import PortKind, Role
+
+_HARMONICS = (16, 8, 4)
+"""Of the tables, that are kept."""
 
 
 class Cut(NamedTuple):
@@ -41,6 +46,7 @@ def cuts_of(structure: Structure) -> list[Cut]:
         Cut("torsion only", Lean(tuple(_journals(structure, "xyz")))),
     ]
     if pairs := known.with_role(Role.GEAR_PAIR):
+        found += _tables(structure, pairs)
         found += [
             Cut("contact frozen, slopes over the angle", Lean(frozen=tuple(pairs)), steady=True),
             Cut("contact frozen, mean slopes", Lean(linear=tuple(pairs)), steady=True),
@@ -127,3 +133,12 @@ def _journals(structure: Structure, axes: str) -> Iterator[str]:
         places = [rows[twin.index(c)] for c in columns if c in structure.core.names]
         for state in np.flatnonzero(shown[places].any(axis=0)):
             yield names[state]
+
+
+def _tables(structure: Structure, pairs: Sequence[str]) -> Iterator[Cut]:
+    """Fewer harmonics of the gear pairs' tables, where they are taken from tables."""
+    for count in _HARMONICS:
+        lean = Lean(harmonics=tuple((pair, count) for pair in pairs))
+        with suppress(StructureError):
+            with_harmonics(structure.core.twin, lean)
+            yield Cut(f"{count} harmonics of the tables", lean, steady=True)

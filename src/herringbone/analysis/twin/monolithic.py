@@ -6,7 +6,8 @@ breakpoints that the components declare.
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from types import ModuleType
 
@@ -82,6 +83,15 @@ class Twin:
         self._source = twin_source(self.network, self.instances, self.layout)
         self._by_calls = CalledTwin(self.network, self.instances, self.layout)
         self.block = np.concatenate([i.block for i in self.instances])
+
+    def with_blocks(self, blocks: Mapping[str, np.ndarray]) -> "Twin":
+        """The same with other values, tables among them, in the blocks of some parts, by name."""
+        found = copy(self)
+        found.instances = [copy(instance) for instance in self.instances]
+        for instance in found.instances:
+            instance.block = blocks.get(instance.name, instance.block)
+        found.block = np.concatenate([i.block for i in found.instances])
+        return found
 
     @cached_property
     def _compiled(self) -> ModuleType:

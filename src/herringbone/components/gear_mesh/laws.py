@@ -12,6 +12,7 @@ import numpy as np
 from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh import motion
 from herringbone.components.gear_mesh.contact import derive, meshes
+from herringbone.components.gear_mesh.harmonics import keep_harmonics
 from herringbone.components.gear_mesh.period import ramp, settle, turns
 from herringbone.components.gear_mesh.toothed_mesh import SOFT
 from herringbone.components.resources import tooth_deviations
@@ -186,4 +187,5 @@ LAWS = Laws(
     periods=_periods,
     settle=settle,
     ramp=ramp,
+    keep_harmonics=keep_harmonics,
 )  # fmt: skip

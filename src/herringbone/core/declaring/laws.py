@@ -33,6 +33,11 @@ def _at_once(block: np.ndarray, turns: float) -> None:
     del block, turns
 
 
+def _untabulated(block: np.ndarray, count: int) -> str:
+    del block, count
+    return "its laws take no table"
+
+
 def common_period(periods: Iterable[Fraction]) -> Fraction:
     """The smallest turn that all of the periods, at least one, divide; they are positive."""
     found = list(periods)
@@ -74,6 +79,8 @@ class Laws:
             turns of 2 pi; none: the laws depend on no angle. Of a prepared, settled block.
         settle: ends in a block what comes in over a time or an angle, as ramps do.
         ramp: brings in over so many turns, after `settle`, what comes in over an angle; inf: never.
+        keep_harmonics: keeps, in a block, so many harmonics of the tables that the values are taken
+            from, over the period of these; says why it cannot, with the block as it was.
     """
 
     arguments: tuple[str, ...]
@@ -94,3 +101,4 @@ class Laws:
     periods: Callable[[np.ndarray], tuple[tuple[int, Fraction], ...]] = _evenly
     settle: Callable[[np.ndarray], None] = unchanged
     ramp: Callable[[np.ndarray, float], None] = _at_once
+    keep_harmonics: Callable[[np.ndarray, int], str] = _untabulated

@@ -78,8 +78,9 @@ def _as_leaner(whole: System, scene: Scene, wishes: Wishes, folder: Path) -> Lea
     """
     if scene.model.parts:
         raise ParameterError(
-            f"scene {scene.name}: [model]: an FMU can hold states, but has no one_way, frozen or "
-            "linear; plan anew with 'herringbone export SYSTEM --as-fmu --plan --scene SCENE'"
+            f"scene {scene.name}: [model]: an FMU can hold states, but has no one_way, frozen, "
+            "linear or harmonics; plan anew with 'herringbone export SYSTEM --as-fmu --plan "
+            "--scene SCENE'"
         )
     known = _states(whole)
     if missing := [name for name in scene.model.hold if name not in known]:

@@ -25,7 +25,7 @@ def lean_of(scene: Scene) -> "Lean":
     from herringbone.analysis.twin.condensed.lean import Lean  # noqa: PLC0415 (numba)
 
     model = scene.model
-    return Lean(model.hold, model.one_way, model.frozen, model.linear)
+    return Lean(model.hold, model.one_way, model.frozen, model.linear, model.harmonics)
 
 
 def refuse_lean(scene: Scene) -> None:
@@ -65,6 +65,7 @@ def lean_notes(
     parts = [f"{len(model.hold)} states held"] if model.hold else []
     parts += [f"{', '.join(model.one_way)} driven one way"] if model.one_way else []
     parts += [f"laws of {', '.join(own)} frozen" for own in (model.frozen, model.linear) if own]
+    parts += [f"{count} harmonics of the tables of {part}" for part, count in model.harmonics]
     said = f"leaner model: {', '.join(parts)}; its error "
     if model.error is None:
         return (f"{said}is not certified: 'herringbone plan' does that",)

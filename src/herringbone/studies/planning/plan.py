@@ -168,7 +168,10 @@ def _made(
     model = Model()
     if choice.lean:
         lean = choice.lean
-        model = Model(lean.held, lean.one_way, error, at.speed, at.torque, lean.frozen, lean.linear)
+        model = Model(
+            lean.held, lean.one_way, error, at.speed, at.torque, lean.frozen, lean.linear,
+            lean.harmonics,
+        )  # fmt: skip
     return Plan(
         system.name, replace(scene, model=model), tuple(questions), tuple(rungs), tolerance,
         time.process_time() - begin, notes,

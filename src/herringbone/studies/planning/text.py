@@ -47,7 +47,8 @@ def _said(plan: Plan) -> Iterator[str]:
         )
     if choice.lean:
         lean = choice.lean
-        parts = (*lean.one_way, *lean.frozen, *lean.linear)
+        tables = (f"{part}: harmonics above {count}" for part, count in lean.harmonics)
+        parts = (*lean.one_way, *lean.frozen, *lean.linear, *tables)
         yield f"  left out: {'; '.join((*_short(lean.held), *parts))}"
     yield f"Planning took {plan.seconds:.2g} s of CPU time. {_worth(plan)}"
     yield from (f"note: {note}" for note in plan.notes)
@@ -132,6 +133,7 @@ def _rung(rung: Rung) -> dict:
         "one_way": list(rung.lean.one_way),
         "frozen": list(rung.lean.frozen),
         "linear": list(rung.lean.linear),
+        "harmonics": dict(rung.lean.harmonics),
         "estimate": _figures(rung.estimate),
         "measured": _figures(rung.measured),
         "cost": rung.cost,

@@ -103,6 +103,39 @@ def test_frozen_laws_differ_by_what_is_estimated_and_are_straight() -> None:
     assert np.abs(off[2] - off[0]).max() > 1e3  # 30 um against 1e8 N/m and more
 
 
+def test_fewer_harmonics_of_the_tables_err_by_what_is_estimated() -> None:
+    """One step of Newton leaves what is of second order in the error."""
+    solver, state, questions = _rig()
+    cuts = {cut.name: cut.lean for cut in cuts_of(solver.structure)}
+    estimates = Estimates(state, questions, [])
+    errors = []
+    for count in (16, 8, 4):
+        lean = cuts[f"{count} harmonics of the tables"]
+        expected, measured = estimates.of(state.structure.leaner(lean)), _measured(lean)
+        for question, error in measured.items():
+            assert expected[question].error == pytest.approx(error, rel=0.03)
+        errors.append(max(measured.values()))
+    assert errors == sorted(errors)
+    assert errors[0] > 1e-5
+    assert errors[-1] < 1.0
+
+
+def test_a_march_with_few_harmonics_is_that_of_its_own_equations() -> None:
+    """Against Dormand-Prince on the same tables; the whole tables are far from both."""
+    solver, _, _ = _rig()
+    system = solver.structure.system
+    lean = next(
+        cut.lean for cut in cuts_of(solver.structure) if cut.name == "4 harmonics of the tables"
+    )
+    whole, few = Core(system), Core(system, lean=lean)
+    names, times = list(few.groups()["bearing_force"]), np.linspace(0.0, 2e-3, 21)
+    found, other = (values_at(core, times, Steps(2e-5, 4), names) for core in (few, whole))
+    exact = few.twin.solve(times, names, 1e-9)
+    size = np.std(exact, axis=0).max()
+    assert np.abs(found - exact).max() < 1e-5 * size
+    assert np.abs(other - exact).max() > 1e-3 * size
+
+
 def test_a_drive_of_prescribed_speed_has_that_of_each_operating_point() -> None:
     """No matter at which speed the system was prepared; the estimate is off by its second order."""
     solver, state, questions = _rig()
@@ -187,3 +220,7 @@ def test_what_is_not_there_cannot_be_left_out() -> None:
         solver.leaner(Lean(("gearbox.gear_mesh.angle",)))
     with pytest.raises(StructureError, match="no part 'somewhere'"):
         solver.leaner(Lean((), ("somewhere",)))
+    with pytest.raises(StructureError, match="no part 'somewhere'"):
+        solver.leaner(Lean(harmonics=(("somewhere", 4),)))
+    with pytest.raises(StructureError, match="4 harmonics of its tables: it has no laws"):
+        solver.leaner(Lean(harmonics=(("gearbox.bearing_supports", 4),)))

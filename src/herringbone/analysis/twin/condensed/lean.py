@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.equations import Equations
+from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import Instance, StructureError
 from herringbone.core.names import shown
@@ -29,12 +29,14 @@ class Lean:
         one_way: parts that are driven but not felt.
         frozen: parts whose laws are straight lines about their mean deflections, of steady states.
         linear: parts whose laws have mean slopes besides.
+        harmonics: parts, and how many harmonics of their laws' tables are kept.
     """
 
     held: tuple[str, ...] = ()
     one_way: tuple[str, ...] = ()
     frozen: tuple[str, ...] = ()
     linear: tuple[str, ...] = ()
+    harmonics: tuple[tuple[str, int], ...] = ()
 
     def __bool__(self) -> bool:
         return bool(self.held) or not self.only_held
@@ -42,7 +44,7 @@ class Lean:
     @property
     def only_held(self) -> bool:
         """True if all that is left out are motions."""
-        return not (self.one_way or self.frozen or self.linear)
+        return not (self.one_way or self.frozen or self.linear or self.harmonics)
 
     def __or__(self, other: "Lean") -> "Lean":
         """What either of both leaves out."""
@@ -73,6 +75,25 @@ def names_of_states(instances: Iterable[Instance]) -> tuple[str, ...]:
             own += [vector.element(k + 1) for k in range(vector.capacity)]
         found += [f"{instance.name}.{name}" for name in own]
     return tuple(found)
+
+
+def with_harmonics(twin: Twin, lean: Lean) -> Twin:
+    """The twin of a leaner model, as far as that is one of tables with fewer harmonics.
+
+    Raises:
+        StructureError: a part is not there, or its laws take no table.
+    """
+    blocks = {}
+    for part, count in lean.harmonics:
+        found = next((i for i in twin.instances if i.name == part), None)
+        if found is None:
+            raise StructureError(f"{twin.system.name}: model: it has no part {shown(part, 60)}")
+        laws = laws_of(found)
+        block = blocks.setdefault(part, found.block.copy())
+        why = laws.keep_harmonics(block, count) if laws else "it has no laws"
+        if why:
+            raise StructureError(f"{part}: model: {count} harmonics of its tables: {why}")
+    return twin.with_blocks(blocks) if blocks else twin
 
 
 def held_states(twin: Twin, lean: Lean) -> list[int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.analysis.accuracy.apart import outputs_in
 from herringbone.analysis.twin.condensed.equations import take_apart
-from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner
+from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner, with_harmonics
 from herringbone.analysis.twin.condensed.outputs import (
     Outputs,
     affine_places,
@@ -80,8 +80,8 @@ class Core:
         open_inputs: Sequence[str] = (),
         lean: Lean | None = None,
     ) -> None:
-        self.twin = twin = Twin(system)
         self.lean: Lean = lean if lean is not None else like.lean if like else WHOLE
+        self.twin = twin = with_harmonics(Twin(system), self.lean)
         for instance in twin.instances:
             if instance.component.samples:
                 raise StructureError(
@@ -112,9 +112,9 @@ class Core:
             StructureError: it names what is not there.
         """
         found, known = copy(self), self.condensed
-        found.lean = self.lean | lean
-        apart = leaner(self.twin, known.equations, lean, places_seen(self.twin))
-        found.condensed = condensed(self.twin, apart, known, same_tangents=True)
+        found.lean, found.twin = self.lean | lean, with_harmonics(self.twin, lean)
+        apart = leaner(found.twin, known.equations, lean, places_seen(found.twin))
+        found.condensed = condensed(found.twin, apart, known, same_tangents=True)
         return found
 
     def chosen(
