@@ -87,9 +87,19 @@ def _leanest(rungs: Sequence[Rung]) -> list[Rung]:
 
 
 def _cheapest(certifier: Certifier, rungs: Sequence[Rung]) -> list[Rung]:
-    """Those whose answers cost least, by one turn; of equal ones those that leave out most."""
+    """Those whose answers cost least, by one turn; of equal ones those that leave out most.
+
+    One that leaves out less than another of them is not priced: it would save less.
+    """
     if len(rungs) <= _TRIED:
         return list(rungs)
+    leanest = [
+        rung
+        for rung in rungs
+        if not any(rung.lean != other.lean and other.lean >= rung.lean for other in rungs)
+    ]
+    if len(leanest) >= _TRIED:
+        rungs = leanest
     costs = certifier.costs([rung.lean for rung in rungs], rounds=1, most=_TRIED)
     least = min(costs)
     order = sorted(

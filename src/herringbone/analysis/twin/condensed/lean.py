@@ -46,6 +46,14 @@ class Lean:
         """True if all that is left out are motions."""
         return not (self.one_way or self.frozen or self.linear or self.harmonics)
 
+    def __ge__(self, other: "Lean") -> bool:
+        """True if it leaves out at least what the other one does."""
+        kept = dict(self.harmonics)
+        return all(
+            set(getattr(self, name)) >= set(getattr(other, name))
+            for name in ("held", "one_way", "frozen", "linear")
+        ) and all(kept.get(part, count + 1) <= count for part, count in other.harmonics)
+
     def __or__(self, other: "Lean") -> "Lean":
         """What either of both leaves out."""
         return Lean(
