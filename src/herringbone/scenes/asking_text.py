@@ -94,7 +94,8 @@ def _model(data: Any) -> Model:  # noqa: ANN401
         error,
         None if speed is None else (speed[0] / _R_MIN, speed[1] / _R_MIN),
         _range(data, "model", "torque"),
-        *(_texts(data.get(key, []), f"model: {key}") for key in ("frozen", "linear")),
+        _texts(data.get("frozen", []), "model: frozen"),
+        _texts(data.get("linear", []), "model: linear"),
         _counts(data.get("harmonics", {})),
     )
 

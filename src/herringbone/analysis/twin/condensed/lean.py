@@ -91,7 +91,7 @@ def with_harmonics(twin: Twin, lean: Lean) -> Twin:
     Raises:
         StructureError: a part is not there, or its laws take no table.
     """
-    blocks = {}
+    blocks: dict[str, np.ndarray] = {}
     for part, count in lean.harmonics:
         found = next((i for i in twin.instances if i.name == part), None)
         if found is None:
