@@ -1,13 +1,14 @@
 """What a leaner model would change of a motion, without solving for that of the leaner model.
 
-One linear solve with the Jacobian J of the balance at the motion of the whole model, whatever is
+Two linear solves with the Jacobian J of the balance at the motion of the whole model, whatever is
 left out:
 
     F_lean(r) = what the laws give and the motion lacks, with the leaner linear part
-    r_lean = r - J^-1 F_lean(r),    y_lean = H_lean r_lean
+    r_lean = r - J^-1 F_lean(r), twice,    y_lean = H_lean r_lean
 
 All of the linear part, reactions included, is exact; the laws are followed along their slopes, and
-evaluated once where these lead to: a contact that opens there says so.
+evaluated once where these lead to: a contact that opens there says so, and low lines of a table
+without its high ones, which are of second order.
 """
 
 from collections.abc import Sequence
@@ -23,8 +24,8 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
     bent,
     sloped,
 )
-from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
-from herringbone.analysis.steady.harmonic_balance.orbit import Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.fourier import among, in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.orbit import Orbit
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import coefficients_of, of_rows
 from herringbone.analysis.steady.state import SteadyState
@@ -32,6 +33,9 @@ from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.core import ParameterError
 from herringbone.core.one_thread import one_blas_thread
+
+_STEPS = 2
+"""Of Newton, from the motion of the whole model: the second one has what is of second order."""
 
 
 class Estimates:
@@ -138,25 +142,25 @@ class Estimates:
         """Errors by question of a leaner model of the same states and tangents."""
         state, orbit = self._state, self._state.orbit
         with one_blas_thread(), np.errstate(all="ignore"):
-            balance = Balance(structure.problem, self._period, state.motion)
-            response, missing, _ = balance.missing(orbit)
-            orders, known = response.orders, orbit.response.orders
-            step = missing[: structure.problem.values].copy()
-            there, unknown = np.isin(orders, known), self._found.unknown
-            solved = on(orders, self._inverse(on(known, step[unknown], orders)), known)
-            step[np.ix_(unknown, there)] = solved[:, there]  # lines that are new are as they come
-            given = on(orders, orbit.channels, known)
-            given[: len(step)] += step
+            balance = Balance(structure.problem, orbit.resolved, state.motion)
+            for _ in range(_STEPS):
+                orbit = self._stepped(balance, orbit)
+            response, given = orbit.response, orbit.channels
             wanted = _wanted(structure, tuple(self._place))
             q, rows = response.coordinates(given), alternating_rows(wanted)
             values = response.outputs(rows, q, given)
             values[:, 0] += wanted.rows.still
-            return self._apart(values, wanted, orbit._replace(response=response))
+            return self._apart(values, wanted, orbit)
 
-    @property
-    def _period(self) -> Period:
-        state = self._state
-        return state.orbit.resolved._replace(thin=0.0 if state.meshes == 1 else state.tolerance)
+    def _stepped(self, balance: Balance, orbit: Orbit) -> Orbit:
+        """Channels after a step of Newton, with the Jacobian of the whole model."""
+        response, step, _ = balance.missing(orbit, every=True)
+        orders, known = response.orders, self._state.orbit.response.orders
+        there, unknown = among(orders, known), self._found.unknown
+        solved = on(orders, self._inverse(on(known, step[unknown], orders)), known)
+        step[np.ix_(unknown, there)] = solved[:, there]  # lines that are new are as they come
+        channels = on(orders, orbit.channels, orbit.response.orders) + step
+        return orbit._replace(channels=channels, response=response)
 
     def _answered(self, own: Sequence[int], push: np.ndarray) -> np.ndarray:
         """Changes of the laws' unknown values (unknowns, harmonics) under reactions."""

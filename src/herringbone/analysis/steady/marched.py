@@ -62,9 +62,8 @@ class Held(Condensed):
 
 def start_of(orbit: Orbit) -> np.ndarray:
     """Real parts of modal coordinates, imaginary parts, and theta, at the start of the period."""
-    q = orbit.q.ahead.sum(axis=1) + orbit.q.back[:, 1:].sum(axis=1)
-    angle = (orbit.angle[0] + 2.0 * orbit.angle[1:].sum()).real
-    return np.concatenate([q.real, q.imag, [angle]])
+    every = np.vstack([orbit.q, orbit.angle])
+    return (every[:, 0] + 2.0 * every[:, 1:].sum(axis=1)).real
 
 
 class March(NamedTuple):

@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -120,6 +121,19 @@ def test_fewer_harmonics_of_the_tables_err_by_what_is_estimated() -> None:
     assert errors[-1] < 1.0
 
 
+def test_low_lines_know_of_high_harmonics_that_are_left_out() -> None:
+    """They are of second order in these: by one step alone, 0.90 of the truth."""
+    solver, state, (force, _) = _rig()
+    lean = next(
+        cut.lean for cut in cuts_of(solver.structure) if cut.name == "4 harmonics of the tables"
+    )
+    low = Question("low", force.columns, Form.ORDER, 0.01, orders=(1.0,))
+    leaner = solver.leaner(lean).solve(state.point, state)
+    truth = apart(low, lines_of(leaner, low), lines_of(state, low)).error
+    found = Estimates(state, (low,), []).of(state.structure.leaner(lean))["low"].error
+    assert found == pytest.approx(truth, rel=0.01)
+
+
 def test_a_march_with_few_harmonics_is_that_of_its_own_equations() -> None:
     """Against Dormand-Prince on the same tables; the whole tables are far from both."""
     solver, _, _ = _rig()
@@ -160,9 +174,9 @@ def test_a_housing_that_nothing_shakes_is_not_looked_at_more_finely_for_its_roun
     assert found.orbit.resolved.per_mesh <= state.orbit.resolved.per_mesh
 
 
-def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
-    """Run-outs of a pair without common factors: constant slopes leave other lines."""
-    gear = tmp_path / "pair.toml"
+def _of_many_meshes(folder: Path) -> tuple[SteadySolver, SteadyState]:
+    """A gearbox whose run-outs have no common factors."""
+    gear = folder / "pair.toml"
     gear.write_text(
         '[gear_pair]\nnumber_of_teeth = [23, 71]\nnormal_module = "3 mm"\n'
         'helix_angle = "25 deg"\nface_width = "40 mm"\ngap_width = "40 mm"\n'
@@ -178,6 +192,20 @@ def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
     solver, _ = prepared_solver("gearbox", point=point, wishes=wishes, tolerance=1e-3)
     state = solver.solve(point)
     assert state.meshes == 23 * 71
+    return solver, state
+
+
+def test_a_model_that_leaves_out_nothing_errs_by_nothing(tmp_path) -> None:
+    """Beside what the solver's last correction left; 2e-4 without lines that count little."""
+    _, state = _of_many_meshes(tmp_path)
+    force = Question("force", tuple(state.chosen("bearing_force")), Form.SPECTRUM, 0.01)
+    assert Estimates(state, (force,), ()).of(state.structure)["force"].error < 1e-6
+
+
+def test_lines_that_the_whole_model_has_not_are_estimated(tmp_path) -> None:
+    """Run-outs of a pair without common factors: constant slopes leave other lines."""
+    solver, state = _of_many_meshes(tmp_path)
+    point = state.point
     force = Question("force", tuple(state.chosen("bearing_force")), Form.LEVEL, 0.01)
     for lean in (Lean(frozen=("gear_mesh",)), Lean(linear=("gear_mesh",))):
         leaner = solver.leaner(lean).solve(point, state)

@@ -5,13 +5,16 @@ the motion lacks, higher harmonics as well as what folds into lower ones, is sen
 part: its answer, over the alternating part of a group of channels, is the error that is stated.
 """
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.fourier import among
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
+from herringbone.analysis.steady.harmonic_balance.problem import in_parts
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.structure import Structure
 
@@ -65,19 +68,31 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     values = orbit.response.outputs(rows, orbit.q, orbit.channels)
     lacking = response.outputs(rows, response.coordinates(missing), missing)
     moved = orbit.response.outputs(rows, orbit.moved, orbit.step)
-    apart = ~np.isin(response.orders, orbit.response.orders)
+    apart = ~among(response.orders, orbit.response.orders)
     apart &= period.told_apart(response.orders)
     aside = response.orders < period.per_mesh // 2 * period.meshes
     aside &= ~period.told_apart(response.orders)
+    squares = _squares(lacking)
+    every, whole, last = squares[:, 1:].sum(axis=1), _alternating(values), _alternating(moved)
+    missed, lines = squares[:, apart].sum(axis=1), squares[:, aside].sum(axis=1)
     left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
-        alternating = float(np.linalg.norm(values[own, 1:]))
+        alternating = math.sqrt(whole[own].sum())
         if alternating > _NOTHING * _terms(rows, own, orbit).max(initial=0.0):
-            left_out[group] = float(np.linalg.norm(lacking[own, 1:])) / alternating + outside
-            thinned[group] = float(np.linalg.norm(lacking[own][:, apart])) / alternating
-            besides[group] = float(np.linalg.norm(lacking[own][:, aside])) / alternating + outside
-            change[group] = float(np.linalg.norm(moved[own, 1:])) / alternating
+            left_out[group] = math.sqrt(every[own].sum()) / alternating + outside
+            thinned[group] = math.sqrt(missed[own].sum()) / alternating
+            besides[group] = math.sqrt(lines[own].sum()) / alternating + outside
+            change[group] = math.sqrt(last[own].sum()) / alternating
     return Accuracy(left_out, thinned, besides, change)
+
+
+def _squares(coefficients: np.ndarray) -> np.ndarray:
+    return coefficients.real**2 + coefficients.imag**2
+
+
+def _alternating(coefficients: np.ndarray) -> np.ndarray:
+    """(n,) sums of the squares of coefficients (n, harmonics) beside the means."""
+    return _squares(coefficients[:, 1:]).sum(axis=1)
 
 
 def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:
@@ -85,6 +100,5 @@ def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:
 
     A seat that nothing shakes has a mean velocity of zero, and rounding of its terms shakes it.
     """
-    modal, q = np.abs(rows.modal[own]), orbit.q
-    found = 0.5 * modal @ (np.abs(q.ahead[:, 0]) + np.abs(q.back[:, 0]))
+    found = np.abs(in_parts(rows.modal[own])) @ np.abs(orbit.q[:, 0])
     return found + np.abs(rows.of_channels[own]) @ np.abs(orbit.channels[:, 0])

@@ -21,7 +21,7 @@ from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, i
 from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
-from herringbone.analysis.steady.harmonic_balance.response import Coordinates, Response
+from herringbone.analysis.steady.harmonic_balance.response import Response
 
 _ITERATIONS = 40
 _EASY = 8
@@ -43,7 +43,7 @@ class _Answered(NamedTuple):
 
     response: Response
     channels: np.ndarray
-    q: Coordinates
+    q: np.ndarray
     angle: np.ndarray
     z: np.ndarray
 
@@ -96,29 +96,31 @@ class Balance:
         """d theta / dt [rad/s] under the means of the channels."""
         if not self.motion.turn:
             return 0.0
-        still = Response(self.problem, 0.0, self._every[:1], self.motion.speed)
-        return still.turning(still.coordinates(channels[:, :1]))[0]
+        if self.problem.free is not None:
+            return self.motion.speed
+        return float(self.problem.mean_speed @ channels[:, 0].real)
 
     def _answered(self, answer: Response, channels: np.ndarray) -> _Answered:
         """What the linear part does under channels; made anew where these change the speed."""
         q = answer.coordinates(channels)
-        speed, angle = answer.turning(q)
+        z, speed, angle = answer.seen(q)
         if self.motion.turn and abs(speed - answer.speed) > _SAME_SPEED * abs(speed):
             answer = self._response(speed, answer.orders)
             q = answer.coordinates(channels)
-            _, angle = answer.turning(q)
+            z, _, angle = answer.seen(q)
         problem = self.problem
-        z = answer.of(problem.arguments, q)
         z += problem.of_angle[:, None] * angle
         z += problem.of_channels @ channels
         return _Answered(answer, channels, q, angle, z)
 
-    def _begun(self, values: np.ndarray, known: np.ndarray) -> _Answered:
-        """The motion of a guess."""
+    def _begun(self, values: np.ndarray, known: np.ndarray, *, every: bool = False) -> _Answered:
+        """The motion of a guess, on the known orders that are in use, or on every one of them."""
         orders = self._every
         speed = self._first_speed(self._channels(orders[:1], values[:, :1], known[:1]))
         if self.period.meshes > 1:
-            used = self._in_use(self._response(speed, orders[:1]), values, known)
+            used = known
+            if not every:
+                used = self._in_use(self._response(speed, orders[:1]), values, known)
             orders = np.intersect1d(used, orders)
         channels = self._channels(orders, values, known)
         return self._answered(self._response(speed, orders), channels)
@@ -166,7 +168,7 @@ class Balance:
         moved = np.zeros_like(now.channels)
         moved[:count] = step
         return Orbit(
-            now.channels, now.response, now.q, _less(now.q, last.q), moved, now.angle, samples,
+            now.channels, now.response, now.q, now.q - last.q, moved, now.angle, samples,
             change, merit, iterations, change <= close or merit <= _ROUNDING,
             self.period,
         )  # fmt: skip
@@ -202,7 +204,7 @@ class Balance:
         _, laws = self._with_orders(now, samples)
         off = laws - channels[: len(laws)]
         nothing = np.zeros_like(channels)
-        still = _less(now.q, now.q)
+        still = np.zeros_like(now.q)
         return Orbit(
             channels, now.response, now.q, still, nothing, now.angle, samples, 0.0,
             self._size(samples, off, self._every), 1, converged=False, resolved=self.period,
@@ -254,9 +256,15 @@ class Balance:
         gains = mesh.gain(problem.along, problem.along_angle, np.arange(count), 2)[:, :, 1]
         return np.abs(problem.mean[:, None] * gains).sum(axis=0)
 
-    def missing(self, orbit: Orbit) -> Missing:
-        """What the laws give at these places, and an orbit at fewer of them lacks."""
-        now = self._begun(orbit.channels[: self.problem.values], orbit.response.orders)
+    def missing(self, orbit: Orbit, *, every: bool = False) -> Missing:
+        """What the laws give at these places, and an orbit at fewer of them lacks.
+
+        Args:
+            orbit: the motion.
+            every: keep all of its lines, also those that move the contact too little to be in use.
+        """
+        values, known = orbit.channels[: self.problem.values], orbit.response.orders
+        now = self._begun(values, known, every=every)
         samples = self.problem.laws(self._arguments(now))
         outside = self._outside(now.response, samples)
         now, laws = self._with_orders(now, samples)
@@ -313,7 +321,3 @@ class Balance:
         moved = np.linalg.norm(rows - self.problem.directions @ before, axis=1)
         sizes = np.where(alternating > 0.0, alternating, np.inf)
         return float((moved / sizes).max(initial=0.0))
-
-
-def _less(after: Coordinates, before: Coordinates) -> Coordinates:
-    return Coordinates(after.ahead - before.ahead, after.back - before.back)

@@ -48,3 +48,9 @@ def on(orders: np.ndarray, coefficients: np.ndarray, known: np.ndarray) -> np.nd
     _, here, there = np.intersect1d(orders, known, assume_unique=True, return_indices=True)
     found[:, here] = coefficients[:, there]
     return found
+
+
+def among(orders: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Which of the orders are among known ones, ascending and at least one."""
+    place = np.minimum(np.searchsorted(known, orders), known.size - 1)
+    return known[place] == orders

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.steady.harmonic_balance.fourier import among
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between, places_for
 from herringbone.analysis.steady.harmonic_balance.problem import Samples
-from herringbone.analysis.steady.harmonic_balance.response import Coordinates, Response
+from herringbone.analysis.steady.harmonic_balance.response import Response
 
 _WIDER = 2
 """How much farther aside lines are looked for that are not there."""
@@ -66,7 +67,7 @@ class Period(NamedTuple):
 
     def told_apart(self, orders: np.ndarray) -> np.ndarray:
         """Which orders are told from each other."""
-        return np.isin(orders, self.lines) if self.bases else orders < self.places // 2
+        return among(orders, self.lines) if self.bases else orders < self.places // 2
 
     def thinned_to_lines(self, bases: tuple[int, ...], sides: int) -> "Period | None":
         """The same with lines alone; None if they do not save most of the places."""
@@ -85,7 +86,7 @@ class Orbit(NamedTuple):
     Attributes:
         channels: (channels, harmonics) coefficients.
         response: of the linear part, at the frequency and speed of the motion.
-        q: modal coordinates.
+        q: modal coordinates, see `response`.
         moved: the part of them that the last correction made.
         step: (channels, harmonics) the last correction.
         angle: (harmonics,) coefficients of theta less its mean growth.
@@ -99,8 +100,8 @@ class Orbit(NamedTuple):
 
     channels: np.ndarray
     response: Response
-    q: Coordinates
-    moved: Coordinates
+    q: np.ndarray
+    moved: np.ndarray
     step: np.ndarray
     angle: np.ndarray
     samples: Samples

@@ -42,6 +42,11 @@ class LawsAlong(Protocol):
         """What they give at arguments (places, arguments); good until the next call."""
 
 
+def in_parts(rows: np.ndarray) -> np.ndarray:
+    """Real rows (n, 2 modes), over the real parts of q, then the imaginary ones, of Re(rows q)."""
+    return np.concatenate([rows.real, -rows.imag], axis=1)
+
+
 @dataclass(frozen=True)
 class Problem:
     """A linear part and its laws; see above.
@@ -76,6 +81,21 @@ class Problem:
     def values(self) -> int:
         """How many values the laws have."""
         return len(self.tangent)
+
+    @cached_property
+    def input_parts(self) -> np.ndarray:
+        """(2 modes, channels) real parts of the inputs, then the imaginary ones."""
+        return np.concatenate([self.inputs.real, self.inputs.imag])
+
+    @cached_property
+    def seen_parts(self) -> np.ndarray:
+        """(arguments + 1, 2 modes): the arguments, then `turns`, see `in_parts`."""
+        return in_parts(np.vstack([self.arguments, self.turns]))
+
+    @cached_property
+    def mean_speed(self) -> np.ndarray:
+        """(channels,): d theta / dt under the means of channels, where these decide on it."""
+        return (self.turns / -self.rates @ self.inputs).real
 
     @cached_property
     def stiff(self) -> np.ndarray:
