@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 
 import herringbone as hb
 from herringbone.analysis.steady.assumed import assumed
+from herringbone.analysis.steady.marched import start_of
 from herringbone.analysis.steady.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
@@ -31,9 +32,7 @@ def marched(
     steps = Steps(STEP, 4, 1e-9, lean=False)
     core, orbit = state.structure.core, state.orbit
     run = core.solution(steps)
-    q = orbit.q.ahead.sum(axis=1) + orbit.q.back[:, 1:].sum(axis=1)
-    angle = (orbit.angle[0] + 2.0 * orbit.angle[1:].sum()).real
-    own = np.concatenate([q.real, q.imag, [angle]])
+    own = start_of(orbit)
     run.state.q[: own.size] = own
     outputs = core.outputs(columns, steps, inside=False)
     places = PER_PERIOD * state.meshes
@@ -191,3 +190,27 @@ def test_a_state_is_drawn():
     pooled = np.sqrt(np.mean(np.abs(state.amplitudes("bearing_force")[:, 1:]) ** 2, axis=0))
     assert drawn.max() == pytest.approx(pooled.max())
     assert "stable" in figure.axes[2 * rows].get_title(loc="left")
+
+
+def test_a_line_through_two_neighbours_leads_on():
+    """Its error falls with the square of the way, that of the last one alone with the way."""
+    solver, _ = prepared_solver("test_rig", wishes=Wishes(values=STILL), tolerance=1e-6)
+    off = []
+    for way in (5e-4, 2.5e-4):
+        points = [Point(speed=(1.0 + k * way) * 1310.0 * math.pi / 30.0) for k in range(3)]
+        near = solver.solve(points[1], solver.solve(points[0])).neighbour
+        exact = solver.solve(points[2], near).neighbour.guess.values
+        guesses = near.towards(points[2]), near.guess
+        off.append([np.linalg.norm((guess.values - exact)[:, 1:]) for guess in guesses])
+    (along, still), (nearer_along, nearer_still) = off
+    assert along / nearer_along == pytest.approx(4.0, rel=0.2)
+    assert still / nearer_still == pytest.approx(2.0, rel=0.1)
+    for elsewhere in (points[2]._replace(torque=100.0), Point(speed=2.0 * points[2].speed)):
+        assert near.towards(elsewhere) is near.guess
+
+
+def test_along_a_line_a_neighbour_takes_fewer_iterations(solver):
+    points = [Point(speed=(1.0 + k * 1e-3) * 1310.0 * math.pi / 30.0) for k in range(3)]
+    near = solver.solve(points[1], solver.solve(points[0])).neighbour
+    one, other = (solver.solve(points[2], n) for n in (near, near._replace(before=None)))
+    assert one.orbit.iterations < other.orbit.iterations

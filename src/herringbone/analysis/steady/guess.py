@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.fourier import on
 from herringbone.analysis.steady.harmonic_balance.lattice import lines_between
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.marched import March, marched
@@ -28,6 +29,8 @@ _R_MIN = 30.0 / np.pi
 _RAMP = 1.0
 """Turns of the first pinion over which deviations come in that part teeth at rest."""
 
+_FARTHEST = 2.0
+"""Way to a point beyond two neighbours, over the way between them, up to which a line leads on."""
 _SHORTEST, _LONGEST = 1e-7, 100.0
 """Periods [s] that a march follows."""
 _FASTEST = 1e6
@@ -55,10 +58,39 @@ class Neighbour(NamedTuple):
     Attributes:
         guess: its laws' values.
         meshes: of its period.
+        point: where it is.
+        before: the one from which it was found, without its own one.
     """
 
     guess: Guess
     meshes: int
+    point: Point = Point()
+    before: "Neighbour | None" = None
+
+    def towards(self, point: Point) -> Guess:
+        """A guess at a point: along the line through both, if speed or torque alone goes on."""
+        before = self.before
+        if before is None or before.meshes != self.meshes:
+            return self.guess
+        if not (share := _share(before.point, self.point, point)):
+            return self.guess
+        values, orders, per_mesh = self.guess
+        then = on(orders, before.guess.values, before.guess.orders)
+        return Guess(values + share * (values - then), orders, per_mesh)
+
+
+def _share(first: Point, second: Point, third: Point) -> float:
+    """How far the third point lies beyond the second, over the way from the first; 0: elsewhere."""
+    if not first.values == second.values == third.values:
+        return 0.0
+    speeds, torques = zip(*(point[:2] for point in (first, second, third)), strict=True)
+    if len(set(speeds)) > 1 and len(set(torques)) > 1:
+        return 0.0
+    own = speeds if len(set(speeds)) > 1 else torques
+    if None in own or own[0] == own[1]:
+        return 0.0
+    share = (own[2] - own[1]) / (own[1] - own[0])
+    return share if abs(share) <= _FARTHEST else 0.0
 
 
 def several(motion: Motion, times: int) -> Motion:

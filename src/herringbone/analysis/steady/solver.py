@@ -111,11 +111,14 @@ class SteadySolver:
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             given = motion_at(structure, point)
-            found, notes = self._found(structure, given, near)
+            found, notes = self._found(structure, given, near, point)
         motion, orbit, errors, settled = found
         if point.torque == 0.0 and not orbit.converged:
             notes = (*notes, _NO_LOAD)
-        return SteadyState(structure, point, motion, orbit, errors, self.tolerance, notes, settled)
+        before = near._replace(before=None) if near else None
+        return SteadyState(
+            structure, point, motion, orbit, errors, self.tolerance, notes, settled, before
+        )
 
     def _at(self, point: Point) -> Structure:
         """The structure with the values of a point."""
@@ -126,12 +129,12 @@ class SteadySolver:
         return self._structure
 
     def _found(
-        self, structure: Structure, motion: Motion, near: Neighbour | None
+        self, structure: Structure, motion: Motion, near: Neighbour | None, point: Point
     ) -> tuple[Found, tuple[str, ...]]:
         """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
         unstable, found = None, None
         at_rest = cache(partial(standing, structure, motion))  # a neighbour often needs none
-        for times, guess in self._guesses(structure, motion, at_rest, near):
+        for times, guess in self._guesses(structure, motion, at_rest, near, point):
             tried = self._resolved(structure, several(motion, times), times, guess)
             if tried is None:
                 break
@@ -169,11 +172,18 @@ class SteadySolver:
 
     @staticmethod
     def _guesses(
-        structure: Structure, motion: Motion, at_rest: Callable[[], Orbit], near: Neighbour | None
+        structure: Structure,
+        motion: Motion,
+        at_rest: Callable[[], Orbit],
+        near: Neighbour | None,
+        point: Point,
     ) -> Iterator[tuple[int, Guess]]:
         """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
         if near is not None and near.meshes % structure.meshes == 0:
-            yield near.meshes // structure.meshes, near.guess
+            times, ahead = near.meshes // structure.meshes, near.towards(point)
+            yield times, ahead
+            if ahead is not near.guess:
+                yield times, near.guess
         if shortly := begun_shortly(structure, motion, at_rest(), PLACES):
             yield 1, shortly
         yield 1, begun(structure, motion, at_rest(), PLACES)

@@ -35,6 +35,7 @@ class SteadyState(PeriodicMotion):
         tolerance: that was asked for.
         notes: lines that the user should read.
         settled: how the march has settled by which it was found; None: by harmonic balance.
+        before: the neighbour from which it was found.
     """
 
     structure: Structure
@@ -45,6 +46,7 @@ class SteadyState(PeriodicMotion):
     tolerance: float
     notes: tuple[str, ...] = ()
     settled: Settled | None = None
+    before: Neighbour | None = None
 
     def noted(self, notes: Sequence[str]) -> "SteadyState":
         """The same state with further notes."""
@@ -76,7 +78,7 @@ class SteadyState(PeriodicMotion):
         orbit = self.orbit
         values = orbit.channels[: self.structure.problem.values]
         guess = Guess(values, orbit.response.orders, orbit.resolved.per_mesh)
-        return Neighbour(guess, self.meshes)
+        return Neighbour(guess, self.meshes, self.point, self.before)
 
     @property
     def period(self) -> float:

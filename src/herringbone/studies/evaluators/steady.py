@@ -114,19 +114,19 @@ class _States:
     def kept(self, near: _Near) -> dict[str, np.ndarray]:
         """See `Resumable`."""
         assert near.state is not None
-        guess, meshes = near.state
-        return {
-            "values": guess.values,
-            "orders": guess.orders,
-            "numbers": np.array([guess.per_mesh, meshes]),
-            "first": np.array(json.dumps(near.first)),
-        }
+        arrays, told = {}, []
+        for k, own in enumerate(n for n in (near.state, near.state.before) if n is not None):
+            arrays[f"values.{k}"], arrays[f"orders.{k}"] = own.guess.values, own.guess.orders
+            told.append([own.guess.per_mesh, own.meshes, own.point])
+        return {**arrays, "told": np.array(json.dumps({"first": near.first, "states": told}))}
 
     def renewed(self, kept: Mapping[str, np.ndarray]) -> _Near:
         """See `Resumable`."""
-        per_mesh, meshes = (int(number) for number in kept["numbers"])
-        state = Neighbour(Guess(kept["values"], kept["orders"], per_mesh), meshes)
-        return self._begun(json.loads(str(kept["first"])))._replace(state=state)
+        told, state = json.loads(str(kept["told"])), None
+        for k, (per_mesh, meshes, at) in reversed(list(enumerate(told["states"]))):
+            guess = Guess(kept[f"values.{k}"], kept[f"orders.{k}"], per_mesh)
+            state = Neighbour(guess, meshes, SteadyPoint(*at), state)
+        return self._begun(told["first"])._replace(state=state)
 
     def _sensitivities(self, state: SteadyState, patterns: tuple[str, ...]) -> dict[str, Figure]:
         """By group and parameter; raises ParameterError if there are none."""
