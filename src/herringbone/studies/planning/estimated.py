@@ -1,18 +1,19 @@
 """The ladder of leaner models, with estimates of what each errs, before any of them is solved."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from herringbone.analysis.leaner.cuts import Cut, cuts_of, modes_of
 from herringbone.analysis.leaner.estimate import Estimates
-from herringbone.analysis.leaner.question import Question
+from herringbone.analysis.leaner.question import Apart, Question
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import Lean
 from herringbone.studies.planning.rung import SHARE, STEADY, Rung, Worst, worst
 
-_STAIRS = 8
+_STAIRS = 5
 """Rungs of modes that are listed."""
 _SAFE = 0.8
 """Of the share of the tolerance that a model may err: probes are not the whole range."""
@@ -51,7 +52,10 @@ class Ladder:
 
     def estimate(self, lean: Lean) -> Worst:
         """The worst error of a leaner model at the probes."""
-        found, leaner = [], dict[Structure, Structure]()
+        return worst(self._questions, self._errors(lean))
+
+    def _errors(self, lean: Lean) -> Iterator[tuple[Point, Mapping[str, Apart]]]:
+        leaner = dict[Structure, Structure]()
         for state, estimates in zip(self._states, self._estimates, strict=True):
             if lean.only_held:
                 by_name = estimates.held(lean.held)
@@ -60,8 +64,13 @@ class Ladder:
                 if own not in leaner:
                     leaner[own] = own.leaner(lean)
                 by_name = estimates.of(leaner[own])
-            found.append((state.point, by_name))
-        return worst(self._questions, found)
+            yield state.point, by_name
+
+    def _fits(self, lean: Lean) -> bool:
+        """True if a model errs little enough at all probes; the first at which not tells."""
+        return all(
+            worst(self._questions, [each]).ratio <= _SAFE * SHARE for each in self._errors(lean)
+        )
 
     def without(self, count: int) -> Lean:
         """The model without the modes that matter least."""
@@ -101,7 +110,7 @@ class Ladder:
         low, high = 0, len(self.modes)
         while high - low > 1:
             middle = (low + high) // 2
-            if self.estimate(self.without(middle)).ratio <= _SAFE * SHARE:
+            if self._fits(self.without(middle)):
                 low = middle
             else:
                 high = middle
