@@ -71,7 +71,7 @@ def _with(**model) -> Scene:
     ("scene", "error", "message"),
     [
         (_with(one_way=("gearbox.modal_housing",)), ParameterError, "has no one_way"),
-        (_with(linear=("gearbox.gear_mesh",)), ParameterError, "frozen or linear"),
+        (_with(linear=("gearbox.gear_mesh",)), ParameterError, "frozen, linear or harmonics"),
         (_with(hold=("gearbox.gear_mesh.angle",)), StructureError, "no state 'gearbox.gear_mesh.a"),
     ],
 )

@@ -9,7 +9,7 @@ from herringbone.analysis.steady.structure import Structure
 
 _MOST_PLACES, _MOST_IN_ALL = 2048, 150_000
 """Points in time of a mesh period, and of a long one, at most."""
-_THIN = 0.05
+_THIN = 0.005
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
 _THINNER = 0.3

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.fourier import among
+from herringbone.analysis.steady.harmonic_balance.fourier import among, squares
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import in_parts
 from herringbone.analysis.steady.harmonic_balance.response import Rows
@@ -72,9 +72,9 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     apart &= period.told_apart(response.orders)
     aside = response.orders < period.per_mesh // 2 * period.meshes
     aside &= ~period.told_apart(response.orders)
-    squares = _squares(lacking)
-    every, whole, last = squares[:, 1:].sum(axis=1), _alternating(values), _alternating(moved)
-    missed, lines = squares[:, apart].sum(axis=1), squares[:, aside].sum(axis=1)
+    powers = squares(lacking)
+    every, whole, last = powers[:, 1:].sum(axis=1), _alternating(values), _alternating(moved)
+    missed, lines = powers[:, apart].sum(axis=1), powers[:, aside].sum(axis=1)
     left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
         alternating = math.sqrt(whole[own].sum())
@@ -86,13 +86,9 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     return Accuracy(left_out, thinned, besides, change)
 
 
-def _squares(coefficients: np.ndarray) -> np.ndarray:
-    return coefficients.real**2 + coefficients.imag**2
-
-
 def _alternating(coefficients: np.ndarray) -> np.ndarray:
     """(n,) sums of the squares of coefficients (n, harmonics) beside the means."""
-    return _squares(coefficients[:, 1:]).sum(axis=1)
+    return squares(coefficients[:, 1:]).sum(axis=1)
 
 
 def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:

@@ -11,13 +11,14 @@ answers to, and values without tangents are replaced by what the laws give. Of a
 meshes those harmonics are in use that are not negligible.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.correction import correct_at_once
 from herringbone.analysis.steady.harmonic_balance.families import Families
-from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on
+from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency, in_time, on, squares
 from herringbone.analysis.steady.harmonic_balance.krylov import correct_by_families
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
@@ -317,7 +318,7 @@ class Balance:
     def _change(self, before: np.ndarray, after: np.ndarray) -> float:
         """What a correction changes the stiff arguments by, over their alternating part."""
         rows = self.problem.directions @ after
-        alternating = np.linalg.norm(rows[:, 1:], axis=1)
-        moved = np.linalg.norm(rows - self.problem.directions @ before, axis=1)
+        alternating = squares(rows[:, 1:]).sum(axis=1)
+        moved = squares(rows - self.problem.directions @ before).sum(axis=1)
         sizes = np.where(alternating > 0.0, alternating, np.inf)
-        return float((moved / sizes).max(initial=0.0))
+        return math.sqrt((moved / sizes).max(initial=0.0))

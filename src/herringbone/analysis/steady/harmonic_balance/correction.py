@@ -34,7 +34,8 @@ class Bent(NamedTuple):
 def bent(problem: Problem, samples: Samples) -> Bent:
     """What a step of Newton has to solve for."""
     bends = samples.k - problem.mean
-    unknown = np.unique(problem.owner[bends.any(axis=0)])
+    bent_ones = bends.any(axis=0)
+    unknown = problem.stiff if bent_ones.all() else np.unique(problem.owner[bent_ones])
     place = np.full(problem.values, -1)
     place[unknown] = np.arange(unknown.size)
     return Bent(unknown, place[problem.owner], bends, problem.along, problem.along_angle)
