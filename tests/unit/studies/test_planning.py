@@ -18,10 +18,11 @@ from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
 from herringbone.scenes import Ask, Model, Motion, Operating, Scene, read_scene
 from herringbone.scenes.scene_text import scene_text
+from herringbone.studies.planning.certified import Certifier
 from herringbone.studies.planning.plan import Plan, plan
 from herringbone.studies.planning.points import points_to_probe, points_to_test
 from herringbone.studies.planning.rung import FUSED, SHARE, STEADY
-from herringbone.studies.planning.text import plan_summary, plan_text, write_plan
+from herringbone.studies.planning.text import estimates_text, plan_summary, plan_text, write_plan
 
 _R_MIN = math.pi / 30.0
 _STILL = {"gear_mesh.symmetry_deviation": 0.0}
@@ -69,6 +70,26 @@ def test_the_whole_ladder_is_there_and_says_why():
     assert "<- choice" in text
     assert "Planning took" in text
     assert json.loads(json.dumps(plan_summary(found)))["choice"] == found.choice.name
+
+
+def test_estimates_are_told_before_any_leaner_model_is_solved(monkeypatch):
+    told, solved = [], Certifier.error
+
+    def error(self, lean):
+        told.append("solved")
+        return solved(self, lean)
+
+    monkeypatch.setattr(Certifier, "error", error)
+    ask = Ask(("bearing force",), Form.LEVEL, 0.05)
+    at = Operating(speed=(1300.0 * _R_MIN,) * 2)
+    found = plan("test_rig", scene=_scene(ask, operating=at), estimated=told.append)
+    (rungs, *rest) = told
+    assert rest == ["solved"] * len(rest) != []
+    assert {rung.name: rung.estimate for rung in rungs}.items() <= {
+        rung.name: rung.estimate for rung in found.rungs
+    }.items()
+    assert not any(rung.measured for rung in rungs)
+    assert "4 harmonics of the tables" in "\n".join(estimates_text(rungs))
 
 
 def test_laws_that_bend_are_not_frozen():

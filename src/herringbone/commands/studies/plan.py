@@ -40,6 +40,7 @@ def run(options: argparse.Namespace) -> int:
     """
     from herringbone.studies.planning.plan import plan  # noqa: PLC0415 (numba)
     from herringbone.studies.planning.text import (  # noqa: PLC0415
+        estimates_text,
         plan_summary,
         plan_text,
         write_plan,
@@ -54,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
         scene=options.scene,
         **given_by(options),
         chart=options.chart,
+        estimated=None if options.json else lambda rungs: show("\n".join(estimates_text(rungs))),
     )
     written = write_plan(found, options.output) if options.output else []
     if found.joint:

@@ -1,7 +1,7 @@
 """Plans: how much model, and which solver, a scene's questions need."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -85,6 +85,7 @@ def plan(
     housing: Named | None = None,
     chart: bool = False,
     for_fmu: bool = False,
+    estimated: Callable[[Sequence[Rung]], None] | None = None,
 ) -> Plan:
     """The least model and the solver that answer what a scene asks.
 
@@ -94,6 +95,8 @@ def plan(
     Args:
         system, scene, values, gear, housing: see `herringbone.run`; the scene asks.
         for_fmu: choose what an FMU can do without, as much as may go; states are its cost.
+        estimated: called with the ladder of steady states and its estimates, before any leaner
+            model is solved.
         chart: also solve joint choices of model and tolerance, for a picture; of steady states.
 
     Raises:
@@ -122,7 +125,7 @@ def plan(
         questions = questions_of(solver.structure.core, asking.asks)
         fine = solver.leaner(WHOLE, tolerance_for(questions, 1.0 / FINER))
         rungs, certifier, said = steady_rungs(
-            fine, questions, asking, lean_of(asking), for_fmu=for_fmu
+            fine, questions, asking, lean_of(asking), for_fmu=for_fmu, estimated=estimated
         )
         tolerance, charted = certifier.tolerance, certifier
     asking = replace(asking, values={**asking.values, **as_texts(values)})

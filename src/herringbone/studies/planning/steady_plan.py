@@ -1,6 +1,6 @@
 """A plan for what is asked of steady states."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +36,7 @@ def steady_rungs(
     by_hand: Lean,
     *,
     for_fmu: bool = False,
+    estimated: Callable[[Sequence[Rung]], None] | None = None,
 ) -> tuple[list[Rung], Certifier, list[str]]:
     """The ladder with its choice, what it was certified with, and what is to be said.
 
@@ -45,6 +46,7 @@ def steady_rungs(
         scene: that asks.
         by_hand: a leaner model that the user gave.
         for_fmu: an FMU is wanted: what leaves out most is chosen, and states alone.
+        estimated: called with the rungs before any leaner model is solved.
 
     Raises:
         ParameterError: there is no steady state where it is asked for.
@@ -58,6 +60,8 @@ def steady_rungs(
     certifier = Certifier(solver, questions, points_to_test(scene.operating, long=long), SHARE)
     if by_hand:
         rungs.append(ladder.by_hand(by_hand))
+    if estimated:
+        estimated(rungs)
     hand = rungs[-1] if by_hand else None
     may = [
         rung

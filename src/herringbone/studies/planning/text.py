@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from herringbone.core import HerringboneError
@@ -34,6 +34,13 @@ def plan_text(plan: Plan) -> list[str]:
             f"{_time(rung.cost):>10}  {chosen}"
         )
     return [*lines, "", *_said(plan)]
+
+
+def estimates_text(rungs: Sequence[Rung]) -> list[str]:
+    """Lines for people, before any leaner model is solved."""
+    width = max(len(rung.name) for rung in rungs)
+    lines = [f"  {rung.name:{width}}  {_percent(rung.estimate):>9}" for rung in rungs]
+    return ["Model errors, estimated before any leaner model is solved:", *lines, ""]
 
 
 def _said(plan: Plan) -> Iterator[str]:
