@@ -42,6 +42,9 @@ SAMPLE = 40e-6
 _ANGLE = f"{names.GEAR}.pinion.phi"
 _LEAST = 1e-12
 _SPEED_IN = math.pi / 30.0
+_TOLERANCE = 1e-4
+"""Of groups of channels: motions are told that are a hundredth of the largest one of their group,
+and of which a tolerance of 1e-3 is a fifth."""
 
 
 def unit(signal: str) -> str:
@@ -81,7 +84,9 @@ def settled(
         names.SEAT_MOTION: float(seats_move),
         **(values or {}),
     }
-    solver, _ = prepared_solver(system, point=Point(torque=torque), wishes=Wishes(values=given))
+    solver, _ = prepared_solver(
+        system, point=Point(torque=torque), wishes=Wishes(values=given), tolerance=_TOLERANCE
+    )
     near = None
     for speed in speeds:
         near = solver.solve(Point(speed=speed * _SPEED_IN), near)

@@ -52,7 +52,7 @@ def steady(
         torque: at the pinion [N m], likewise.
         values, gear, housing, replace_parts: see `herringbone.run`.
         tolerance: error of the alternating part of each group of channels, harmonics left out
-            included; of a run see above.
+            included; small channels beside large ones may err more; of a run see above.
         near: a state nearby, to begin from; it decides on the branch where there are several.
         longest: duration of a run that is tried at most [s].
 

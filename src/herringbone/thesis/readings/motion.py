@@ -35,7 +35,8 @@ PLACES = (*SEAT_DOFS, *((sensor, "z") for sensor in ("A", "B", "C")))
 """Where the housing's velocity is told."""
 STEADY, RUN = "steady state", "run"
 _PER_MESH = 64
-_TOLERANCE = 3e-3
+_TOLERANCE = 1e-4
+"""Of groups of channels; sentences are about small ones in them, too."""
 _SETTLING, _STEP = 0.25, 5e-5
 """Of a run [s]."""
 _LEAST_LOAD = 0.2
