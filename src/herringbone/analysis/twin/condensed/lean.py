@@ -85,6 +85,14 @@ def names_of_states(instances: Iterable[Instance]) -> tuple[str, ...]:
     return tuple(found)
 
 
+def _part(twin: Twin, name: str) -> int:
+    """Index of a part."""
+    for p, instance in enumerate(twin.instances):
+        if instance.name == name:
+            return p
+    raise StructureError(f"{twin.system.name}: model: it has no part {shown(name, 60)}")
+
+
 def with_harmonics(twin: Twin, lean: Lean) -> Twin:
     """The twin of a leaner model, as far as that is one of tables with fewer harmonics.
 
@@ -93,9 +101,7 @@ def with_harmonics(twin: Twin, lean: Lean) -> Twin:
     """
     blocks: dict[str, np.ndarray] = {}
     for part, count in lean.harmonics:
-        found = next((i for i in twin.instances if i.name == part), None)
-        if found is None:
-            raise StructureError(f"{twin.system.name}: model: it has no part {shown(part, 60)}")
+        found = twin.instances[_part(twin, part)]
         laws = laws_of(found)
         block = blocks.setdefault(part, found.block.copy())
         why = laws.keep_harmonics(block, count) if laws else "it has no laws"
@@ -146,10 +152,7 @@ def _driven(twin: Twin, equations: Equations, name: str, seen: Sequence[int]) ->
 
     Its rates are A_h x_h + B u, and B follows from what the others drive them by, B E_o.
     """
-    found = [p for p, instance in enumerate(twin.instances) if instance.name == name]
-    if not found:
-        raise StructureError(f"{twin.system.name}: model: it has no part {shown(name, 60)}")
-    p = found[0]
+    p = _part(twin, name)
     first = twin.layout.block_first[p]
     declaration = twin.instances[p].component.declaration
     inputs = {first + declaration.index[v.name] for v in declaration.inputs}
