@@ -18,6 +18,7 @@ from herringbone.analysis.twin.condensed.wanted import Wanted
 from herringbone.analysis.twin.fused.core import Core
 from herringbone.core import StructureError, common_period
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
+from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 _MOST = 16
@@ -47,6 +48,7 @@ class Structure:
         StructureError: it cannot be taken apart, or its motion does not repeat.
     """
 
+    @one_blas_thread()
     def __init__(
         self,
         system: System,
@@ -72,6 +74,7 @@ class Structure:
         self.turns_of_pinion = float(turns) * ratio
         self.meshes = round(self.turns_of_pinion * self._teeth())
 
+    @one_blas_thread()
     def leaner(self, lean: Lean) -> "Structure":
         """The same of a leaner model, without taking the system apart again.
 

@@ -7,7 +7,6 @@ from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.settled import SettledState
 from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
-from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
@@ -21,7 +20,6 @@ from herringbone.running.prepared import Named, Prepared, Wishes
 from herringbone.scenes import Scene
 
 
-@one_blas_thread()
 def steady(
     system: str | Path | System,
     *,
