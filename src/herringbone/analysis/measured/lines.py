@@ -40,7 +40,8 @@ def told_speed(
     It is the speed at which the places of predicted lines, moved along, have lines; the stated one
     if that is nearly as good, but for less than the width of a line. Logarithms of amplitudes are
     added, as resonances at other places make other lines large. With teeth that deviate, mesh
-    harmonics are not the largest lines, so that all are asked.
+    harmonics are not the largest lines, so that all are asked. Far from the stated speed a
+    wrong one may do better by chance: 0.7298 was told as 0.7393, one of some fifty drawn ones.
 
     Args:
         samples: (n,).
