@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import KroghInterpolator
 
 from herringbone.analysis.stability.steps.micro_steps import Rows, composed
 
@@ -21,12 +22,9 @@ def system():
 def stepped(x, nodal, degree, count, step):
     """States, outputs of the first at the nodes, and of both at the end, after all micro steps."""
     a, b, c, d = system()
-    polynomials = np.polyfit(np.linspace(0.0, 1.0, degree + 1), nodal.T, degree)
+    inputs = KroghInterpolator(np.linspace(0.0, 1.0, degree + 1), nodal.T)
     total, found = max(degree, 1) * count, []
     h = step / total
-
-    def inputs(place):
-        return np.array([np.polyval(p, place) for p in polynomials.T])
 
     for k in range(total):
         early, middle, late = (b @ inputs((k + s) / total) for s in (0.0, 0.5, 1.0))
