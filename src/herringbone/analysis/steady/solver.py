@@ -49,6 +49,9 @@ _NO_ROTATION = (
 )
 
 
+_NOTHING = 1e-6
+"""Force or torque [N, N m] that is rounding: teeth that it holds together stand at the edge of
+contact, and whether an iteration stays there depends on the processor."""
 _NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
 
 
@@ -112,9 +115,9 @@ class SteadySolver:
             structure = self._at(point)
             given = motion_at(structure, point)
             found, notes = self._found(structure, given, near, point)
+        if point.torque == 0.0 and not (found.orbit.converged and _carries(found.orbit)):
+            found, notes = none_found(found.motion, found.orbit), (*notes, _NO_LOAD)
         motion, orbit, errors, settled = found
-        if point.torque == 0.0 and not orbit.converged:
-            notes = (*notes, _NO_LOAD)
         before = near._replace(before=None) if near else None
         return SteadyState(
             structure, point, motion, orbit, errors, self.tolerance, notes, settled, before
@@ -209,6 +212,11 @@ class SteadySolver:
                 return Found(motion, orbit, errors)
             start, known = orbit.channels[: problem.values], orbit.response.orders
             resolution = resolution.finer(errors, self.tolerance)
+
+
+def _carries(orbit: Orbit) -> bool:
+    """True if a law carries anything at any place."""
+    return bool(np.abs(orbit.samples.f).max() > _NOTHING)
 
 
 def _searched(found: Found) -> bool:
