@@ -28,14 +28,13 @@ def measures(motion: Motion) -> dict[tuple[str, str, str], float]:
     `A`, `B`, `C`; and, with the kind "mean", secant stiffness `left.stiffness`, `right.stiffness`.
     """
     found: dict[tuple[str, str, str], float] = {}
+    places = _places(motion)
     for what, signals in _groups(motion).items():
-        for evaluation in EVALUATIONS:
-            pieces = _pieces(signals, motion, evaluation)
-            off = pieces - pieces.mean(axis=-1, keepdims=True)
-            squares = np.sum(np.mean(np.square(off), axis=(1, 2))) / _directions(what, len(signals))
-            found[what, LEVEL, evaluation] = float(np.sqrt(squares))
-            swing = 0.5 * np.ptp(off, axis=-1).mean(axis=-1)
-            found[what, SWING, evaluation] = float(np.sqrt(np.mean(swing**2)))
+        directions = _directions(what, len(signals))
+        settled = _level_and_swing(signals[:, None, :], directions)
+        published = settled if places is None else _level_and_swing(signals[:, places], directions)
+        for evaluation, figures in zip(EVALUATIONS, (settled, published), strict=True):
+            found[what, LEVEL, evaluation], found[what, SWING, evaluation] = figures
     for side in _SIDES:
         force, deflection = (
             motion.signals[f"{GEAR}.mesh_{side}.{q}"] for q in ("force", "deflection")
@@ -69,16 +68,23 @@ def _directions(what: str, signals: int) -> int:
     return signals // 2 if what.endswith("seat_radial") else signals
 
 
-def _pieces(signals: np.ndarray, motion: Motion, evaluation: str) -> np.ndarray:
-    """Signals (signals, pieces, n) cut into what is evaluated at once."""
-    count = signals.shape[1]
+def _level_and_swing(pieces: np.ndarray, directions: int) -> tuple[float, float]:
+    """Of signals (signals, pieces, n) that are cut into what is evaluated at once."""
+    off = pieces - pieces.mean(axis=-1, keepdims=True)
+    squares = np.sum(np.mean(np.square(off), axis=(1, 2))) / directions
+    swing = 0.5 * np.ptp(off, axis=-1).mean(axis=-1)
+    return float(np.sqrt(squares)), float(np.sqrt(np.mean(swing**2)))
+
+
+def _places(motion: Motion) -> np.ndarray | None:
+    """Samples (pieces, n) of the windows; None where a window is the whole motion."""
+    count = len(next(iter(motion.signals.values())))
     length = round(WINDOW / motion.step)
-    if evaluation == SETTLED or motion.repeats or length >= count:
-        return signals[:, None, :]
+    if motion.repeats or length >= count:
+        return None
     pieces = math.ceil(count / length)
     starts = np.arange(pieces) * count // pieces
-    places = (starts[:, None] + np.arange(length)) % count
-    return signals[:, places]
+    return (starts[:, None] + np.arange(length)) % count
 
 
 def series(values: Sequence[float]) -> float:
