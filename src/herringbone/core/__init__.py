@@ -3,7 +3,7 @@
 Names are loaded when they are used: who only needs an error needs no arrays.
 """
 
-from importlib import import_module
+import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -110,5 +110,5 @@ if not TYPE_CHECKING:  # type checkers take the names above, and know no others
 
     def __getattr__(name: str) -> object:
         if name in _WHERE:
-            return getattr(import_module(_WHERE[name]), name)
+            return getattr(importlib.import_module(_WHERE[name]), name)
         raise AttributeError(f"module 'herringbone.core' has no attribute '{name}'")

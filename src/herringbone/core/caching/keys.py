@@ -35,7 +35,8 @@ _LENGTH = 16
 _DESCRIBED = ".dist-info", ".egg-info"
 """How folders that describe what is installed end."""
 _BY_NAME = "importlib.import_module"
-"""Who imports this, as the registry of components does, imports any module of its package."""
+"""Who imports this, as the registry of components does, imports any module of its package. Who only
+loads lazily what it imports for type checkers takes `importlib` itself."""
 
 
 def digest_of(*texts: str | bytes) -> str:
@@ -156,11 +157,18 @@ def _closure(modules: Iterable[str], without: str = "") -> set[str]:
         if without and f"{module}.".startswith(f"{without}."):
             continue
         found.add(module)
-        imports = _MODULES[module].imports
-        todo += _known(imports)
-        if _BY_NAME in imports:
-            package = module.rpartition(".")[0] + "."
-            todo += [name for name in _MODULES if name.startswith(package)]
+        todo += _imported(module)
+    return found
+
+
+@cache
+def _imported(module: str) -> list[str]:
+    """Modules of the package that one of them imports."""
+    imports = _MODULES[module].imports
+    found = _known(imports)
+    if _BY_NAME in imports:
+        package = module.rpartition(".")[0] + "."
+        found += [name for name in _MODULES if name.startswith(package)]
     return found
 
 
