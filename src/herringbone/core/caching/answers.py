@@ -13,6 +13,8 @@ from herringbone.core.places.files import is_folder
 from herringbone.core.places.noted import noting
 from herringbone.core.places.paths import cache_root
 
+FOLDER = "answers"
+"""In the cache."""
 _FOLDER, _NOTHING = "a folder", "nothing"
 
 
@@ -24,7 +26,7 @@ class Answers:
     """
 
     def __init__(self, *asked: str) -> None:
-        self._file = cache_root() / "answers" / f"{answer_key(*asked)}.json"
+        self._file = cache_root() / FOLDER / f"{answer_key(*asked)}.json"
 
     def known(self) -> Any:  # noqa: ANN401 (what was kept)
         """The answer that was kept; None if there is none, or a file has changed."""
