@@ -7,6 +7,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
+from herringbone.core.caching import answers
 from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.fmi import build_python_fmus
@@ -32,6 +33,13 @@ def strangers_in_process():
     """A cell takes a third of a second to start; the tests of cells ask for them."""
     with foreign_fmu_policy(in_process=True):
         yield
+
+
+@pytest.fixture(autouse=True)
+def own_answers(request, tmp_path_factory, monkeypatch):
+    """What a test is told, with whatever it has replaced, no other test and no user is told."""
+    place = tmp_path_factory.getbasetemp() / "answers" / str(id(request.node))
+    monkeypatch.setattr(answers, "FOLDER", str(place))
 
 
 @contextmanager

@@ -18,7 +18,6 @@ it is larger at all angles than the angle changes it, no angle balances these to
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.optimize import brentq
 
 from herringbone.analysis.rigid_rotation import names_of_states, rigid_rotation, steady_rows
 from herringbone.analysis.slopes import slopes
@@ -58,6 +57,8 @@ def balanced_angles(twin: Twin, x: np.ndarray, scale: np.ndarray) -> Iterator[np
     Raises:
         NoBalanceError: after the last one, if angles change less than what the torques leave.
     """
+    from scipy.optimize import brentq  # noqa: PLC0415 (lazy)
+
     turning = np.flatnonzero(rigid_rotation(twin, x))
     rotating, _ = steady_rows(twin)
     if len(turning) != 1 or len(rotating) != 1:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from functools import cache, partial
 from pathlib import Path
+from typing import NoReturn
 
 import herringbone
 from herringbone.commands import bench as bench_command
@@ -75,10 +76,19 @@ def _housing(options: argparse.Namespace) -> AbstractContextManager[Policy]:
     )
 
 
+class _Version(argparse.Action):
+    """Shows the version, which takes longer to find than to show help."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        """Show it; the program ends."""
+        show(herringbone.__version__)
+        parser.exit()
+
+
 @cache
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(prog="herringbone", description="FMI co-simulation of herringbone gearboxes")
-    parser.add_argument("--version", action="version", version=herringbone.__version__)
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     parser.add_argument("--debug", action="store_true", help="show tracebacks of errors")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add = partial(add_command, commands)

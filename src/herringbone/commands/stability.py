@@ -5,14 +5,19 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from tqdm import tqdm
-
+from herringbone.commands.answers import Tell, Told, answered
 from herringbone.commands.checking import flange
 from herringbone.commands.options import files_of_parts, operating_point, replacements
 from herringbone.commands.output import check_writable, say
-from herringbone.core import ParameterError
+from herringbone.core import HerringboneError, ParameterError
+from herringbone.core.places.files import write_whole
+
+if TYPE_CHECKING:
+    from herringbone.analysis.stability.atlas import Panel
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -36,6 +41,39 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     Raises:
         HerringboneError: something about the input is wrong.
     """
+    if flange.is_asked(options):
+        told = answered(options, lambda tell: flange.flange_limits(options))
+        return json.dumps(told.summary) if options.json else told.text
+    _check(options)
+    output = options.output or (Path("results") if options.atlas else None)
+    if output:
+        check_writable(output)
+    panels: list[Panel] = []
+    find = partial(_predicted, options, values, panels)
+    told = find(say) if options.atlas else answered(options, find)
+    if options.step is not None:
+        return json.dumps(told.summary) if options.json else told.text
+    files = _written(told, output) if output else []
+    if output and panels:
+        from herringbone.plotting.stability_atlas import write_atlas  # noqa: PLC0415
+
+        files.append(output / "stability_atlas.png")
+        write_atlas(panels, files[-1])
+    if options.json:
+        return json.dumps({**told.summary, "results": [str(f) for f in files]})
+    written = ["", "Files: " + ", ".join(str(f) for f in files)] if files else []
+    return "\n".join([told.text, *written])
+
+
+def _predicted(
+    options: argparse.Namespace,
+    values: Mapping[str, float | str],
+    panels: list["Panel"],
+    tell: Tell,
+) -> Told:
+    """What is predicted, of one step or of all; the panels of an atlas are added."""
+    from tqdm import tqdm  # noqa: PLC0415
+
     from herringbone.analysis.stability import limits as analysis  # noqa: PLC0415
     from herringbone.analysis.stability import report  # noqa: PLC0415
     from herringbone.analysis.stability.atlas import atlas, unscaled  # noqa: PLC0415
@@ -51,12 +89,6 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     from herringbone.running.prepared import Wishes, prepared  # noqa: PLC0415 (numba)
     from herringbone.scenes import Start  # noqa: PLC0415
 
-    if flange.is_asked(options):
-        return flange.flange_limits(options)
-    output = options.output or (Path("results") if options.atlas else None)
-    _check(options)
-    if output:
-        check_writable(output)
     algorithms = [parse_algorithm(text) for text in options.algorithm or ()]
     refuse_adaptive(algorithms, "stability is predicted for fixed steps")
     wishes = Wishes(
@@ -69,13 +101,13 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
     wishes = operated(options.system, options.scene, wishes, **operating_point(options))
     structure, scene, notes = prepared(options.system, options.scene, wishes)
     for note in notes:
-        say(note)
+        tell(note)
     structure = under_load(structure)
     bar, trials = tqdm(unit=" matrices", disable=None), LI().start_step
     with bar, opened_surrogates(structure, trials) as foreign:
         structure, missing = without_missing(structure, foreign)
         for line in missing:
-            say(line)
+            tell(line)
         if foreign.strangers and options.atlas:
             raise ParameterError("--atlas takes no foreign FMUs; leave it out")
 
@@ -86,9 +118,8 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
         if options.step is not None:
             chosen = algorithms or analysis.default_algorithms()
             verdicts = step_verdicts(structure, chosen, options.step, show, foreign.strangers)
-            if options.json:
-                return json.dumps([{**asdict(v), "stable": v.stable} for v in verdicts])
-            return "\n".join(line for verdict in verdicts for line in verdict.lines())
+            lines = [line for verdict in verdicts for line in verdict.lines()]
+            return Told("\n".join(lines), [{**asdict(v), "stable": v.stable} for v in verdicts])
         found = analysis.stability(
             structure,
             scene.name,
@@ -100,19 +131,10 @@ def stability(options: argparse.Namespace, values: Mapping[str, float | str]) ->
             remember=KnownLimits(structure, trials),
         )
         found = replace(found, notes=(*missing, *found.notes))
-        panels = atlas(structure, progress=show) if options.atlas else ()
         if options.atlas:
+            panels += atlas(structure, progress=show)
             found = replace(found, notes=(*found.notes, *unscaled(structure)))
-    files = report.write_stability(found, output) if output else []
-    if output and panels:
-        from herringbone.plotting.stability_atlas import write_atlas  # noqa: PLC0415
-
-        files.append(output / "stability_atlas.png")
-        write_atlas(panels, files[-1])
-    if options.json:
-        return json.dumps({**report.stability_summary(found), "results": [str(f) for f in files]})
-    written = ["", "Files: " + ", ".join(str(f) for f in files)] if files else []
-    return "\n".join([report.stability_text(found), *written])
+    return Told(report.stability_text(found), report.stability_summary(found))
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -124,3 +146,24 @@ def _check(options: argparse.Namespace) -> None:
     for name in ("simulate", "atlas", "output"):
         if getattr(options, name):
             raise ParameterError(f"--step asks about one step; leave --{name} out")
+
+
+def _written(told: Told, folder: Path) -> list[Path]:
+    """The files stability.txt and stability.json, written to a folder, made if needed.
+
+    Raises:
+        HerringboneError: a file cannot be written.
+    """
+    contents = {
+        folder / "stability.txt": told.text,
+        folder / "stability.json": json.dumps(told.summary),
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, content in contents.items():
+            write_whole(file, content + "\n")
+    except OSError as error:
+        raise HerringboneError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from error
+    return list(contents)

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
-from fmpy.validation import validate_fmu
 
 from herringbone.core import FmuError
 from herringbone.cosim.fmu.file import read_fmu, require_file
@@ -30,6 +29,8 @@ def check_fmu(path: str | Path) -> list[str]:
     Raises:
         FmuError: there is no such file.
     """
+    from fmpy.validation import validate_fmu  # noqa: PLC0415 (lazy)
+
     path = Path(path)
     require_file(path)
     try:

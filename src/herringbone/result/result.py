@@ -153,10 +153,10 @@ class Result(Facts):
         Those of an adaptive run, which lie where its steps ended, are interpolated by cubic
         splines, as many as there are; others are returned as they are.
         """
-        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
-
         if self.info.steps is None or len(self.data) < _SPLINE_ROWS:
             return self
+        from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
         columns = [TIME, *self.signals]
         values = self.data[columns].to_numpy()
         time = np.linspace(values[0, 0], values[-1, 0], len(values))

@@ -14,8 +14,6 @@ from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.structure.system import System
 from herringbone.housing import read_housing, write_housing
 from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
-from herringbone.housing.welded.build import build_housing
-from herringbone.housing.welded.design import read_design
 
 _FILES = {Quantity.MODES: MODES, Quantity.SHAPES: SHAPES}
 _FMU, _DIMENSIONS = ".fmu", ".toml"
@@ -68,6 +66,9 @@ def with_housing_data(system: System, data: Mapping[str, Path]) -> System:
 
 def _built(file: Path) -> Path:
     """Folder of the modal data of a welded housing, made of its dimensions once."""
+    from herringbone.housing.welded.build import build_housing  # noqa: PLC0415 (sparse matrices)
+    from herringbone.housing.welded.design import read_design  # noqa: PLC0415
+
     design = read_design(file)
     key = digest_of(file.read_bytes(), kernels_key("herringbone.housing.welded.build"))
     folder = cache_folder("welded-housings") / f"{file.stem}-{key}"

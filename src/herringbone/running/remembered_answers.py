@@ -1,9 +1,13 @@
-"""What follows from a system alone, found once in a process: steady rotation, bonds, stability."""
+"""What follows from a system alone, found once in a process: steady rotation, bonds, stability.
+
+What a process asks first its next one finds in the cache.
+"""
 
 from collections.abc import Callable
 
 from herringbone.analysis.stability.instability import warn_if_unstable
 from herringbone.analysis.stability.limits import fastest_bond
+from herringbone.core.caching.answers import FirstAsked
 from herringbone.core.caching.keys import digest_of
 from herringbone.core.caching.remembered import Remembered
 from herringbone.cosim.algorithms import Algorithm
@@ -15,17 +19,25 @@ _MOST = 256
 _starts: Remembered[tuple[Values, tuple[str, ...]]] = Remembered(_MOST)
 _bonds: Remembered[float | None] = Remembered(_MOST)
 _warnings: Remembered[str | None] = Remembered(_MOST)
+_first_starts, _first_bonds, _first_warnings = (
+    FirstAsked(__name__, "herringbone.running.foreign.surrogates") for _ in range(3)
+)
+"""The second module loads the systems that are asked about."""
 
 
 def start_of_known(system: System) -> tuple[Values, tuple[str, ...]]:
     """See `loaded_start`."""
-    values, lines = _starts(_key(system), lambda: loaded_start(system))
-    return dict(values), lines
+    key = _key(system)
+    values, lines = _starts(
+        key, lambda: _first_starts(f"start {key}", lambda: loaded_start(system))
+    )
+    return dict(values), tuple(lines)
 
 
 def bond_of(system: System) -> float | None:
     """See `fastest_bond`."""
-    return _bonds(_key(system), lambda: fastest_bond(system))
+    key = _key(system)
+    return _bonds(key, lambda: _first_bonds(f"bond {key}", lambda: fastest_bond(system)))
 
 
 def stability_warning(
@@ -42,8 +54,13 @@ def stability_warning(
         algorithm, step, t_end: of the run.
         loaded: makes the system to which the prediction applies.
     """
-    key = _key(system), repr(algorithm), step, t_end
-    return _warnings(key, lambda: warn_if_unstable(loaded(system), algorithm, step, t_end))
+    key = f"{_key(system)} {algorithm!r} {step!r} {t_end!r}"
+    return _warnings(
+        key,
+        lambda: _first_warnings(
+            key, lambda: warn_if_unstable(loaded(system), algorithm, step, t_end)
+        ),
+    )
 
 
 def _key(system: System) -> str:

@@ -1,7 +1,12 @@
 """`herringbone stability`: what it prints, as text and as JSON, what it writes, and its picture."""
 
 import json
+import os
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +18,20 @@ from herringbone.analysis.stability.limits import Stability, default_algorithms
 from herringbone.analysis.stability.linear_parts import MeshStiffness
 from herringbone.analysis.stability.recommendation import Ranking, Recommendation
 from herringbone.analysis.stability.report import stability_summary, stability_text
+from herringbone.analysis.stability.steps import step_verdict
 from herringbone.analysis.stability.steps.simulated_limit import nonlinear_limit
 from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.commands.main import main
 from herringbone.core import HerringboneError
+from herringbone.core.caching import answers
+from herringbone.core.caching.files import kept
+from herringbone.core.places.paths import CACHE_VARIABLE, PACKAGE, cache_root, components_folder
 from herringbone.cosim.algorithms import LI, Jacobi
+from herringbone.cosim.structure.system_file import find_system
 from herringbone.plotting.stability_atlas import atlas_picture, write_atlas
+
+OF_PYTHON = (sys.prefix, sys.base_prefix, "/proc", "/dev", "/sys", "/usr", "/etc")
+"""Where files of Python, of libraries and of the machine lie."""
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +153,79 @@ def test_written_files_are_named(monkeypatch, tmp_path, capsys):
     assert said == [
         f"herringbone: cannot write to {tmp_path}: Is a directory; choose another folder with -o"
     ]
+
+
+@pytest.fixture
+def question(tmp_path, capsys):
+    """A system of one's own with a scene and a gear file, and a quick question about it."""
+    shipped = find_system("gearbox")
+    system = Path(
+        shutil.copytree(shipped, tmp_path / "mine", ignore=shutil.ignore_patterns("*.md"))
+    )
+    assert main(["template", "gear", "-o", str(tmp_path / "mine.toml")]) == 0
+    capsys.readouterr()
+    files = ["--gear", str(tmp_path / "mine.toml"), "--scene", str(system / "scenes/loaded.toml")]
+    return ["stability", str(system), *files, "--algorithm", "jacobi:order=0", "--step", "1e-5"]
+
+
+def test_an_answer_is_told_again(question, capsys, monkeypatch, tmp_path):
+    """Until a file changes, be it by a remark."""
+    told = [main(question), capsys.readouterr()]
+    found = step_verdict.step_verdicts
+    monkeypatch.setattr(step_verdict, "step_verdicts", None)
+    assert [main(question), capsys.readouterr()] == told
+    assert main([*question, "--json"]) == 0
+    (verdict,) = json.loads(capsys.readouterr().out)
+    assert verdict["stable"] and "stable" in told[1].out
+    monkeypatch.setattr(step_verdict, "step_verdicts", lambda *a: [*found(*a), *found(*a)])
+    assert main(question) == 0 and capsys.readouterr().out == told[1].out
+    (tmp_path / "mine" / "scenes" / "loaded.toml").open("a").write("# a remark\n")
+    assert main(question) == 0 and capsys.readouterr().out == 2 * told[1].out
+
+
+def test_all_files_that_an_answer_was_read_from_are_looked_at(question, tmp_path):
+    """Python tells of each file that is opened; those of the package and of its cache are keyed."""
+    opened = set()
+
+    def hear(event, arguments):
+        if event == "open" and isinstance(arguments[0], str) and hearing:
+            opened.add(str(Path(arguments[0]).absolute()))
+
+    hearing = True
+    sys.addaudithook(hear)
+    assert main(question) == 0
+    hearing = False
+    (kept_in,) = Path(answers.FOLDER).iterdir()
+    looked_at = set(kept(kept_in)["files"])
+    own = {str(tmp_path / name) for name in ("mine.toml", "mine/system.toml")}
+    assert own < looked_at
+    keyed = tuple(map(str, (PACKAGE, cache_root(), components_folder(), answers.FOLDER)))
+    others = {file for file in opened - looked_at if not file.startswith((*keyed, *OF_PYTHON))}
+    assert others == set()
+
+
+def test_a_known_answer_loads_nothing_heavy(tmp_path):
+    """A whole process takes 0.08 s of CPU then, with numba 1.5 s."""
+    fmu = tmp_path / "a.fmu"
+    question = ["stability", str(fmu), "--inertia", "1"]
+    script = (
+        "import sys\n"
+        "from herringbone.commands import answers, main\n"
+        "from herringbone.commands.checking import flange\n"
+        "told = answers.Told('limits', {'a': 1})\n"
+        "flange.flange_limits = lambda options: told\n"
+        f"assert main.main({question}) == 0\n"
+        "flange.flange_limits = None\n"
+        f"assert main.main({question}) == 0\n"
+        "print(*sys.modules)"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True,
+        env={**os.environ, CACHE_VARIABLE: str(tmp_path / "cache")},
+    ).stdout.splitlines()  # fmt: skip
+    assert shown[:2] == ["limits"] * 2
+    heavy = {"numba", "numpy", "pandas", "scipy", "matplotlib", "fmpy", "tqdm", "email"}
+    assert heavy.isdisjoint(shown[2].split())
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import CubicSpline
 
 from herringbone.analysis.accuracy.apart import differences, groups_of
 from herringbone.analysis.accuracy.compared_tables import (
@@ -157,6 +156,8 @@ def _at_common_times(
     ours: Sides, theirs: Sides, shared: Sequence[str]
 ) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[str, ...]]:
     """Times [s] of the second run within the first, both runs' columns there, and a note."""
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     mine, other = (side.result.data[TIME].to_numpy(float) for side in (ours, theirs))
     for side, time in ((ours, mine), (theirs, other)):
         if time.size < _FEWEST:

@@ -10,6 +10,7 @@ The coupled run grows if an eigenvalue of A lies outside the unit circle. (M. Bu
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
@@ -48,6 +49,8 @@ _START = HISTORY
 _NEVER = 1 << 40
 _FEW = 8
 """Calls for columns from which on it pays to compile the loop over them."""
+_calls: Counter[type[PreparedRun]] = Counter()
+"""In this process, by whose loop it is."""
 _MOST_STEPS = 10000
 """Macro steps in a common period of parts with clocks."""
 
@@ -103,7 +106,7 @@ class Amplification:
         # Many macro steps in one call: of parts that are what their values and last steps are.
         last_steps = [part.last_step for part in standing]
         known = starts_of([*arrays, *last_steps], [*seen, *[0] * len(last_steps)])
-        self._starts, self._moves = None if self._rates.size else known, 0
+        self._starts = None if self._rates.size else known
 
     def _signal_changes(self, first: np.ndarray, references: np.ndarray) -> np.ndarray:
         """Difference of each signal that an algorithm looks back to."""
@@ -266,8 +269,9 @@ class Amplification:
             return np.reshape(found, (entries.size, self._array.size))
         chunk = Chunk(-_START * step, step, _START, 1, self._records, _NEVER)
         starts = self._starts.changed(self._array[entries], self._place[entries], changes)
-        self._moves += 1
-        run_from = type(prepared).run_from if self._moves > _FEW else PreparedRun.run_from
+        kind = type(prepared)
+        _calls[kind] += 1
+        run_from = kind.run_from if _calls[kind] > _FEW else PreparedRun.run_from
         begin = 0
         while True:
             status, begin, culprit = run_from(prepared, starts, begin, self._history, chunk)

@@ -15,14 +15,6 @@ square root of rounding only) and motions that take more than 1e5 steps; they ar
 _SLOW = 0.3
 """Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
 _SAMPLES, _MARGIN = 2, 3.0
-_CLEARLY = 1.04
-_STEPS, _DIRECTIONS = 20, 30
-"""Steps after which a vector is mostly the fastest motion, and that tell its growth; dimension of
-the space in which that motion is looked for.
-"""
-_WORTH = 150
-"""Rows of a matrix below which all eigenvalues take less than twice as long as one."""
-_RESIDUAL = 1e-9
 _EXACT = 1e-8
 """A double eigenvalue that errors of 1e-16 and more have split is further from 1."""
 
@@ -39,8 +31,6 @@ class Growth:
         mirror_radius: the same of motions at half the rate of communication points: there a motion
             meets its own mirror image, and one of the two grows at the expense of the other.
         fast_change: of the motion of `fast_radius` in a step, distance of its eigenvalue from 1.
-
-    Where a fast motion clearly grows, that motion is all that is known.
     """
 
     radius: float
@@ -76,8 +66,6 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with one_blas_thread():
-        if (clear := _clearly_growing(matrix, step)) is not None:
-            return clear
         eigenvalues = np.linalg.eigvals(matrix)
         found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
@@ -85,56 +73,6 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
             return found
         eigenvalues, known = _with_errors(matrix, noise)
     return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
-
-
-def _clearly_growing(matrix: np.ndarray, step: float) -> Growth | None:
-    """The fastest motion, if it is fast and grows by much: its eigenvalue alone. None if not so.
-
-    Y. Saad, Numerical Methods for Large Eigenvalue Problems, 2nd ed., SIAM 2011, section 6.2: the
-    method of Arnoldi. An eigenvalue is taken as soon as its residual is that of a known one.
-    """
-    if len(matrix) < _WORTH:
-        return None
-    scaled = dgebal(matrix, scale=1)[0]
-    vector = np.random.default_rng(0).standard_normal(len(scaled))
-    sizes = []
-    for _ in range(2 * _STEPS):
-        vector = scaled @ vector
-        sizes.append(np.linalg.norm(vector))
-        if not 0.0 < sizes[-1] < np.inf:
-            return None
-        vector /= sizes[-1]
-    if np.log(sizes[_STEPS:]).mean() < np.log(_CLEARLY):
-        return None
-    values, residuals = _arnoldi(scaled, vector)
-    largest = int(np.argmax(np.abs(values)))
-    fastest = values[largest]
-    radius, change = float(np.abs(fastest)), float(np.abs(fastest - 1.0))
-    if residuals[largest] > _RESIDUAL * radius or radius < _CLEARLY or change <= _SLOW:
-        return None
-    frequency = float(np.abs(np.angle(fastest)) / (2.0 * np.pi * step))
-    mirror = radius if fastest.imag == 0.0 and fastest.real < 0.0 else 0.0
-    return Growth(radius, frequency, radius, mirror, change)
-
-
-def _arnoldi(matrix: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues in the space of a unit vector and what the matrix makes of it; residuals."""
-    basis = np.zeros((_DIRECTIONS + 1, len(start)))
-    small = np.zeros((_DIRECTIONS + 1, _DIRECTIONS))
-    basis[0] = start
-    for k in range(_DIRECTIONS):
-        following = matrix @ basis[k]
-        for _ in range(2):  # once more, for what rounding has left
-            share = basis[: k + 1] @ following
-            following -= share @ basis[: k + 1]
-            small[: k + 1, k] += share
-        small[k + 1, k] = np.linalg.norm(following)
-        if small[k + 1, k] <= _RESIDUAL:
-            values = np.linalg.eigvals(small[: k + 1, : k + 1])
-            return values, np.full(k + 1, small[k + 1, k])
-        basis[k + 1] = following / small[k + 1, k]
-    values, vectors = np.linalg.eig(small[:-1])
-    return values, small[-1, -1] * np.abs(vectors[-1])
 
 
 def _is_far(found: Growth, step: float) -> bool:

@@ -1,9 +1,7 @@
 """Stability of a system's coupling as text and as one JSON object."""
 
-import json
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
@@ -14,8 +12,6 @@ from herringbone.analysis.stability.recommendation import Ranking, Recommendatio
 from herringbone.analysis.stability.steps.simulated_limit import HIGHEST, LOWEST
 from herringbone.analysis.stability.steps.step_limits import StepLimits
 from herringbone.analysis.stability.steps.step_scan import LARGEST_STEP
-from herringbone.core import HerringboneError
-from herringbone.core.places.files import write_whole
 
 _MICRO = 1e6
 _WIDTH = 100
@@ -219,25 +215,3 @@ def stability_summary(found: Stability) -> dict[str, Any]:
         "foreign_instances": dict(found.fresh_instances),
         "notes": list(found.notes),
     }
-
-
-def write_stability(found: Stability, folder: str | Path) -> list[Path]:
-    """Write stability.txt and stability.json to a folder, made if needed; what was written.
-
-    Raises:
-        HerringboneError: a file cannot be written.
-    """
-    folder = Path(folder)
-    contents = {
-        folder / "stability.txt": stability_text(found),
-        folder / "stability.json": json.dumps(stability_summary(found)),
-    }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for file, content in contents.items():
-            write_whole(file, content + "\n")
-    except OSError as error:
-        raise HerringboneError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from error
-    return list(contents)

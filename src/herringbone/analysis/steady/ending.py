@@ -6,10 +6,9 @@ after which the same teeth meet; else all of the last quarter, which then stands
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from herringbone.analysis.asked import of_both_gears, signal
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
@@ -17,6 +16,9 @@ from herringbone.analysis.figures.settling import ROTATING, settling_groups
 from herringbone.analysis.figures.spectra import hann_weight, mesh_frequency
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 _FEWEST = 16
 """Rows of the last quarter that make harmonics."""
@@ -62,6 +64,8 @@ def ending_of(run: Result, tolerance: float) -> Ending:
         run: the run.
         tolerance: share of the alternating part of each group that need not repeat.
     """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     time = run.data[TIME].to_numpy()
     rows = np.flatnonzero(time >= time[-1] - _LAST * (time[-1] - time[0])) if time.size else time
     if rows.size < _FEWEST:
@@ -115,7 +119,7 @@ def _periods(run: Result, speed: float) -> Iterator[tuple[int, float]]:
 
 
 def _harmonics(
-    run: Result, values: CubicSpline, time: np.ndarray, window: float
+    run: Result, values: "CubicSpline", time: np.ndarray, window: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients of the harmonics of the last part of a run, and slopes of angles.
 

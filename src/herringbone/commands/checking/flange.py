@@ -1,12 +1,12 @@
 """`stability X.fmu --flange PORT`: the largest communication step at a host."""
 
 import argparse
-import json
 import math
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from herringbone.commands.answers import Told
 from herringbone.commands.options import assignments
 from herringbone.core import ParameterError
 
@@ -65,8 +65,8 @@ def is_asked(options: argparse.Namespace) -> bool:
     return True
 
 
-def flange_limits(options: argparse.Namespace) -> str:
-    """What to show.
+def flange_limits(options: argparse.Namespace) -> Told:
+    """What is told of the FMU.
 
     Raises:
         HerringboneError: something about the input is wrong, or trials tell nothing of the FMU.
@@ -77,7 +77,7 @@ def flange_limits(options: argparse.Namespace) -> str:
     host = Host(options.inertia, options.stiffness or 0.0, options.damping or 0.0)
     values = assignments(options.set, "--set", "VARIABLE=VALUE")
     found = hosted_flange(Path(options.system), options.flange or "", host, values)
-    return json.dumps(_summary(found)) if options.json else _text(found)
+    return Told(_text(found), _summary(found))
 
 
 def _text(found: "HostedFlange") -> str:

@@ -6,13 +6,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tqdm import tqdm
-
 from herringbone.commands.options import add_command
 from herringbone.commands.output import check_writable, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
+    from tqdm import tqdm
+
     from herringbone.gears.load.figures import Conditions
 
 
@@ -109,6 +109,8 @@ class _Bar:
 
     def show(self, what: str, share: float) -> None:
         """Move the bar to a share of the work, 0 to 1."""
+        from tqdm import tqdm  # noqa: PLC0415 (only when something runs)
+
         if self._bar is None:
             self._bar = tqdm(total=100.0, disable=None, bar_format="{l_bar}{bar}| {elapsed}")
         self._bar.set_description(what, refresh=False)

@@ -6,8 +6,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tqdm import tqdm
-
 from herringbone.commands.options import add_command
 from herringbone.commands.output import check_writable, say, show
 
@@ -83,6 +81,8 @@ def _import(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
+    from tqdm import tqdm  # noqa: PLC0415 (only when something runs)
+
     from herringbone.components.registry import component_for  # noqa: PLC0415 (numba)
     from herringbone.core.declaring.roles import Role  # noqa: PLC0415
     from herringbone.housing import write_housing  # noqa: PLC0415 (only when it is asked for)

@@ -7,8 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tqdm import tqdm
-
 from herringbone.commands.options import (
     add_cells,
     add_replacements,
@@ -83,6 +81,8 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HerringboneError: something about the input is wrong, or files cannot be written.
     """
+    from tqdm import tqdm  # noqa: PLC0415 (only when something runs)
+
     from herringbone.running.prepared import Wishes  # noqa: PLC0415
     from herringbone.studies.api import sweep  # noqa: PLC0415 (numba: only when something runs)
     from herringbone.studies.study import PER_MINUTE, grid  # noqa: PLC0415

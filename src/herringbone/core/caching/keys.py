@@ -8,6 +8,7 @@
 | native library | its object code, the C sources, its description in C, which has `sources_key` |
 | FMU | `packed_key`, its resources; a native one: its library |
 | stiffness table, teeth of finite elements | values; syntax as of a kernel; versions of libraries |
+| answer of a command | question, folder; when sources changed; what is installed; files read |
 
 Syntax: without comments, docstrings and layout, see `core.caching.syntax`. All sources are read
 before the modules that they make are imported: what is edited later in this process must not get
@@ -15,24 +16,27 @@ compiled code cached under its name.
 """
 
 import hashlib
+import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from herringbone.core.caching.files import keep, kept
-from herringbone.core.caching.syntax import Syntax, syntax_of
-from herringbone.core.places.paths import PACKAGE, cache_root, components_folder
+from herringbone.core.caching.modules import Modules, stamps_of
+from herringbone.core.caching.syntax import syntax_of
+from herringbone.core.places.paths import PACKAGE, components_folder
 
 _NAME = PACKAGE.name
 _COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
 """Packages that decide what is compiled and packed."""
 _RESOURCES = {".py", ".csv"}
 _LENGTH = 16
+_DESCRIBED = ".dist-info", ".egg-info"
+"""How folders that describe what is installed end."""
 _BY_NAME = "importlib.import_module"
-"""Who imports this, as the registry of components does, imports any module of its package."""
+"""Who imports this, as the registry of components does, imports any module of its package. Who only
+loads lazily what it imports for type checkers takes `importlib` itself."""
 
 
 def digest_of(*texts: str | bytes) -> str:
@@ -78,6 +82,12 @@ def versions_of(*libraries: str) -> list[str]:
 @cache
 def _version_of(library: str) -> str:
     """Name and version; "" of one that is not installed."""
+    beginning = f"{library}-"
+    for name in _installed():
+        if name.startswith(beginning):
+            return f"{library} {name.removesuffix(_DESCRIBED[0]).removeprefix(beginning)}"
+    from importlib.metadata import PackageNotFoundError, version  # noqa: PLC0415 (takes 10 ms)
+
     with suppress(PackageNotFoundError):
         return f"{library} {version(library)}"
     return ""
@@ -112,6 +122,29 @@ def wrapper_key() -> str:
     return digest_of(*_contents(PACKAGE / "fmi", {".c", ".h"}))
 
 
+def answer_key(*asked: str) -> str:
+    """Key of a command's answer, without the files that it was read from, see `caching.answers`.
+
+    Sources count by the time of their last change: to look at it is quicker than to read them.
+    """
+    return digest_of(*asked, str(Path.cwd()), _all_that_answers())
+
+
+@cache
+def _all_that_answers() -> str:
+    return digest_of(sys.version, *_installed(), repr(_STAMPS))
+
+
+@cache
+def _installed() -> list[str]:
+    """What is installed, with versions: the names of its descriptions."""
+    found = []
+    for place in sys.path:
+        with suppress(OSError), os.scandir(place) as entries:
+            found += [entry.name for entry in entries if entry.name.endswith(_DESCRIBED)]
+    return sorted(found)
+
+
 def _contents(root: Path, suffixes: set[str]) -> Iterable[bytes]:
     for file in sorted(root.rglob("*")):
         if file.suffix in suffixes and file.is_file() and file.name != "golden.csv":
@@ -129,11 +162,18 @@ def _closure(modules: Iterable[str], without: str = "") -> set[str]:
         if without and f"{module}.".startswith(f"{without}."):
             continue
         found.add(module)
-        imports = _MODULES[module].imports
-        todo += _known(imports)
-        if _BY_NAME in imports:
-            package = module.rpartition(".")[0] + "."
-            todo += [name for name in _MODULES if name.startswith(package)]
+        todo += _imported(module)
+    return found
+
+
+@cache
+def _imported(module: str) -> list[str]:
+    """Modules of the package that one of them imports."""
+    imports = _MODULES[module].imports
+    found = _known(imports)
+    if _BY_NAME in imports:
+        package = module.rpartition(".")[0] + "."
+        found += [name for name in _MODULES if name.startswith(package)]
     return found
 
 
@@ -147,60 +187,6 @@ def _known(imports: Iterable[str]) -> list[str]:
     return sorted(found & _MODULES.keys())
 
 
-class _Modules(Mapping[str, Syntax]):
-    """All modules of the package by name; files that have not changed are not parsed again.
-
-    All are read now; what nobody asks for is not parsed.
-    """
-
-    def __init__(self) -> None:
-        self._memo = cache_root() / f"syntax-{sys.version_info[0]}.{sys.version_info[1]}.json"
-        known = kept(self._memo) or {}
-        self._stamps: dict[str, list] = {}
-        self._found: dict[str, Syntax] = {}
-        self._sources: dict[str, bytes] = {}
-        for file in sorted(PACKAGE.rglob("*.py")):
-            status = file.stat()
-            stamp = [str(file), status.st_mtime_ns, status.st_size]
-            parts = file.relative_to(PACKAGE).with_suffix("").parts
-            name = ".".join((_NAME, *parts)).removesuffix(".__init__")
-            if name == _NAME:  # it only says where names are
-                continue
-            self._stamps[name] = stamp
-            old = known.get(name)
-            if old and old[:3] == stamp:
-                self._found[name] = Syntax(old[3], tuple(old[4]))
-            else:
-                self._sources[name] = file.read_bytes()
-        self._kept = set(self._found) if self._found.keys() == known.keys() else set()
-
-    def __getitem__(self, name: str) -> Syntax:
-        if name not in self._found:
-            self._found[name] = _syntax_of(self._sources.pop(name))
-        return self._found[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._stamps
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._stamps)
-
-    def __len__(self) -> int:
-        return len(self._stamps)
-
-    def keep(self) -> None:
-        """Keep what is known now for other processes."""
-        if self._kept != self._found.keys():
-            self._kept = set(self._found)
-            found = sorted(self._found.items())
-            keep(self._memo, {m: [*self._stamps[m], s.digest, list(s.imports)] for m, s in found})
-
-
-def _syntax_of(source: bytes) -> Syntax:
-    try:
-        return syntax_of(source.decode())
-    except SyntaxError:  # whoever imports it gets the message
-        return Syntax(digest_of(source), ())
-
-
-_MODULES = _Modules()
+_MODULES = Modules()
+_STAMPS = [*_MODULES.stamps.values(), *stamps_of(components_folder())]
+"""As they were when this process began: what it computes is theirs."""

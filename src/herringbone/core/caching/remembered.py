@@ -9,6 +9,7 @@ from time import time_ns
 from typing import Generic, TypeVar
 
 from herringbone.core.caching.built import content_of
+from herringbone.core.places.noted import note
 
 T = TypeVar("T")
 _SETTLED = 2_000_000_000
@@ -53,6 +54,7 @@ def content_key(file: Path) -> str:
     A file that has the size and time that it had is not read again, unless it was changed so lately
     that another change might not show.
     """
+    note(file)
     try:
         status = file.stat()
     except OSError:

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class Given(StrEnum):
@@ -97,10 +98,10 @@ class Hosting:
         advice: what is known of communication steps, as rows of a table; the first one is its head.
     """
 
-    settle: Callable[[np.ndarray, float], int]
+    settle: Callable[["np.ndarray", float], int]
     not_settled: tuple[str, ...]
     remarks: tuple[Remark, ...]
-    remark: Callable[[np.ndarray, np.ndarray, int, np.ndarray], int]
+    remark: Callable[["np.ndarray", "np.ndarray", int, "np.ndarray"], int]
     runs_on: tuple[RunsOn, ...]
     tolerance: str
     experiment: Experiment

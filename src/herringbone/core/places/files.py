@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
+from herringbone.core.places.noted import note
+
 PART = ".part"
 """Ends the name of a file that is not written to its end."""
 
@@ -61,11 +63,13 @@ def _umask() -> int:
 
 def is_file(path: Path) -> bool:
     """True for a file; False also for what no file can be called, such as too long a name."""
+    note(path)
     return os.path.isfile(path)  # noqa: PTH113 (pathlib's raises for such names)
 
 
 def is_folder(path: Path) -> bool:
     """True for a folder; False also for what no folder can be called."""
+    note(path)
     return os.path.isdir(path)  # noqa: PTH112 (pathlib's raises for such names)
 
 

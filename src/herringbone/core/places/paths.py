@@ -2,6 +2,7 @@
 
 import os
 import stat
+from functools import cache
 from pathlib import Path
 
 from herringbone.core.errors import ResourceError
@@ -10,6 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[2]
 CACHE_VARIABLE = "HERRINGBONE_CACHE"
 
 
+@cache
 def _clone() -> Path | None:
     root = PACKAGE.parents[1]
     return root if (root / "pyproject.toml").is_file() and (root / "fmus").is_dir() else None

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from herringbone.core.errors import HerringboneError, ResourceError, reason
+from herringbone.core.places.noted import note
 
 AnyPath = Path | zipfile.Path
 """A file, or an entry of an open archive."""
@@ -50,6 +51,7 @@ def read_bytes(
 
 def check_regular(file: AnyPath, error: type[HerringboneError] = ResourceError) -> None:
     """Refuse what is no file, such as a pipe, on which reading might wait for ever."""
+    note(file)
     try:
         regular = not isinstance(file, Path) or stat.S_ISREG(file.stat().st_mode)
     except DAMAGE as damage:

@@ -14,6 +14,7 @@ import inspect
 import logging
 import pickle
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -29,11 +30,18 @@ from numba.core.cpu import CPUContext
 from numba.core.typing import Signature
 
 from herringbone.core.caching.keys import digest_of, module_key
-from herringbone.core.places.paths import cache_folder, is_trusted
+from herringbone.core.places.paths import cache_folder, cache_root, is_trusted
 
 D = TypeVar("D")
 _LOG = logging.getLogger("herringbone")
 _DIGEST = hashlib.sha256().digest_size
+
+
+@cache
+def _kernels(root: Path) -> Path:
+    """The folder of all kernels in the present cache, which is looked at once for hundreds."""
+    del root  # by which it is known
+    return cache_folder("kernels")
 
 
 class _Locator(_CacheLocator):
@@ -45,7 +53,7 @@ class _Locator(_CacheLocator):
     def get_cache_path(self) -> str:
         """A folder for each module, and each way of compiling it."""
         module = self._function.__module__.removeprefix("herringbone.")
-        return str(cache_folder("kernels") / f"optimised-{int(config.OPT)}" / module)
+        return str(_kernels(cache_root()) / f"optimised-{int(config.OPT)}" / module)
 
     def get_source_stamp(self) -> str:
         """Key of what it is compiled from."""

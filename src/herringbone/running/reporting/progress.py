@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-
-from tqdm import tqdm
+from typing import TYPE_CHECKING, Any
 
 from herringbone.core.activity import activity
+
+if TYPE_CHECKING:
+    from tqdm import tqdm
 
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
@@ -26,15 +28,19 @@ class Bar:
     def show(self, reached: float, t_end: float) -> None:
         """Move the bar to a simulated time [s]."""
         if self._bar is None:
-            self._bar = tqdm(
-                total=round(1e3 * t_end, 3), unit="ms", disable=self._disable, bar_format=_FORMAT
-            )
+            total = round(1e3 * t_end, 3)
+            self._bar = self._made(total=total, unit="ms", bar_format=_FORMAT)
         self._bar.update(1e3 * reached - self._bar.n)
 
     def tell(self, text: str) -> None:
         """Show a line until the bar is closed."""
         self.close()
-        self._bar = tqdm(desc=text, disable=self._disable, bar_format="{desc}", leave=False)
+        self._bar = self._made(desc=text, bar_format="{desc}", leave=False)
+
+    def _made(self, **options: Any) -> "tqdm":  # noqa: ANN401 (of tqdm)
+        from tqdm import tqdm  # noqa: PLC0415 (many commands show none)
+
+        return tqdm(disable=self._disable, **options)
 
     def close(self) -> None:
         """End the line."""
