@@ -197,7 +197,10 @@ def _named(instance: str) -> Iterator[None]:
     try:
         yield
     except FmuError as error:
-        raise FmuError(f"{instance}: {error}") from error
+        said = str(error)
+        if said.startswith(f"{instance}: "):
+            raise
+        raise FmuError(f"{instance}: {said}") from error
 
 
 def _open_part(spec: PartSpec, files: Mapping[str, Path], *, shared: bool) -> Part:
