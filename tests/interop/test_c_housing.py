@@ -86,10 +86,10 @@ def converged(c_housing):
 
 
 def _bearing_forces(file, algorithm, step):
-    """Every 0.1 ms for 5 ms; short if the run ends early."""
+    """Every 0.1 ms for 5 ms while the load rises; short if the run ends early."""
     data = hb.run(
         "test_rig", algorithm=algorithm, step=step, t_end=0.005, record_step=1e-4,
-        replace_parts={"modal_housing": file},
+        replace_parts={"modal_housing": file}, start="ramp",
     ).data  # fmt: skip
     names = [name for name in data if ".bearing_supports.shaft." in name and ".f_" in name]
     assert len(names) == 8  # y and z at four seats

@@ -4,14 +4,19 @@ Unknown are all states. Wanted: every derivative vanishes but those of absolute 
 output that is declared to vanish (the rates of shaft twists) does. Angles are free up to a common
 rotation and a system without controller keeps its start speed, so that the system of equations has
 a null space: Gauss-Newton with the smallest step in scaled unknowns.
+
+Beside parts whose equations are not known, see `analysis.answered`, what they answer follows the
+states, and what does not balance may speed up the whole drivetrain evenly.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
+from herringbone.analysis.answered import Answered, Answers
 from herringbone.analysis.balanced_angle import NoBalanceError, balanced_angles
 from herringbone.analysis.rigid_rotation import (
     names_of_states,
@@ -30,7 +35,8 @@ from herringbone.cosim.structure.system import System
 _ITERATIONS, _PATIENCE = 40, 12
 """At most, and without getting closer: a search that is caught stays so."""
 _CLOSER = 0.9
-_CONVERGED = 1e-11
+_CONVERGED, _NEARLY = 1e-11, 1e-8
+"""Of the first guess; the latter beside parts that answer, where guesses are good already."""
 SCALE = {
     "m": 1e-6, "m/s": 1e-3, "rad": 1e-3, "rad/s": 1.0, "N.m": 100.0,
     "kg^1/2.m": 1e-6, "kg^1/2.m/s": 1e-3,
@@ -52,6 +58,44 @@ class Equilibrium:
 
     values: dict[str, float]
     residual: float
+
+
+class AnsweredEquilibrium(NamedTuple):
+    """Steady rotation beside parts whose equations are not known, n states.
+
+    Attributes:
+        values: start values by `instance.variable`.
+        states: (n,).
+        acceleration: of the fastest shaft [rad/s^2].
+        rotation: (n,) rates of the states at an acceleration of 1 rad/s^2; 0 where the speed is
+            held.
+    """
+
+    values: dict[str, float]
+    states: np.ndarray
+    acceleration: float
+    rotation: np.ndarray
+
+
+def answered_equilibrium(twin: Twin, answers: Answers) -> AnsweredEquilibrium:
+    """Start values beside parts whose equations are not known.
+
+    Where no controller holds the speed, angle and speed stay, and the drivetrain speeds up evenly.
+
+    Args:
+        twin: of the components, the others left out; it is left at the equilibrium.
+        answers: of the others.
+
+    Raises:
+        EquilibriumError: no equilibrium was found.
+    """
+    with one_blas_thread():
+        guess, held = _guess(twin), _held(twin.system, twin)
+        answered = Answered(twin, answers, guess, speeds_up=held is None)
+        stay = [state for state in (held, *answered.kept) if state is not None]
+        found, _ = _solved(twin.system, twin, stay, guess, answered)
+        acceleration, x = answered.set(found), found[:-1]
+        return AnsweredEquilibrium(_start_values(twin, x), x, acceleration, answered.rotation)
 
 
 def equilibrium(system: System, angles: bool = True) -> Equilibrium:
@@ -79,7 +123,8 @@ def equilibrium(system: System, angles: bool = True) -> Equilibrium:
             try:
                 if (x := next(beginnings, None)) is None:
                     break
-                found, residual = _solved(system, twin, held, x)
+                stay = [] if held is None else [held]
+                found, residual = _solved(system, twin, stay, x)
             except EquilibriumError as error:
                 failures.append(error)
                 continue
@@ -137,32 +182,43 @@ def _holds_speed(system: System) -> bool:
 
 
 def _solved(
-    system: System, twin: Twin, held: int | None, x: np.ndarray
+    system: System,
+    twin: Twin,
+    stay: list[int],
+    x: np.ndarray,
+    answered: Answered | None = None,
 ) -> tuple[np.ndarray, float]:
-    """Steady rotation from a guess, with one state as it is, or none: states (n,) and residual."""
+    """Steady rotation from a guess, with some states as they are: states (n,) and residual.
+
+    Beside parts that answer, the acceleration is the last unknown.
+    """
     rotating, zero = steady_rows(twin)
-    scale = _scales(twin)
+    count, scale = x.size, _scales(twin)
     if x.size == 0:
         return x, 0.0
-    keep = np.setdiff1d(np.arange(x.size), rotating)
+    keep = np.setdiff1d(np.arange(count), rotating)
+    if answered is not None:
+        x, scale = np.append(x, 0.0), np.append(scale, answered.size)
     free = np.ones(x.size)
-    if held is not None:
-        free[held] = 0.0
+    free[stay] = 0.0
 
     def residual(x: np.ndarray) -> np.ndarray:
-        dx = twin.rhs(0.0, x)
-        outputs = twin.observe(np.zeros(1), x[:, None], zero)[0] if zero else np.empty(0)
+        states = x[:count]
+        steady = 0.0 if answered is None else answered.set(x) * answered.rotation
+        dx = twin.rhs(0.0, states) - steady
+        outputs = twin.observe(np.zeros(1), states[:, None], zero)[0] if zero else np.empty(0)
         return np.concatenate([dx[keep], outputs])
 
     r = residual(x)
     first, best, since = None, np.inf, 0
+    converged = _CONVERGED if answered is None else _NEARLY
     for iteration in range(_ITERATIONS):
         jacobian = slopes(residual, x, r, scale, range(x.size)) * free
         rows = np.abs(jacobian).max(axis=1)
         rows[rows == 0.0] = 1.0
         scaled = np.abs(r / rows).max()
         first = first or max(scaled, 1.0)
-        if scaled < _CONVERGED * first:
+        if scaled < converged * first:
             return x, float(scaled / first)
         if scaled < _CLOSER * best:
             best, since = scaled, iteration

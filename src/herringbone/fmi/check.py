@@ -56,7 +56,7 @@ def trials(path: Path) -> list[str]:
 
 
 def without_unit(path: str | Path) -> list[str]:
-    """Reals without unit, which FMI allows, one line each; event indicators need none.
+    """Reals without unit, which FMI allows, one line each; event indicators and time need none.
 
     Args:
         path: the FMU.
@@ -71,6 +71,7 @@ def without_unit(path: str | Path) -> list[str]:
         for v in description.modelVariables
         if v.type in {"Real", "Float32", "Float64"}
         and v.name not in indicators
+        and v.causality != "independent"
         and not (v.unit or (v.declaredType and v.declaredType.unit))
     ]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from herringbone.analysis.steady.set_points import Point
 from herringbone.core.activity import tell
 from herringbone.core.one_thread import one_blas_thread
-from herringbone.cosim.algorithms import AUTO, Algorithm, parse_algorithm
+from herringbone.cosim.algorithms import AUTO, LI, Algorithm, parse_algorithm
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.simulation import check_grid
 from herringbone.cosim.structure.system import System
@@ -126,6 +126,12 @@ def run(
     if tolerance is not None:
         check_tolerance(tolerance)
     faults: list[HousingFault] = []
+
+    def faulty(fault: HousingFault) -> None:
+        faults.append(fault)
+        for line in fault.lines:
+            tell(line)
+
     wishes = Wishes(
         t_end, record_step, start, values or {}, gear, housing, replace_parts or {}, lean=fuse
     )
@@ -138,12 +144,11 @@ def run(
             scene,
             operated(system, scene, wishes, speed, torque),
             check=lambda scene: check_grid(scene.t_end, step, scene.record_step),
-            faulty=faults.append,
+            faulty=faulty,
+            trial_step=(step or (coupling or LI()).start_step) if probe else None,
         )
         by_hand = said_by_hand(system, scene, wishes, Point(speed, torque))
         notes, left_out = notes + by_hand.notes, by_hand.row or certified_row(chosen.model)
-        for line in (line for fault in faults for line in fault.lines):
-            tell(line)
         heard = Heard(progress, recorded, output)
         if fuse and not structure.foreign_parts:
             check_coupling(algorithm=algorithm, slow=slow, probe=probe)

@@ -35,7 +35,7 @@ class HousingFault:
 def replacement_fault(part: str, fmu: Path, usual: float) -> HousingFault | None:
     """What a housing FMU that replaces a part does not hold; tested once per content.
 
-    Wrong variables and units are left to the wiring, which refuses them.
+    Wrong variables, and units of another dimension, are refused by the wiring, too.
 
     Args:
         part: that is replaced.

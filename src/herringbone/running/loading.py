@@ -14,6 +14,7 @@ from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import STRUCTURE, Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
+from herringbone.cosim.approached_part import ApproachedPart
 from herringbone.cosim.fmu.file import require_file
 from herringbone.cosim.fmu.opening import many_of, open_fmu
 from herringbone.cosim.ssp.format import is_ssp
@@ -142,6 +143,8 @@ def open_parts(system: System, fmu: str) -> list[Part]:
             _set_values(parts[-1], spec)
             if spec.foreign and system.connections:
                 parts[-1] = in_si_units(parts[-1])
+            if spec.approach:
+                parts[-1] = ApproachedPart(parts[-1], spec.approach)
     except HerringboneError:
         for part in parts:
             part.close()
@@ -194,7 +197,10 @@ def _named(instance: str) -> Iterator[None]:
     try:
         yield
     except FmuError as error:
-        raise FmuError(f"{instance}: {error}") from error
+        said = str(error)
+        if said.startswith(f"{instance}: "):
+            raise
+        raise FmuError(f"{instance}: {said}") from error
 
 
 def _open_part(spec: PartSpec, files: Mapping[str, Path], *, shared: bool) -> Part:

@@ -65,6 +65,7 @@ def prepared(
     wishes: Wishes,
     check: Callable[[Scene], None] = lambda scene: None,
     faulty: Callable[[HousingFault], None] = lambda fault: None,
+    trial_step: float | None = None,
 ) -> Prepared:
     """Load a system and a scene, and set what is wished.
 
@@ -76,6 +77,7 @@ def prepared(
         wishes: over these.
         check: called with the scene before anything takes long.
         faulty: called with what is wrong with an FMU that replaces a housing.
+        trial_step: see `started`.
 
     Raises:
         HerringboneError: something about the input is wrong.
@@ -107,7 +109,7 @@ def prepared(
     structure = balanced(structure)
     lines = (*unbalanced(structure), *driven_one_way(structure))
     try:
-        structure, notes = started(structure, chosen)
+        structure, notes = started(structure, chosen, trial_step)
     except EquilibriumError as error:
         raise EquilibriumError("; ".join((*lines, str(error)))) from error
     structure, impacts = with_impacts(structure, jobs)

@@ -10,10 +10,11 @@ from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.remembered_answers import start_of_known
+from herringbone.running.settling.flanks import loaded_settled_start
+from herringbone.running.settling.ramp import LOAD_RAMP_TIME, fitted_ramp
+from herringbone.running.settling.settled_start import NoSettledStartError
 from herringbone.scenes import Scene, Start
 
-LOAD_RAMP_TIME = 0.02
-"""Time over which the load rises in a gradual start [s]; the thesis discards its first 0.02 s."""
 _MOVED = 0.01
 """Share of its size by which the steady rotation may move a state that was set: a speed a little,
 where nothing holds it."""
@@ -21,30 +22,38 @@ _NOTHING = 1e-9
 _SHOWN = 3
 
 
-def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
+def started(
+    system: System, scene: Scene, trial_step: float | None = None
+) -> tuple[System, tuple[str, ...]]:
     """The system with a scene's values and start values set, and lines that the user should read.
+
+    Args:
+        system: of the scene.
+        scene: with the start that is asked for.
+        trial_step: of the trials that tell what foreign parts are [s]; None: they are not tried,
+            and start as they declare.
 
     Raises:
         HerringboneError: a value is wrong, or there is no equilibrium.
     """
     system = system.with_values(scene.values)
-    notes = system.notes
-    start = scene.start
+    notes, start, ramp_time = system.notes, scene.start, LOAD_RAMP_TIME
     if start is not Start.REST and len(system.foreign_parts) == len(system.parts):
         notes += ("all parts are foreign; the run starts with the values that they declare",)
         start = Start.REST
     elif start is Start.EQUILIBRIUM and system.foreign_parts:
-        ramped = bool(ramp_times(system))
-        instead = (
-            f"the load rises from zero over {LOAD_RAMP_TIME:g} s instead"
-            if ramped
-            else "the run starts with the values that the parts declare"
-        )
-        names = ", ".join(system.foreign_parts)
-        notes += (f"{names}: foreign, so the equilibrium is not known; {instead}",)
-        start = Start.RAMP if ramped else Start.REST
+        why = "the equilibrium is not known"
+        if trial_step is not None:
+            try:
+                system, lines = _settled(system, trial_step)
+            except NoSettledStartError as error:
+                why = f"no equilibrium is known ({error})"
+            else:
+                return system.with_values(_offsets(system, scene.start_offset)), (*notes, *lines)
+        start, ramp_time, instead = _gradual(system, scene.t_end)
+        notes += (f"{', '.join(system.foreign_parts)}: foreign, so {why}; {instead}",)
     if start is Start.RAMP:
-        system = system.with_values(_ramps(system))
+        system = system.with_values(_ramps(system, ramp_time))
     if start is not Start.REST:
         try:
             values, lines = equilibrium_values(system)
@@ -60,9 +69,38 @@ def started(system: System, scene: Scene) -> tuple[System, tuple[str, ...]]:
     return system.with_values(_offsets(system, scene.start_offset)), notes
 
 
-def _ramps(system: System) -> Values:
+def _gradual(system: System, t_end: float) -> tuple[Start, float, str]:
+    """How a system begins that is in no equilibrium, its ramp's time [s], and both in words."""
+    given = ramp_times(system)
+    if not given:
+        return Start.REST, 0.0, "the run starts with the values that the parts declare"
+    user = max(float(value) for value in given.values())
+    time = user or fitted_ramp(known_parts(system), t_end)
+    return Start.RAMP, time, f"the load rises from zero over {time:.3g} s instead"
+
+
+def _settled(system: System, step: float) -> tuple[System, tuple[str, ...]]:
+    """The system in equilibrium with its foreign parts, and lines; raises NoSettledStartError."""
+    with activity(f"looking for the steady rotation of {system.name} with foreign parts"):
+        found, lines = loaded_settled_start(system, known_parts(system), step)
+    lines += _dropped(system, found.values)
+    for name, way in found.approaches.items():
+        lines.append(
+            f"{name}: foreign; it is stepped over {way.duration:g} s before the start, under what "
+            "it is given in the steady rotation in which the run begins"
+        )
+    if abs(found.acceleration) > _MOVED:
+        lines.append(
+            f"torques do not balance: the steady rotation speeds up by {found.acceleration:.4g} "
+            "rad/s^2 of the fastest shaft"
+        )
+    parts = tuple(replace(part, approach=found.approaches.get(part.name)) for part in system.parts)
+    return replace(system, parts=parts).with_values(found.values), tuple(lines)
+
+
+def _ramps(system: System, time: float) -> Values:
     """Ramp times of all parts that have one and whose user gave none."""
-    return {path: given or LOAD_RAMP_TIME for path, given in ramp_times(system).items()}
+    return {path: given or time for path, given in ramp_times(system).items()}
 
 
 def ramp_times(system: System) -> Values:

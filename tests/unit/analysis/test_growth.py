@@ -53,3 +53,18 @@ def test_free_rotation_is_no_growth():
     found = growth_of(matrix, STEP)
     assert found.radius == pytest.approx(abs(decaying), rel=KNOWN)
     assert found.frequency == pytest.approx(2.0 / (2.0 * np.pi * STEP), rel=10.0 * KNOWN)
+
+
+def _split(above, below):
+    """Free rotation whose double eigenvalue errors have moved, and a motion that decays."""
+    matrix = np.eye(2 + SIZE)
+    matrix[0, 0], matrix[1, 1], matrix[0, 1] = 1.0 + above, 1.0 - below, 1.0
+    matrix[2:, 2:] = matrix_of((0.999 * np.exp(2.0j),))
+    return growth_of(matrix, STEP, noise=1e-12).radius
+
+
+def test_free_rotation_that_errors_have_split():
+    """Evenly, it is as it was; where one part grows more, or by much, it grows."""
+    assert _split(2e-4, 2e-4) == pytest.approx(0.999, rel=KNOWN)
+    assert _split(2e-4, 1e-4) == pytest.approx(1.0 + 2e-4, rel=KNOWN)
+    assert _split(1e-3, 1e-3) == pytest.approx(1.0 + 1e-3, rel=KNOWN)

@@ -97,6 +97,19 @@ def test_check_reports_a_real_without_unit_and_an_invalid_structure(python_fmus,
     assert any("InitialUnknowns does not contain" in p for p in problems)
 
 
+def test_time_needs_no_unit(fmi3_fmus, tmp_path):
+    """FMI 3.0 declares it as a variable of its own."""
+    bare = tmp_path / "bare.fmu"
+    with zipfile.ZipFile(fmi3_fmus["shaft_coupling"]) as whole, zipfile.ZipFile(bare, "w") as copy:
+        text = whole.read("modelDescription.xml").decode()
+        time = next(line for line in text.splitlines() if 'causality="independent"' in line)
+        for entry in set(whole.namelist()) - {"modelDescription.xml"}:
+            copy.writestr(entry, whole.read(entry))
+        copy.writestr("modelDescription.xml", text.replace(time, time.replace(' unit="s"', "")))
+    assert ' unit="s"' in time
+    assert without_unit(bare) == []
+
+
 def test_serialised_state():
     state = FmuState("owner", b"\x00\n\xff", {"table": "ä.csv"}, "1f", 2, 0.1)
     assert from_bytes(to_bytes(state)) == state

@@ -1,5 +1,6 @@
 """Start values of a run: equilibrium, gradual load, rest, offsets."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -121,14 +122,25 @@ def test_foreign_part_makes_a_ramp_with_a_note(rig, loaded, tmp_path):
     system = rig.with_fmu("modal_housing", tmp_path / "strange.fmu")
     found, notes = started(system, loaded)
     (note,) = notes
+    half = 0.5 * loaded.t_end  # shorter than a period of the slowest mode, at 5.9 Hz
     assert note == (
         "gearbox.modal_housing: foreign, so the equilibrium is not known; the load rises from zero "
-        "over 0.02 s instead"
+        f"over {half:g} s instead"
     )
-    assert values(found, "bench_controller")[RAMP] == LOAD_RAMP_TIME
+    assert values(found, "bench_controller")[RAMP] == half
     assert values(found, "modal_housing") == {}
     assert found.connections == system.connections
     assert values(found, "drive_motor")["speed"] == pytest.approx(104.72, rel=1e-4)
+
+
+def test_ramp_of_a_long_run_is_a_period_of_the_slowest_mode(rig, loaded, tmp_path):
+    """The speed control against motor and gearbox with load, on springs that do not count there."""
+    system = rig.with_fmu("modal_housing", tmp_path / "strange.fmu")
+    found, _ = started(system, replace(loaded, t_end=10.0))
+    inertia = 0.08 + 2.0 * 0.00738 + (2.0 * 0.58129 + 2.0) / 9.0
+    frequency = math.sqrt(600.0 / inertia) / (2.0 * math.pi)  # of the integral gain, 600 N m/rad
+    # The proportional gain damps it by 0.9; springs of 6e4 N m/rad are a hundred times as stiff.
+    assert 1.0 / values(found, "bench_controller")[RAMP] == pytest.approx(frequency, rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ from herringbone.analysis.stability.recommendation import (
     rule_error,
     separation_floor,
 )
+from herringbone.components.registry import COMPONENTS
 from herringbone.components.resources.stiffness_table import read_uncertainty
 from herringbone.core.declaring.roles import SIDES, Quantity, Role
 from herringbone.cosim.algorithms import parse_algorithm
@@ -131,7 +132,9 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
     algorithm = parse_algorithm(result.info.algorithm)
     rule = algorithm.accurate_step
     if rule is None or not bond_frequency or result.info.slow:
-        how = "no rule for this algorithm and system; --reference measures"
+        foreign = not COMPONENTS.keys() >= set(result.info.model.values())
+        measures = "--verify" if foreign else "--reference"
+        how = f"no rule for this algorithm and system; {measures} measures"
         return BudgetRow("coupling", _FORCE, None, Known.UNKNOWN, how)
     step = result.info.communication_step * bond_frequency / rule
     value = rule_error(algorithm, step)

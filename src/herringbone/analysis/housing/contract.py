@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from herringbone.analysis.finding import Finding, Report, judged
+from herringbone.analysis.finding import Finding, Report, judged, remark
 from herringbone.analysis.housing.behaviour import (
     FORCES,
     POSITIONS,
@@ -26,7 +26,8 @@ from herringbone.components.registry import component_for
 from herringbone.core import Instance, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.declaring.units import base_exponents
-from herringbone.core.part import Part
+from herringbone.core.part import Part, PartVariable
+from herringbone.cosim.units import in_si_units
 
 STEP = 2e-5
 """Communication step size [s] of the tests; two-way coupling wants no larger one."""
@@ -71,7 +72,7 @@ def check_housing(
         part.close()
     if not all(finding.holds for finding in findings):
         return findings
-    tests = Behaviour(open_part, step)
+    tests = Behaviour(lambda: in_si_units(open_part()), step)
     for what, test in (
         ("no feedthrough", tests.feedthrough),
         ("no delay", tests.delay),
@@ -96,7 +97,7 @@ def compliance_of(open_part: Callable[[], Part]) -> float:
     Args:
         open_part: makes a new instance, not yet initialised.
     """
-    return Behaviour(open_part, STEP).compliance
+    return Behaviour(lambda: in_si_units(open_part()), STEP).compliance
 
 
 def usual_compliance() -> float:
@@ -128,14 +129,7 @@ def _declared(part: Part) -> Iterator[Finding]:
     limit = "12 inputs f, 12 outputs s, 12 outputs v"
     yield judged(_VARIABLES, not missing, shown if missing else count, limit)
     present = [part.variables[name] for name in wanted if name not in missing]
-    wrong = [
-        f"{v.name} in {v.unit}"
-        for v in present
-        if v.unit and v.dimension and v.dimension != _si(_UNITS[v.name])
-    ]
-    bare = sum(not v.unit for v in present)
-    shown = ", ".join(wrong[:3]) or (f"{bare} without unit, taken as SI" if bare else "declared")
-    yield judged("units", not wrong, shown, "N, m, m/s")
+    yield _units(present)
     direct = [v.name for v in present if v.causality == "output" and v.dependencies]
     undeclared = sum(v.causality == "output" and v.dependencies is None for v in present)
     shown = f"{undeclared} outputs say nothing" if undeclared else "none"
@@ -143,5 +137,18 @@ def _declared(part: Part) -> Iterator[Finding]:
     yield judged("dependencies", not direct, shown, "none of s, v on f")
 
 
-def _si(unit: str) -> tuple:
-    return (1.0, 0.0, tuple(sorted(base_exponents(unit).items())))
+def _units(present: Sequence[PartVariable]) -> Finding:
+    """Whether units are of the right dimension; others than SI are brought to it."""
+    known = [(v, v.dimension) for v in present if v.unit and v.dimension]
+    wrong = [f"{v.name} in {v.unit}" for v, d in known if d[2] != _exponents(_UNITS[v.name])]
+    if wrong:
+        return judged("units", False, ", ".join(wrong[:3]), "N, m, m/s")
+    if others := sorted({str(v.unit) for v, d in known if d[:2] != (1.0, 0.0)}):
+        return remark("units", f"{', '.join(others)}: brought to SI units", "N, m, m/s")
+    bare = sum(not v.unit for v in present)
+    shown = f"{bare} without unit, taken as SI" if bare else "declared"
+    return judged("units", True, shown, "N, m, m/s")
+
+
+def _exponents(unit: str) -> tuple:
+    return tuple(sorted(base_exponents(unit).items()))

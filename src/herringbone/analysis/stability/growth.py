@@ -12,6 +12,10 @@ GROWTH = 1e-6
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
+_SPLIT, _EVENLY = 5e-4, 0.05
+"""Errors of what stands for foreign parts split a double eigenvalue evenly, by so much at most: its
+mean stays where it was, while what the coupling adds moves both, or one of them.
+"""
 _SLOW = 0.3
 """Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
 _SAMPLES, _MARGIN = 2, 3.0
@@ -67,12 +71,24 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
         return Growth(0.0, 0.0, 0.0)
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
-        found = _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > RIGID], step)
+        found = _fastest(eigenvalues[~_free(eigenvalues, noise)], step)
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
         if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
         eigenvalues, known = _with_errors(matrix, noise)
-    return _fastest(eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)], step)
+    moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise)
+    return _fastest(eigenvalues[moving], step)
+
+
+def _free(eigenvalues: np.ndarray, noise: float) -> np.ndarray:
+    """(n,) True for the free rotation of the shafts."""
+    off = eigenvalues - 1.0
+    found = np.abs(off) <= RIGID
+    pair = np.argsort(np.abs(off))[:2]
+    largest = np.abs(off[pair]).max(initial=0.0)
+    if noise and len(pair) == 2 and largest < _SPLIT and abs(off[pair].mean()) < _EVENLY * largest:
+        found[pair] = True
+    return found
 
 
 def _is_far(found: Growth, step: float) -> bool:

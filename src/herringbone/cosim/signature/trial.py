@@ -28,6 +28,7 @@ class Trial:
         part: instantiated, start values set; it belongs to the trial, which closes it.
         inputs, outputs: names of its real inputs and outputs.
         start_time, stop_time: of the experiment [s].
+        tolerance: that the part is told [1]; None: none.
 
     Raises:
         FmuError: the part does not initialise.
@@ -40,6 +41,7 @@ class Trial:
         outputs: Sequence[str],
         start_time: float = 0.0,
         stop_time: float = 1.0,
+        tolerance: float | None = None,
     ) -> None:
         self.part, self.time = part, start_time
         self._inputs, self._outputs = (
@@ -52,7 +54,7 @@ class Trial:
         self._inputs_at, self._outputs_at = self._inputs.ctypes.data, self._outputs.ctypes.data
         self._saved: dict[int, float] = {}
         try:
-            part.enter_initialization(start_time, stop_time)
+            part.enter_initialization(start_time, stop_time, tolerance)
             part.exit_initialization()
         except FmuError:
             part.close()

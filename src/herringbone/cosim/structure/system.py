@@ -10,6 +10,7 @@ from herringbone.core.names import check_name, shown
 from herringbone.core.places.files import as_texts
 from herringbone.core.places.part_path import PartPath, find_part, split_variable
 from herringbone.core.sensor_spec import SensorSpec
+from herringbone.cosim.structure.approach import Approach
 from herringbone.cosim.structure.sensors import with_value
 
 Values = Mapping[str, float | str]
@@ -25,6 +26,7 @@ class PartSpec(Facts):
         fmu: FMU file, or None; exactly one of both is given.
         values: start values and parameters by variable.
         stands_for: component in whose place an FMU was put, or None.
+        approach: how a foreign part comes to a steady start; None: it starts as it declares.
 
     Raises:
         StructureError: the name is no identifier.
@@ -35,6 +37,7 @@ class PartSpec(Facts):
     fmu: Path | None = None
     values: Values = field(default_factory=dict)
     stands_for: str | None = None
+    approach: Approach | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", PartPath(self.name))

@@ -14,7 +14,7 @@ from herringbone.core.declaring.roles import PortKind, Quantity, Role
 from herringbone.cosim.structure.system import System, Values
 from herringbone.running.pairs.mesh_phases import steady_values
 
-_COAST = -1.0
+COAST = -1.0
 
 
 def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
@@ -26,7 +26,7 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
     Raises:
         EquilibriumError: there is no steady rotation on either flank.
     """
-    flanks, wrong = _free_flanks(system), None
+    flanks, wrong = free_flanks(system), None
     try:
         values = steady_values(system)
     except EquilibriumError as error:
@@ -35,10 +35,10 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
         coasting, wrong = list(flanks), error
     else:
         _refuse_other_flanks(system.with_values(values), set(flanks))
-        coasting = [gear for gear in flanks if _coasts(system.with_values(values), gear)]
+        coasting = [gear for gear in flanks if coasts(system.with_values(values), gear)]
         if not coasting:
             return values, ()
-    chosen = {path: _COAST for gear in coasting for path in flanks[gear]}
+    chosen = {path: COAST for gear in coasting for path in flanks[gear]}
     try:
         found = _coasting(system.with_values(chosen), coasting)
     except EquilibriumError:
@@ -57,7 +57,7 @@ def _coasting(system: System, gears: list[str]) -> Values:
     """
     found = steady_values(system)
     for gear in gears:
-        if not _coasts(system.with_values(found), gear):
+        if not coasts(system.with_values(found), gear):
             raise EquilibriumError(
                 f"no steady rotation of '{system.name}' was found on one flank of {gear}; look at "
                 "its torques, or start with --start rest"
@@ -65,7 +65,7 @@ def _coasting(system: System, gears: list[str]) -> Values:
     return found
 
 
-def _free_flanks(system: System) -> dict[str, list[str]]:
+def free_flanks(system: System) -> dict[str, list[str]]:
     """Paths of the flank's parameters by gear pair: its own, and those of what carries it."""
     known = anatomy(system)
     found: dict[str, list[str]] = {}
@@ -113,7 +113,7 @@ def _with_hint(error: EquilibriumError, system: System) -> EquilibriumError:
     )
 
 
-def _coasts(system: System, gear: str) -> bool:
+def coasts(system: System, gear: str) -> bool:
     """True if the meshes of a pair are pressed on the coast flank, where the system stands."""
     return _pressed(Twin(system), gear) < 0.0
 

@@ -1,0 +1,122 @@
+"""How a part is brought to a steady start: what its inputs are before the time of the start.
+
+A part with states of its own, which nobody can set, is stepped over a time T before the run begins.
+Its inputs go from where it begins to those of the steady motion, smoothly over the first half of T,
+and follow that motion over the second half. With x = (t + T) / (T / 2) and the share
+
+    s = x^2 (3 - 2 x)  for x < 1,  1 after that,
+
+an input is u(t) = u_begin + s (u + r t - u_begin), and an angle that turns
+
+    u(t) = u - integral from t to 0 of s (r + a t') dt',
+
+so that its speed, which is the former with r and a in place of u and r, is its rate.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+_TAPERED = 10
+"""Halvings of the last step: what is held over the last piece is what stands at its end."""
+_WHOLE = 1e-9
+
+
+@dataclass(frozen=True)
+class SteadyInput:
+    """An input in steady motion, by its value at the start of the run.
+
+    Attributes:
+        name: of the variable.
+        value: at t = 0.
+        rate: of its value [1/s].
+        acceleration: [1/s^2]; of an angle that turns alone.
+        begin: where it begins; None: it is an angle that turns.
+        moves: it is a speed.
+    """
+
+    name: str
+    value: float
+    rate: float = 0.0
+    acceleration: float = 0.0
+    begin: float | None = None
+    moves: bool = False
+
+
+@dataclass(frozen=True)
+class Approach:
+    """What a part is given before the run.
+
+    Attributes:
+        inputs: in steady motion.
+        duration: T [s].
+        step: longest step [s].
+        share: of each step at which angles that turn are taken: 0.5, the mean; 0, its start; 1,
+            its end; see `cosim.signature.rotation`.
+        gradual: shafts begin at rest; else at their speed.
+        tapered: the last step is made of ever shorter ones.
+    """
+
+    inputs: tuple[SteadyInput, ...]
+    duration: float
+    step: float
+    share: float = 0.5
+    gradual: bool = True
+    tapered: bool = True
+
+    def steps(self) -> Iterator[tuple[float, float]]:
+        """Begin and length of each step [s], the last one up to 0."""
+        count = max(1, math.ceil(self.duration / self.step - _WHOLE))
+        h = self.duration / count
+        last = count - 1 if self.tapered else count
+        for n in range(last):
+            yield n * h - self.duration, h
+        if self.tapered:
+            for _ in range(_TAPERED):
+                yield -h, 0.5 * h
+                h *= 0.5
+            yield -h, h
+
+    def held(self, t: float, h: float) -> np.ndarray:
+        """(n,) inputs that are given for a step from t [s] of length h [s]."""
+        values, rates, accelerations, begins, turning, rising = self._columns
+        middle, turned = t + 0.5 * h, t + self.share * h
+        x = (middle + self.duration) / (0.5 * self.duration)
+        share = x * x * (3.0 - 2.0 * x) if x < 1.0 else 1.0
+        steady = values + rates * middle
+        moved = np.where(rising, begins + share * (steady - begins), steady)
+        if not turning.any():
+            return moved
+        return np.where(turning, values + self._remaining(turned, rates, accelerations), moved)
+
+    def at_end(self) -> np.ndarray:
+        """(n,) inputs at the start of the run."""
+        return np.array([u.value for u in self.inputs])
+
+    def turned(self, rate: float, acceleration: float) -> float:
+        """By what an angle of such a motion turns until the start of the run."""
+        return -float(self._remaining(-self.duration, rate, acceleration))
+
+    @cached_property
+    def _columns(self) -> tuple[np.ndarray, ...]:
+        """Values, rates, accelerations, begins of the inputs; which turn, which go gradually."""
+        turning = np.array([u.begin is None for u in self.inputs], dtype=bool)
+        rows = np.array([(u.value, u.rate, u.acceleration, u.begin or 0.0) for u in self.inputs])
+        values, rates, accelerations, begins = rows.reshape(-1, 4).T
+        rising = np.array([self.gradual or not u.moves for u in self.inputs], dtype=bool)
+        return values, rates, accelerations, begins, turning, rising
+
+    def _remaining(self, t: float, rate, acceleration):  # noqa: ANN001, ANN202 (numbers or arrays)
+        """Minus the integral from t to 0 of the speed."""
+        half = -0.5 * self.duration
+        if not self.gradual or t >= half:
+            return rate * t + 0.5 * acceleration * t * t
+        steady = rate * half + 0.5 * acceleration * half * half
+        x = (t - 2.0 * half) / -half
+        shares = 0.5 - (x**3 - 0.5 * x**4)
+        moments = 0.35 - (0.75 * x**4 - 0.4 * x**5)
+        begun = rate + 2.0 * acceleration * half
+        return steady + half * (begun * shares - acceleration * half * moments)

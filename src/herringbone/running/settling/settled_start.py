@@ -1,0 +1,256 @@
+"""A start in equilibrium of a system with foreign parts.
+
+Nobody can set the states of a foreign FMU. But it can be stepped before the run begins, under the
+inputs of the steady motion, until it answers steadily. What it answers then is what own parts are
+balanced with; as what it is given follows from these, answers are looked for that come back.
+
+Own parts turn by the angle by which foreign ones are turned on the way, so that these begin where
+they declare. Torques that do not balance speed the drivetrain up evenly, if no controller holds the
+speed: parts settle under this acceleration, too.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.analysis.anatomy import value_at
+from herringbone.analysis.twin.monolithic import make_instances
+from herringbone.components.in_process import InProcessPart
+from herringbone.core import HerringboneError
+from herringbone.core.part import Part
+from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.signature import Kind
+from herringbone.cosim.structure.approach import Approach, SteadyInput
+from herringbone.cosim.structure.network import Network, build_network
+from herringbone.cosim.structure.rates import rates
+from herringbone.cosim.structure.system import PartSpec, System, Values
+from herringbone.running.foreign.foreign_parts import found_signature, start_inputs
+from herringbone.running.loading import instances
+from herringbone.running.settling.anderson import Anderson
+from herringbone.running.settling.links import Links
+from herringbone.running.settling.own_motion import OwnMotion, own_motion
+from herringbone.running.settling.stranger import LONGEST, NotSettledError, Settled, Stranger
+
+_FIRST = 0.02
+"""Duration that is tried first [s]."""
+_ROUNDS = 20
+_STEP = 2e-5
+"""Longest step before the run [s]; that of the run plays no part, so that the start is the same."""
+_SAME = 1e-4
+"""Of the largest answer of its unit: what is left."""
+_PROBE = 10.0
+"""Acceleration that tells inertia [rad/s^2]."""
+_KINDS = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH, Kind.SOURCE, Kind.SAMPLED}
+
+
+class NoSettledStartError(HerringboneError):
+    """There is no start in equilibrium; the message says why."""
+
+
+class SettledStart(NamedTuple):
+    """Start values of own parts, and how foreign parts come there.
+
+    Attributes:
+        values: by `instance.variable`.
+        approaches: by part; what has no memory needs none.
+        acceleration: of the fastest shaft [rad/s^2].
+    """
+
+    values: Values
+    approaches: dict[str, Approach]
+    acceleration: float
+
+
+def settled_start(system: System, known: System, step: float) -> SettledStart:
+    """A start in equilibrium with all parts.
+
+    Args:
+        system: with all values.
+        known: the same without foreign parts.
+        step: of the trials that tell what foreign parts are [s].
+
+    Raises:
+        NoSettledStartError: there is none.
+    """
+    try:
+        with _laid_out(system, known, step) as (network, strangers):
+            return _Search(known, network, strangers).found()
+    except NoSettledStartError:
+        raise
+    except (NotSettledError, HerringboneError) as error:
+        raise NoSettledStartError(str(error)) from error
+
+
+class _Search:
+    """One search; see `settled_start`. The answers of all strangers stand in one row."""
+
+    def __init__(self, known: System, network: Network, strangers: list[Stranger]) -> None:
+        self._system, self._strangers = known, strangers
+        self._links = Links(network, strangers)
+        self._duration, self._gradual = _FIRST, True
+        self._answer = np.zeros(len(self._links.has_states))
+        self._known_to_settle = False
+
+    def found(self) -> SettledStart:
+        """The start; raises NotSettledError, HerringboneError."""
+        links = self._links
+        slopes, by_acceleration = links.slopes(), np.zeros_like(self._answer)
+        motion = self._balanced(np.where(links.has_states, 0.0, self._untouched()), slopes,
+                                by_acceleration)  # fmt: skip
+        still = motion.at_acceleration(0.0)
+        self._gradual = self._begins_gently(still)
+        answer = self._settled(still)
+        if motion.speeds_up:
+            faster = self._settled(motion.at_acceleration(_PROBE))
+            by_acceleration = np.where(links.has_states, (faster - answer) / _PROBE, 0.0)
+        constant = answer - slopes @ links.own_values(still)
+        search = Anderson(links.sizes(answer))
+        for _ in range(_ROUNDS):
+            motion = self._balanced(constant, slopes, by_acceleration)
+            answer = self._settled(motion)
+            straight = slopes @ links.own_values(motion) + by_acceleration * motion.acceleration
+            if np.all(np.abs(answer - straight - constant) <= _SAME * links.sizes(answer)):
+                return SettledStart(
+                    motion.values,
+                    {p.name: self._approach(p, motion) for p in self._strangers if not p.at_once},
+                    motion.acceleration,
+                )
+            constant = search.next(constant, answer - straight)
+        raise NotSettledError("what foreign parts answer and what own parts give do not meet")
+
+    def _balanced(
+        self, constant: np.ndarray, slopes: np.ndarray, by_acceleration: np.ndarray
+    ) -> OwnMotion:
+        """Own parts with what others answer; they turn on by what others turn on their way."""
+        answers = self._links.answered(constant, slopes, by_acceleration)
+        found = own_motion(self._system, answers, self._links.own_outputs)
+        if not any(map(found.turns, found.outputs)):
+            return found
+        way = Approach((), self._duration, _STEP, gradual=self._gradual)
+        turned = {
+            path: value_at(self._system, path) + way.turned(*found.rates(angle))
+            for path, angle in found.angles.items()
+        }
+        return own_motion(self._system.with_values(turned), answers, self._links.own_outputs)
+
+    def _untouched(self) -> np.ndarray:
+        """Answers to the inputs at which strangers begin."""
+        found = {}
+        for part in self._strangers:
+            begin = [
+                SteadyInput(n, float(x), begin=float(x))
+                for n, x in zip(part.inputs, part.begin, strict=True)
+            ]
+            given = part.approach(begin, _STEP, _STEP, gradual=False)
+            found[part.name] = part.settled(given).outputs
+            found[part.name] -= part.feedthrough() @ part.begin
+        return self._links.row(found)
+
+    def _approach(self, part: Stranger, motion: OwnMotion) -> Approach:
+        given = self._links.given(part, motion, self._answer)
+        duration = _STEP if part.at_once else self._duration
+        return part.approach(given, duration, _STEP, gradual=self._gradual)
+
+    def _settled(self, motion: OwnMotion) -> np.ndarray:
+        """What strangers come to; longer and longer until all do."""
+        before: dict[str, Settled] = {}
+        while True:
+            found = {p.name: p.settled(self._approach(p, motion)) for p in self._strangers}
+            self._answer = self._links.row({name: s.outputs for name, s in found.items()})
+            late = [
+                p for p in self._strangers if not p.is_settled(found[p.name], before.get(p.name))
+            ]
+            if not late or self._known_to_settle:
+                self._known_to_settle = True
+                return self._answer
+            self._lengthen(late[0], found[late[0].name])
+            before = found
+
+    def _lengthen(self, part: Stranger, found: Settled) -> None:
+        """Twice the time; raises NotSettledError if that is too long."""
+        if part.at_once:
+            raise NotSettledError(f"{part.name}: {found.worst} has no steady value")
+        self._duration *= 2.0
+        if self._duration > LONGEST:
+            raise NotSettledError(
+                f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
+                f"{0.5 * self._duration:.3g} s"
+            )
+
+    def _begins_gently(self, motion: OwnMotion) -> bool:
+        """If foreign parts answer less to shafts that speed up than to shafts that turn at once."""
+        peaks = []
+        for gradual in (True, False):
+            self._gradual = gradual
+            found = {p.name: p.settled(self._approach(p, motion)).peak for p in self._strangers}
+            peaks.append(self._links.row(found))
+        sizes = self._links.sizes(np.maximum(*peaks))
+        return bool(np.max(peaks[0] / sizes) <= np.max(peaks[1] / sizes))
+
+
+@contextmanager
+def _laid_out(
+    system: System, known: System, step: float
+) -> Iterator[tuple[Network, list[Stranger]]]:
+    """The network of all parts, and the foreign ones as they can be tried."""
+    own = {i.name: InProcessPart(i) for i in make_instances(known)}
+    foreign = [spec for spec in system.parts if spec.foreign]
+    for spec in foreign:
+        _refuse_untriable(spec)
+    with ExitStack() as stack:
+        makes = {spec.name: stack.enter_context(instances(spec)) for spec in foreign}
+        opened = {name: make() for name, make in makes.items()}
+        try:
+            network = build_network(
+                system, [own.get(spec.name) or opened[spec.name] for spec in system.parts]
+            )
+        finally:
+            for part in opened.values():
+                start_inputs(part, [])  # which closes it; some must be initialised for that
+        strangers = [
+            _stranger(spec, network, opened[spec.name], makes[spec.name], step) for spec in foreign
+        ]
+        yield network, strangers
+
+
+def _stranger(
+    spec: PartSpec, network: Network, part: Part, make: Callable[[], Part], step: float
+) -> Stranger:
+    """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
+    signature = found_signature(spec, part, instances, step)
+    if signature.kind not in _KINDS:
+        raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps")
+    number = network.parts.index(part)
+    inputs = [c.input for c in network.inputs(number)]
+    taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    outputs = list(dict.fromkeys([*taken, *rates(part, taken)]))
+    begin = start_inputs(make(), inputs) if inputs else np.empty(0)
+    found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part))
+    if found.turning:
+        angle = next(iter(found.turning))
+        raise NoSettledStartError(f"{part.name}.{angle} is the angle of a shaft of its own")
+    return found
+
+
+def _units(network: Network, part: Part) -> dict[str, str]:
+    """Units of a part's variables: its own, or those of what they are connected to."""
+    parts = network.parts
+    found = {name: v.unit for name, v in part.variables.items()}
+    for c in network.connections:
+        if parts[c.source] is part:
+            found[c.output] = found[c.output] or parts[c.target].variables[c.input].unit
+        elif parts[c.target] is part:
+            found[c.input] = found[c.input] or parts[c.source].variables[c.output].unit
+    return {name: unit for name, unit in found.items() if unit}
+
+
+def _refuse_untriable(spec: PartSpec) -> None:
+    """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
+    abilities = read_fmu(Path(str(spec.fmu))).coSimulation
+    if abilities.canBeInstantiatedOnlyOncePerProcess:
+        raise NoSettledStartError(f"{spec.name} can be instantiated once only")
+    if not abilities.canHandleVariableCommunicationStepSize:
+        raise NoSettledStartError(f"{spec.name} takes steps of one length only")

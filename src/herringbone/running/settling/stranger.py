@@ -1,0 +1,171 @@
+"""A foreign part that is stepped alone, under the inputs of a steady motion, until it settles."""
+
+from collections.abc import Callable, Mapping, Sequence
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.core.part import Part
+from herringbone.cosim.signature import Kind, Signature
+from herringbone.cosim.signature.rotation import InputRule
+from herringbone.cosim.signature.trial import Trial
+from herringbone.cosim.structure.approach import Approach, SteadyInput
+from herringbone.cosim.structure.rates import rate_of
+
+LONGEST = 41.0
+"""Time that a part may take to settle [s]."""
+_SECONDS = 2.0
+"""That one trial may take."""
+_MOST_STEPS = 8192
+"""Of a trial; longer ones take longer steps."""
+_SHARES = {InputRule.MEAN: 0.5, InputRule.START: 0.0, InputRule.END: 1.0}
+_CHANGES = 5e-4
+"""Of the largest value of its unit that counts as settled: over the last quarter; or of its curve
+there about a straight line, and of its end if it is given half the time."""
+_NOTHING = {"m": 1e-12, "rad": 1e-9, "m/s": 1e-9, "rad/s": 1e-6, "N": 1e-6, "N.m": 1e-6}
+_WATCHED = 200
+"""Points of the last quarter that are looked at."""
+
+
+class NotSettledError(Exception):
+    """A part has no steady answer, or takes too long to come to it."""
+
+
+class Settled(NamedTuple):
+    """What a part has come to.
+
+    Attributes:
+        outputs: (m,) at the start of the run.
+        change: over the last quarter, over the largest value of its unit, of the worst output.
+        bend: the same about straight lines.
+        worst: name of that output.
+        peak: (m,) largest values.
+        seconds: that it took.
+    """
+
+    outputs: np.ndarray
+    change: float
+    bend: float
+    worst: str
+    peak: np.ndarray
+    seconds: float
+
+
+class Stranger:
+    """A foreign part with what it is given and what is taken from it.
+
+    Args:
+        part: whose variables count.
+        make: makes an instance, start values set.
+        signature: of the part.
+        inputs: names of connected inputs, (n,).
+        outputs: names of outputs that others take, (m,).
+        begin: start values of the inputs (n,).
+        units: of inputs and outputs, by name, as far as they are known.
+
+    Attributes:
+        name, inputs, outputs, begin, units: see above.
+        turning: outputs that are angles with a rate.
+        at_once: it has no memory, and answers at once.
+    """
+
+    def __init__(
+        self,
+        part: Part,
+        make: Callable[[], Part],
+        signature: Signature,
+        inputs: Sequence[str],
+        outputs: Sequence[str],
+        begin: np.ndarray,
+        units: Mapping[str, str],
+    ) -> None:
+        self.name, self.inputs, self.outputs, self.begin = part.name, inputs, outputs, begin
+        self.units = units
+        self._make, self._signature = make, signature
+        self.at_once = signature.kind in {Kind.ELEMENT, Kind.SOURCE}
+        self.turning = frozenset(
+            name for name in outputs if units.get(name) == "rad" and rate_of(part, name) in outputs
+        )
+        rates = {rate_of(part, name) for name in outputs if name not in self.turning}
+        self._watched = [
+            k for k, n in enumerate(outputs) if n not in self.turning and n not in rates
+        ]
+        self._tapered = signature.tick == 0.0 and signature.kind is not Kind.SAMPLED
+        known = dict(zip(signature.inputs, signature.given, strict=False))
+        rules = {known[name] for name in inputs if known.get(name)}
+        self._share = _SHARES[rules.pop()] if rules else _SHARES[InputRule.MEAN]
+
+    def feedthrough(self) -> np.ndarray:
+        """(m, n) D of outputs that others take, on connected inputs; 0 where it is unknown."""
+        rows = [self._signature.outputs.index(name) for name in self.outputs]
+        columns = [self._signature.inputs.index(name) for name in self.inputs]
+        return np.nan_to_num(self._signature.feedthrough)[np.ix_(rows, columns)]
+
+    def approach(
+        self, steady: Sequence[SteadyInput], duration: float, step: float, *, gradual: bool
+    ) -> Approach:
+        """How it is brought to inputs in steady motion."""
+        step = max(step, duration / _MOST_STEPS)
+        return Approach(
+            tuple(steady), duration, step, self._share, gradual=gradual, tapered=self._tapered
+        )
+
+    def settled(self, given: Approach) -> Settled:
+        """What it comes to; raises FmuError, NotSettledError."""
+        begun = perf_counter()
+        trial = Trial(self._make(), self.inputs, self.outputs, -given.duration, LONGEST)
+        try:
+            direct = self.feedthrough()
+            first = -0.25 * given.duration
+            every = max(1, int(-first / given.step / _WATCHED))
+            seen, peak = [], np.zeros(len(self.outputs))
+            for number, (t, h) in enumerate(given.steps()):
+                held = given.held(t, h)
+                trial.set(held)
+                trial.step(h)
+                peak = np.maximum(peak, np.abs(trial.values()))
+                if t >= first and number % every == 0:
+                    end = given.held(t + h, 0.0)
+                    seen.append(trial.values() + direct @ (end - held))
+                if perf_counter() - begun > _SECONDS:
+                    raise NotSettledError(
+                        f"stepping {self.name} over {given.duration:.3g} s, which parts need to "
+                        f"settle, takes more than {_SECONDS:g} s"
+                    )
+            trial.set(given.at_end())
+            last = trial.values()
+        finally:
+            trial.close()
+        path, line = np.array([*seen, last]), np.linspace(-1.0, 1.0, len(seen) + 1)
+        change, worst = self._change(path)
+        slope = line @ path / (line @ line)
+        bend, _ = self._change(path, np.outer(line, slope))
+        return Settled(last, change, bend, worst, peak, perf_counter() - begun)
+
+    def _change(self, seen: np.ndarray, about: np.ndarray | float = 0.0) -> tuple[float, str]:
+        """Largest change of a watched output, over the largest value of its unit; its name."""
+        if not np.isfinite(seen).all():
+            raise NotSettledError(f"{self.name}: its outputs are not finite")
+        sizes = self.sizes(np.abs(seen).max(axis=0))
+        changes = np.ptp(seen - about, axis=0)[self._watched] / sizes[self._watched]
+        if not changes.size:
+            return 0.0, ""
+        return float(changes.max()), self.outputs[self._watched[int(np.argmax(changes))]]
+
+    def sizes(self, values: np.ndarray) -> np.ndarray:
+        """(m,) largest values of the same unit."""
+        units = [self.units.get(n, "") for n in self.outputs]
+        largest = {u: _NOTHING.get(u, 1e-9) for u in units}
+        for value, unit in zip(values, units, strict=True):
+            largest[unit] = max(largest[unit], abs(float(value)))
+        return np.array([largest[unit] for unit in units])
+
+    def is_settled(self, found: Settled, before: Settled | None) -> bool:
+        """If nothing changes any more but evenly, as it did in half the time."""
+        if found.change <= _CHANGES:
+            return True
+        if before is None or found.bend > _CHANGES:
+            return False
+        off = np.abs(found.outputs - before.outputs) / self.sizes(found.outputs)
+        return bool(np.all(off[self._watched] <= _CHANGES))

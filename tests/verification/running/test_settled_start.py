@@ -1,0 +1,116 @@
+"""A start in equilibrium beside foreign FMUs, whose states nobody can set."""
+
+import numpy as np
+import pytest
+from support.c_housing import c_housing_fmu
+from support.kinds import build_kinds
+from support.strangers import write_system
+
+import herringbone as hb
+from herringbone.components.registry import COMPONENTS
+from herringbone.running.prepared import Wishes, prepared
+
+STEP = 4e-5
+LOAD = """
+gearbox = { system = "gearbox" }
+coupling = { component = "shaft_coupling", set = { stiffness = 3e5, damping = 50.0 } }
+load = { component = "load_motor" }
+bench = { component = "bench_controller" }
+"""
+JOINED = [
+    ["motor.flange", "gearbox.pinion"],
+    ["gearbox.wheel", "coupling.flange_a"],
+    ["load.flange", "coupling.flange_b"],
+    ["bench.torque_setpoint", "load.torque_setpoint"],
+]
+TORQUE, SPEED, MOTOR = 230.0, 80.0, 0.12
+
+
+def of(component, parameter):
+    return COMPONENTS[component].declaration.variable(parameter).start
+
+
+def values_of(system, *parts):
+    return {
+        f"{part.name}.{name}": float(value)
+        for part in system.parts
+        if part.name.endswith(parts)
+        for name, value in part.values.items()
+        if isinstance(value, float)
+    }
+
+
+def test_same_start_as_with_known_equations(native_fmus):
+    """The shipped housing as a stranger: pre-run and fixed point against its equations."""
+    files = {"modal_housing": native_fmus["modal_housing"]}
+    known = prepared("test_rig", None, Wishes()).system
+    found = prepared("test_rig", None, Wishes(replace_parts=files), trial_step=STEP).system
+    expected = values_of(known, "gear_mesh", "motor")
+    values = values_of(found, "gear_mesh", "motor")
+    assert found.part("modal_housing").approach is not None
+    for path, value in expected.items():
+        # What a housing that still moves by 5e-4 of its deflection leaves, which is less than that
+        # of bearings and meshes.
+        size = max(abs(value), 1e-6 if "der(" not in path else 1e-3)
+        assert values[path] == pytest.approx(value, abs=5e-4 * size), path
+
+
+@pytest.fixture(scope="module")
+def housing(tmp_path_factory):
+    return c_housing_fmu(tmp_path_factory.mktemp("c_housing"))
+
+
+@pytest.mark.parametrize("torque", [200.0, -150.0])
+def test_nothing_swings_but_what_the_mesh_excites(housing, torque):
+    """Of the first 5 ms against the next 15: at most what a start in equilibrium makes of the
+    periodic motion, with own parts 1.4 to 2.4; with a ramp some 40 and more."""
+    run = hb.run("test_rig", replace_parts={"modal_housing": housing}, speed=100.0, torque=torque,
+                 t_end=0.02, record_step=STEP)  # fmt: skip
+    assert any("stepped over" in note for note in run.info.notes)
+    forces = run.data[run.channel("bearing_force")].to_numpy()
+    swing = np.abs(forces - forces.mean(axis=0)).max(axis=1)
+    first = swing[: len(swing) // 4].max()
+    assert first < 2.4 * swing[len(swing) // 4 :].max()
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """A gearbox that an e-motor drives and an own motor loads; nothing holds the speed."""
+    folder = build_kinds(tmp_path_factory.mktemp("motor"), "c_e_drive.c")
+    system = write_system(folder, "driven", JOINED, {"motor": folder / "c_e_drive.fmu"})
+    with (system / "system.toml").open("a", encoding="utf-8") as opened:
+        opened.write(LOAD)
+    return system
+
+
+def test_what_does_not_balance_speeds_up(driven):
+    """Newton's law of the whole drivetrain, and the torque that is left at the motor's flange."""
+    values = {"motor.torque_set": TORQUE, "gear_mesh.der(angle)": SPEED}
+    run = hb.run(driven, values=values, t_end=0.01, record_step=STEP)
+    line = next(note for note in run.info.notes if "speeds up by" in note)
+    told = float(line.partition("speeds up by ")[2].split()[0])
+    # Of motor, two halves of pinion and wheel, and load; a ratio of 3, and 200 N m of the bench.
+    pinion, wheel = (2.0 * of("gear_mesh", f"{gear}.inertia") for gear in ("pinion", "wheel"))
+    inertia = MOTOR + pinion + (wheel + of("load_motor", "inertia")) / 9.0
+    # Half of the squared deflection, 1e-5 m, times the slope of the mesh stiffness, 3e9 N/m a rad.
+    assert told == pytest.approx((TORQUE - 200.0) / inertia, abs=0.2 / inertia)
+    data = run.data
+    torque = data["motor.flange.tau"].to_numpy()
+    assert torque[0] == pytest.approx(TORQUE - MOTOR * told, rel=1e-3)
+    assert np.abs(torque - torque[0]).max() < 0.01 * TORQUE
+    speed = data["gearbox.gear_mesh.pinion.w"].to_numpy()
+    assert speed[0] == pytest.approx(SPEED, rel=1e-9)
+
+
+def test_why_there_is_none(tmp_path):
+    """A rotor whose angle nobody can set: the load rises instead, and a line says why."""
+    folder = build_kinds(tmp_path, "fixed_step_rotor.py")
+    joined = [["motor.flange", "input.flange_a"], ["gearbox.pinion", "input.flange_b"], *JOINED[1:]]
+    system = write_system(folder, "rotor", joined, {"motor": folder / "FixedStepRotor.fmu"})
+    with (system / "system.toml").open("a", encoding="utf-8") as opened:
+        opened.write(LOAD + 'input = { component = "shaft_coupling" }\n')
+    _, _, notes = prepared(system, None, Wishes(), trial_step=STEP)
+    assert (
+        "motor: foreign, so no equilibrium is known (motor.flange.phi is the angle of a shaft of "
+        "its own); the load rises from zero over 0.02 s instead"
+    ) in notes
