@@ -115,7 +115,8 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     if of.hosting is not None:
         kernels_settle = of.hosting.settle
         found["hb_settle"] = (types.int32(_REALS, _TIME), settle)
-        kernels_remark = of.hosting.remark
+    if of.by_tolerance is not None:
+        kernels_remark = of.by_tolerance.remark
         found["hb_remark"] = (types.int32(_REALS, _REALS, types.int32, _REALS), remark)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)

@@ -179,7 +179,7 @@ Status instance_exit_initialisation(Instance *instance) {
                       hb_component.not_settled[instance->not_settled - 1]);
         log_write(&instance->log, STATUS_WARNING, &message);
     }
-    if (hb_component.settle && !instance->model_exchange) /* the first step is not longer then */
+    if (hb_component.tolerance && !instance->model_exchange) /* the first step is not longer then */
         hb_component.step(instance->block, instance->work, instance->now.time, 0.0);
     if (!instance->model_exchange)
         instance_tell_remarks(instance);
