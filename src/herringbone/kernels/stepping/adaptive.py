@@ -119,7 +119,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     for vector in declaration.vectors:
         at_vector += vector.capacity
         ends.append(at_vector)
-    vectors = tuple(ends)
+    vector_count, vectors = len(ends), tuple(ends) or (0,)
     x0, slope, first, last, size_of, error_of_kind, known = (k * n for k in range(1, 8))
     at = known + 1
 
@@ -138,7 +138,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         for kind in range(kind_count):
             worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
         begin = visible
-        for v in range(len(vectors)):
+        for v in range(vector_count):
             size, error = _FLOOR, 0.0
             for i in range(begin, vectors[v]):
                 size = max(size, abs(b[i]))

@@ -26,7 +26,7 @@ from herringbone.kernels.stepping.adaptive import (
 
 TOLERANCE, NEXT_STEP = "tolerance", "next_inner_step"
 _USUAL = 1e-3
-LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5)
+LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5, 1.25e-5)
 """Of steps of the condensed core, by rung [s]."""
 _EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_USUAL)
 _STABLE = 2.0

@@ -106,12 +106,12 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
 
     @outside(owner)
     def is_felt(w: np.ndarray, j: int) -> bool:
-        """True if rates or arguments depend on a state."""
-        felt = 0.0
+        """True if arguments, or rates of what moves, depend on a state."""
+        can, felt = w[of.rates : of.rates + n], 0.0
         for k in range(arguments):
             felt += abs(w[of.of_states + k * n + j])
         for i in range(n):
-            felt += abs(w[of.whole + i * n + j])
+            felt += abs(can[i] * w[of.whole + i * n + j])
         return felt != 0.0
 
     @outside(owner)

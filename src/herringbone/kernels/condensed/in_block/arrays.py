@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner_inlined
+from herringbone.kernels.compiling.views import matrix
 from herringbone.kernels.condensed.collocation import Nodes, Sharp, Table
 from herringbone.kernels.condensed.correction import Room
 from herringbone.kernels.condensed.in_block.form import Form
@@ -71,17 +72,17 @@ def array_kernels(form: Form, at: WorkPlaces, owner: str) -> tuple[Callable, Cal
     @inner_inlined(owner)
     def nodes(w: np.ndarray) -> Nodes:
         return Nodes(
-            w[at.z : at.z + inner * arguments].reshape(inner, arguments),
-            w[at.f : at.f + inner * values].reshape(inner, values),
-            w[at.k : at.k + inner * tangents].reshape(inner, tangents),
-            w[at.e : at.e + (inner + 1) * kinks].reshape(inner + 1, kinks),
+            matrix(w, at.z, inner, arguments),
+            matrix(w, at.f, inner, values),
+            matrix(w, at.k, inner, tangents),
+            matrix(w, at.e, inner + 1, kinks),
             w[at.start : at.start + arguments],
         )
 
     @inner_inlined(owner)
     def room(w: np.ndarray) -> Room:
         return Room(
-            w[at.matrix : at.matrix + size * size].reshape(size, size),
+            matrix(w, at.matrix, size, size),
             w[at.r : at.r + size],
             w[at.swept : at.swept + size],
             w[at.miss : at.miss + unknowns],

@@ -112,10 +112,16 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
                 rate -= w[at.rigid + r * n + state] * dx[int(w[at.references + r])]
             if not abs(rate - found[i]) <= _LINEAR * terms[i]:
                 return False
+        for i in range(int(w[at.inside])):
+            dx[int(w[at.states + i])] = 0.0
         for r in range(int(w[at.rotations])):
             turning = int(w[at.references + r])
             off = abs(dx[turning] - angles[r])
             if not off <= _LINEAR * (abs(angles[r]) + sizes[turning]):
+                return False
+            dx[turning] = 0.0
+        for i in range(n):
+            if dx[i] != 0.0:
                 return False
         return True
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import residuals, spread
 from herringbone.kernels.condensed.correction import correct
@@ -38,20 +39,15 @@ def iteration(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
     @inner(owner)
     def iterate(b: np.ndarray, w: np.ndarray, begin: int, t: float, h: float, close: float) -> bool:
         table, nodes, room = table_of(w), nodes_of(w), room_of(w)
-        u = w[at.u : at.u + channels * count].reshape(channels, count)
-        v = w[at.v : at.v + channels * count]
-        chosen = w[at.chosen : at.chosen + channels * count].view(np.int64)
-        first = begin + at.of_inputs
-        of_inputs = w[first : first + channels * count * at.width].reshape(
-            channels * count, at.width
-        )
-        first = begin + at.along
-        along = w[first : first + size * degree * tangents].reshape(size, degree * tangents)
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        chosen = integers(w, at.chosen, channels * count)
+        of_inputs = matrix(w, begin + at.of_inputs, channels * count, at.width)
+        along = matrix(w, begin + at.along, size, degree * tangents)
         free, rows = w[at.free : at.free + at.width], w[at.wanted : at.wanted + at.width]
         for _ in range(_ITERATIONS):
             copy(free, rows)
-            given = inputs(places, table.least, u, 0, values, v.reshape(channels, count), chosen)
-            add_chosen(of_inputs, v, chosen, given, rows)
+            given = inputs(places, table.least, u, 0, values, v, chosen)
+            add_chosen(of_inputs, w[at.v :], chosen, given, rows)
             spread(sharp, nodes, rows)
             for i in range(degree):
                 laws(b, t + h * places[i + 1], nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import less_tangents
 from herringbone.kernels.condensed.in_block.arrays import array_kernels
@@ -95,7 +96,7 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
         x = w[at.x : at.x + inside]
         for i in range(inside):
             x[i] = 0.0
-        shapes = w[at.shapes : at.shapes + 2 * modes * inside].reshape(2 * modes, inside)
+        shapes = matrix(w, at.shapes, 2 * modes, inside)
         add_product(shapes, w[at.q : at.q + 2 * modes], x)
         for r in range(int(w[at.rotations])):
             angle, v = b[int(w[at.references + r])], w[at.rigid + r * n : at.rigid + (r + 1) * n]
@@ -120,7 +121,7 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
                     x[i] -= rigid * b[int(w[at.references + r])]
         for k in range(at.q_size):
             w[at.q + k] = 0.0
-        back = w[at.back : at.back + 2 * modes * inside].reshape(inside, 2 * modes)
+        back = matrix(w, at.back, inside, 2 * modes)
         add_product(back, x, w[at.q : at.q + 2 * modes])
         laws_there(b, w, t, modes)
         neglect(w, modes, close)
@@ -175,19 +176,16 @@ def advancing(form: Form, at: WorkPlaces, owner: str) -> Callable:
             q[2 * modes + r] += w[at.free + rows + r]
         real = w[begin + at.turn : begin + at.turn + modes]
         turn(real, w[begin + at.turn + modes : begin + at.turn + 2 * modes], q)
-        u = w[at.u : at.u + channels * count]
-        v, chosen = w[at.v : at.v + u.size], w[at.chosen : at.chosen + u.size].view(np.int64)
-        found = inputs(
-            places, w[at.least : at.least + channels], u.reshape(channels, count), 0, channels,
-            v.reshape(channels, count), chosen,
-        )  # fmt: skip
-        first = begin + at.push
-        push = w[first : first + u.size * at.q_size].reshape(u.size, at.q_size)
-        add_chosen(push, v, chosen, found, q)
+        size, chosen = channels * count, integers(w, at.chosen, channels * count)
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        least = w[at.least : at.least + channels]
+        found = inputs(places, least, u, 0, channels, v, chosen)
+        push = matrix(w, begin + at.push, size, at.q_size)
+        add_chosen(push, w[at.v :], chosen, found, q)
         copy(w[at.e + degree * kinks : at.e + count * kinks], w[at.e : at.e + kinks])
         end = at.z + degree * arguments
         copy(w[end - arguments : end], w[at.start : at.start + arguments])
-        copy(u, w[at.last : at.last + u.size])
+        copy(w[at.u : at.u + size], w[at.last : at.last + size])
         w[at.before] = rung
 
     return advance

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs, predict
 from herringbone.kernels.condensed.in_block.collocated import doubts, iteration
 from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
@@ -47,9 +48,8 @@ def step_beginner(
         dc: float, order: int,
     ) -> None:  # fmt: skip
         size, before, now = channels * count, int(w[at.before]), w[at.now :]
-        u = w[at.u : at.u + size].reshape(channels, count)
-        v, chosen = w[at.v : at.v + size], w[at.chosen : at.chosen + size].view(np.int64)
-        last = w[at.last : at.last + size].reshape(channels, count)
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        chosen, last = integers(w, at.chosen, size), matrix(w, at.last, channels, count)
         predict(ahead[rung, max(before, 0)], before >= 0, values, last, u)
         for i in range(count):
             set_inputs(b, w, order, c + nodes[i] * dc)
@@ -59,10 +59,10 @@ def step_beginner(
             for k in range(signal_count):
                 u[values + k, i] = now[k]
             u[channels - 1, i] = 1.0
-        free, first = w[at.free : at.free + at.width], begin + at.of_state
+        free = w[at.free : at.free + at.width]
         for row in range(at.width):
             free[row] = 0.0
-        of_state = w[first : first + at.q_size * at.width].reshape(at.q_size, at.width)
+        of_state = matrix(w, begin + at.of_state, at.q_size, at.width)
         add_product(of_state, w[at.q : at.q + at.q_size], free)
         modes = int(w[at.modes])
         for r in range(int(w[at.rotations])):
@@ -70,10 +70,9 @@ def step_beginner(
             for row in range(at.width):
                 free[row] += own[row] * angle
         least = w[at.least : at.least + channels]
-        found = inputs(nodes, least, u, values, channels, v.reshape(channels, count), chosen)
-        first = begin + at.of_inputs
-        of_inputs = w[first : first + size * at.width].reshape(size, at.width)
-        add_chosen(of_inputs, v, chosen, found, free)
+        found = inputs(nodes, least, u, values, channels, v, chosen)
+        of_inputs = matrix(w, begin + at.of_inputs, size, at.width)
+        add_chosen(of_inputs, w[at.v :], chosen, found, free)
 
     return begin_step
 
@@ -101,6 +100,23 @@ def leaper(
     shortest = float(lengths[-1])
 
     @inner(owner)
+    def choose(most: float, left: float) -> int:
+        """The longest rung up to a length, or one of half of it that divides what is left; -1."""
+        longest = -1
+        for rung in range(rungs):
+            length = lengths[rung]
+            if length > most * (1.0 + _SAME):
+                continue
+            if longest < 0:
+                longest = rung
+            count = left / length
+            if abs(count - math.floor(count + 0.5)) <= _SAME * count:
+                return rung
+            if length < 0.5 * most:
+                break
+        return longest
+
+    @inner(owner)
     def ready(b: np.ndarray, w: np.ndarray, t: float) -> None:
         if w[at.status] == 0.0:
             condense(b, w, t)
@@ -121,19 +137,18 @@ def leaper(
             return done
         prepare(b)
         enter(b, w, t + done, _CLOSE * tolerance)
-        rung = 0
-        while rung < rungs:
+        while True:
+            rung = choose(min(longest, end - done), end - done)
+            if rung < 0:
+                break
             length = lengths[rung]
-            if length > longest * (1.0 + _SAME) or end - done < length * (1.0 - _SAME):
-                rung += 1
-                continue
             place = at.rungs + rung * at.rung_size
             begin_step(b, w, place, rung, t + done, length, done / h, length / h, order)
             if not iterate(b, w, place, t + done, length, _CLOSE * tolerance):
                 break
             straight = bends(w)
             if straight < 1.0:
-                longest = min(longest, straight * length)
+                longest = straight * length
                 continue
             if rough(w) > _ROUGH * tolerance:
                 break
