@@ -74,7 +74,7 @@ def system_out(b: np.ndarray, t: float) -> None:
     refresh(b)
     place(b, t)
     scatter(blocks, b[{own}:{states}])
-    propagate(blocks, t)
+    move(blocks, t)
     propagate(blocks, t)
     for i in range({outputs}):
         b[OUTPUT_TO[i]] = blocks[OUTPUT_FROM[i]]

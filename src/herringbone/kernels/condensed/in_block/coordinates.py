@@ -171,8 +171,9 @@ def advancing(form: Form, at: WorkPlaces, owner: str) -> Callable:
 
     @inner(owner)
     def advance(w: np.ndarray, begin: int, rung: int) -> None:
-        modes, q = int(w[at.modes]), w[at.q : at.q + at.q_size]
-        for r in range(int(w[at.rotations])):
+        modes, rotations = int(w[at.modes]), int(w[at.rotations])
+        q = w[at.q : at.q + 2 * modes + rotations]
+        for r in range(rotations):
             q[2 * modes + r] += w[at.free + rows + r]
         real = w[begin + at.turn : begin + at.turn + modes]
         turn(real, w[begin + at.turn + modes : begin + at.turn + 2 * modes], q)

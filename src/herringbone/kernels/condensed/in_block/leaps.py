@@ -62,10 +62,11 @@ def step_beginner(
         free = w[at.free : at.free + at.width]
         for row in range(at.width):
             free[row] = 0.0
-        of_state = matrix(w, begin + at.of_state, at.q_size, at.width)
-        add_product(of_state, w[at.q : at.q + at.q_size], free)
-        modes = int(w[at.modes])
-        for r in range(int(w[at.rotations])):
+        modes, rotations = int(w[at.modes]), int(w[at.rotations])
+        used = 2 * modes + rotations
+        of_state = matrix(w, begin + at.of_state, used, at.width)
+        add_product(of_state, w[at.q : at.q + used], free)
+        for r in range(rotations):
             angle, own = b[int(w[at.references + r])], of_state[2 * modes + r]
             for row in range(at.width):
                 free[row] += own[row] * angle
