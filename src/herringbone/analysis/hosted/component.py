@@ -185,7 +185,7 @@ def _core_equations(places: Places, module: ModuleType) -> Equations:
     d = places.declaration
     return Equations(
         d.name,
-        tuple(d.index[v.name] for v in d.inputs),
+        np.array([d.index[v.name] for v in d.inputs], dtype=np.int64),
         places.state_sizes,
         -1,
         module.system_rhs,

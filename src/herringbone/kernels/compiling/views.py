@@ -16,7 +16,8 @@ def _part(context, builder, kind, whole, values, shape):  # noqa: ANN001, ANN202
     """An array of a kind that begins at an element of the work space, by rows."""
     data = builder.gep(make_array(whole)(context, builder, values[0]).data, [values[1]])
     found = make_array(kind)(context, builder)
-    strides, step = [], context.get_constant(types.intp, _SIZE)
+    strides: list[ir.Value] = []
+    step = context.get_constant(types.intp, _SIZE)
     for size in reversed(shape):
         strides.insert(0, step)
         step = builder.mul(step, size)

@@ -119,7 +119,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     for vector in declaration.vectors:
         at_vector += vector.capacity
         ends.append(at_vector)
-    vector_count, vectors = len(ends), tuple(ends) or (0,)
+    vector_count, vectors = len(ends), np.array(ends, dtype=np.int64)
     x0, slope, first, last, size_of, error_of_kind, known = (k * n for k in range(1, 8))
     at = known + 1
 

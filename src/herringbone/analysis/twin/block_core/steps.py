@@ -106,7 +106,7 @@ def step_kernel(
     sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
     equations = Equations(
         d.name,
-        d.indices(*(v.name for v in d.inputs)),
+        np.array(d.indices(*(v.name for v in d.inputs)), dtype=np.int64),
         sizes,
         kept,
         module.system_rhs,

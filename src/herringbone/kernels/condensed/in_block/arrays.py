@@ -31,8 +31,8 @@ def fixed_arrays(form: Form) -> Fixed:
     unknown[list(form.stiff)] = np.arange(len(form.stiff))
     tangent = np.zeros((form.values, form.arguments))
     tangent[list(form.stiff)] = form.tangent
-    rows, arguments = np.nonzero(tangent)
-    along, of = np.nonzero(form.sharp)
+    rows, arguments = map(np.ascontiguousarray, np.nonzero(tangent))
+    along, of = map(np.ascontiguousarray, np.nonzero(form.sharp))
     return Fixed(
         np.searchsorted(rows, np.arange(form.values + 1)),
         arguments,

@@ -27,7 +27,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         at: places in the work space.
         equations: of the component.
     """
-    owner, sizes, inputs = equations.owner, np.array(equations.sizes), equations.inputs or (0,)
+    owner, sizes, inputs = equations.owner, np.array(equations.sizes), equations.inputs
     rhs, given, prepare = equations.rhs, equations.given, equations.prepare
     laws, signals = equations.laws, equations.signals
     n, channels, arguments, values = form.states, form.channels, form.arguments, form.values

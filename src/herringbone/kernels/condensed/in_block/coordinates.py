@@ -31,7 +31,7 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     owner, laws, signals, kept = equations.owner, equations.laws, equations.signals, equations.kept
     n, values, channels, arguments = form.states, form.values, form.channels, form.arguments
     first_signal, signal_count, first_input = form.values, form.signals, form.values + form.signals
-    given, input_count, stiff = equations.inputs or (0,), form.inputs, np.array(form.stiff)
+    given, input_count, stiff = equations.inputs, form.inputs, np.array(form.stiff)
     degree, count, capacity, unknowns = form.degree, form.degree + 1, at.capacity, len(form.stiff)
     table_of, nodes_of, _ = array_kernels(form, at, owner)
     size, goes_on = kept_size(form) - 1, equations.kept >= 0

@@ -75,7 +75,7 @@ class Equations(NamedTuple):
 
     Attributes:
         owner: name of the component, for messages.
-        inputs: places of the inputs in the block.
+        inputs: (inputs,) places of the inputs in the block.
         sizes: (states,) usual ones.
         kept: place in the block of what a core goes on with, `kept_size` long; -1: it begins anew
             in every call.
@@ -89,7 +89,7 @@ class Equations(NamedTuple):
     """
 
     owner: str
-    inputs: tuple[int, ...]
+    inputs: np.ndarray
     sizes: tuple[float, ...]
     kept: int
     rhs: Callable

@@ -19,8 +19,9 @@ _CLOSE = 10.0
 """Residual of the laws' values, over their size and the tolerance, whose correction solves a step.
 
 A correction makes it a thousand times smaller, or more."""
-_ROUGH = 5.0
-"""Highest power of the laws' values over a step, over their size and the tolerance, at most."""
+_ROUGH = 1.0
+"""Highest power of the laws' values over a step, over their size and the tolerance, at most; the
+error of a rig is a third to twice the largest one."""
 _PER_PERIOD = 0.055
 """Share of a period of the laws that a step has at most, at the tolerance _USUAL; there the error
 of a gearbox is a seventh to a half of it. It falls with the fourth power of the step, or faster."""
@@ -37,7 +38,7 @@ def step_beginner(
     It writes the channels of the step from t [s] on, the laws' as they are expected, and what does
     not depend on these. The step lies between c and c + dc of the macro step.
     """
-    owner, given, signals = equations.owner, equations.inputs or (0,), equations.signals
+    owner, given, signals = equations.owner, equations.inputs, equations.signals
     values, channels = form.values, form.channels
     count, ahead, nodes = form.degree + 1, form.ahead, form.nodes
     signal_count, first_input, input_count = form.signals, values + form.signals, form.inputs
@@ -78,7 +79,7 @@ def step_beginner(
     return begin_step
 
 
-def leaper(
+def leaper(  # noqa: PLR0915 (kernels that share their layout)
     form: Form, at: WorkPlaces, equations: Equations, set_inputs: Callable
 ) -> tuple[Callable, Callable, Callable]:
     """Compile the leaps of a component.
@@ -86,8 +87,8 @@ def leaper(
     Returns:
         leap(b, w, t, h, begin, end, tolerance, order) -> float: from t + begin towards t + end
         inside of a macro step of length h [s]; time since t that it has reached. It leaves what is
-        shorter than the shortest step, and stops where a law bends, where the iteration does not
-        end, and where the laws' values are rough.
+        shorter than the shortest step, and stops where in the shortest step a law bends or its
+        values are rough, and where the iteration does not end.
         ready(b, w, t): finds the condensed form, if that is not done.
         forget(b): the states are others than it left.
     """
@@ -152,7 +153,8 @@ def leaper(
                 longest = straight * length
                 continue
             if rough(w) > _ROUGH * tolerance:
-                break
+                longest = 0.5 * length
+                continue
             advance(w, place, rung)
             done += length
         if done > begin:
