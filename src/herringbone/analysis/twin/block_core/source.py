@@ -206,5 +206,4 @@ def core_source(
     )
     names = sorted({write.name(p) for p in write.laws})
     head = "".join(_LAWS.format(name=name) for name in names)
-    head += "".join(f'{n}_prepare = COMPONENTS["{n}"].laws.prepare\n' for n in sorted(preparing))
     return f"\n\nfrom herringbone.kernels.compiling.jit import rare\n{head}{text}"
