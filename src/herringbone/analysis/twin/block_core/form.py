@@ -6,13 +6,11 @@ import numpy as np
 
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.analysis.twin.condensed.equations import laws_of
-from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients, continued
+from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients
 from herringbone.core import Laws, StructureError
 from herringbone.kernels.condensed.in_block.form import Form
 
 DEGREE = 4
-_AHEAD = 2
-"""Degree of the prediction: over long steps a higher one goes farther off."""
 
 
 def laws_of_parts(parts: Parts) -> dict[int, Laws]:
@@ -77,11 +75,16 @@ def core_form(parts: Parts, inputs: int, lengths: Sequence[float]) -> Form:
         inputs=inputs,
         nodes=nodes,
         fit=coefficients(DEGREE),
-        ahead=np.array([
-            [continued(DEGREE, _AHEAD, now / before).T for before in lengths] for now in lengths
-        ]),
+        ahead=parabola_since_end(nodes),
         lengths=tuple(lengths),
-    )  # fmt: skip
+    )
+
+
+def parabola_since_end(nodes: np.ndarray) -> np.ndarray:
+    """First and second power (2, nodes), see `Form.ahead`; a higher one goes farther off."""
+    found = np.zeros((2, nodes.size))
+    found[:, :-1] = np.linalg.pinv(np.vander(nodes - 1.0, 3, increasing=True)[:-1, 1:])
+    return found
 
 
 def _among(rows: np.ndarray, at: int, arguments: int) -> np.ndarray:

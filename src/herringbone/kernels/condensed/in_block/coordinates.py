@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import inner, outside
 from herringbone.kernels.compiling.views import integers, matrix
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import less_tangents
@@ -36,7 +36,7 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     table_of, nodes_of, _ = array_kernels(form, at, owner)
     size, goes_on = kept_size(form) - 1, equations.kept >= 0
 
-    @inner(owner)
+    @outside(owner)
     def neglect(w: np.ndarray, modes: int, close: float) -> None:
         """Find what of the laws' values is too small to be felt, from those there."""
         for value in range(values):
@@ -58,13 +58,13 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
             if felt < np.inf:
                 w[at.least + value] = _NEGLIGIBLE * close * felt
 
-    @inner(owner)
+    @outside(owner)
     def moved(w: np.ndarray, mode: int, channel: int) -> float:
         """What a channel moves a mode by."""
         place = at.bq + channel * capacity + mode
         return abs(w[place]) + abs(w[place + channels * capacity])
 
-    @inner(owner)
+    @outside(owner)
     def laws_there(b: np.ndarray, w: np.ndarray, t: float, modes: int) -> None:
         """Write the laws at the coordinates, as if a step had ended there."""
         table, nodes, u = table_of(w), nodes_of(w), w[at.now :]
@@ -140,7 +140,7 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
             b[kept] = 1.0
             copy(w[at.q : at.q + size], b[kept + 1 : kept + 1 + size])
 
-    @inner(owner)
+    @outside(owner)
     def belongs(b: np.ndarray, w: np.ndarray) -> bool:
         if not goes_on or b[kept] == 0.0:
             return False

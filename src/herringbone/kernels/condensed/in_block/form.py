@@ -24,8 +24,8 @@ class Form:
         signals, inputs: how many; signals are known over time, inputs are the host's.
         nodes: (degree + 1,) of a step, from 0 to 1.
         fit: (degree + 1, degree + 1): powers of the polynomial through values at the nodes.
-        ahead: (rungs, rungs, degree + 1, degree + 1): values of a step, the second, continued over
-            one that follows, the first.
+        ahead: (2, degree + 1): first and second power, since the end of a step, of the parabola
+            through its end that fits its other values best.
         lengths: of steps, by rung, falling [s].
     """
 

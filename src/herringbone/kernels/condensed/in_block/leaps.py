@@ -7,7 +7,7 @@ import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.compiling.views import integers, matrix
-from herringbone.kernels.condensed.channels import inputs, predict
+from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.in_block.collocated import doubts, iteration
 from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
 from herringbone.kernels.condensed.in_block.coordinates import advancing, coordinate_kernels
@@ -40,8 +40,21 @@ def step_beginner(
     """
     owner, given, signals = equations.owner, equations.inputs, equations.signals
     values, channels = form.values, form.channels
-    count, ahead, nodes = form.degree + 1, form.ahead, form.nodes
+    count, ahead, nodes, lengths = form.degree + 1, form.ahead, form.nodes, np.array(form.lengths)
     signal_count, first_input, input_count = form.signals, values + form.signals, form.inputs
+
+    @inner(owner)
+    def expect(w: np.ndarray, share: float) -> None:
+        """Write the laws' values of a step, a share of the last one's length; 0: constant."""
+        for value in range(values):
+            own, to = w[at.last + value * count :], w[at.u + value * count :]
+            end, slope, bend = own[count - 1], 0.0, 0.0
+            for i in range(count - 1):
+                slope += ahead[0, i] * (own[i] - end)
+                bend += ahead[1, i] * (own[i] - end)
+            for i in range(count):
+                c = share * nodes[i]
+                to[i] = end + c * (slope + c * bend)
 
     @inner(owner)
     def begin_step(
@@ -50,8 +63,8 @@ def step_beginner(
     ) -> None:  # fmt: skip
         size, before, now = channels * count, int(w[at.before]), w[at.now :]
         u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
-        chosen, last = integers(w, at.chosen, size), matrix(w, at.last, channels, count)
-        predict(ahead[rung, max(before, 0)], before >= 0, values, last, u)
+        chosen = integers(w, at.chosen, size)
+        expect(w, lengths[rung] / lengths[before] if before >= 0 else 0.0)
         for i in range(count):
             set_inputs(b, w, order, c + nodes[i] * dc)
             for k in range(input_count):
