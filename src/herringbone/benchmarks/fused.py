@@ -1,8 +1,9 @@
 """Simulated time per CPU time of the loop's thread: the test rig fused, coupled, and as one FMU.
 
 The loops are run by turns. The rig as one native FMU is stepped from record to record, and all its
-outputs are read; its inner steps have a fixed length. Errors are those of 20 ms against
-Dormand-Prince on the plain equations.
+outputs are read: by its condensed core at the tolerance, every 0.1 ms and every 1 ms, and by
+Runge-Kutta with inner steps of a fixed length. Errors are those of 20 ms against Dormand-Prince on
+the plain equations.
 """
 
 import time
@@ -32,13 +33,14 @@ RECORD_STEP = 1e-4
 """Time between records [s]."""
 _SYSTEM = "test_rig"
 _WINDOW = 0.02
-_TIMES = np.arange(round(_WINDOW / RECORD_STEP) + 1) * RECORD_STEP
 _EXACT = 1e-9
 _SCENES = ("loaded", "separation")
 _AS_FMU = "loaded"
 """Scene of the rig as one FMU: building it takes a minute."""
 _BOX, _INNER = "rig", 16.7e-6
-"""Name of the rig as one FMU, and its inner step [s], of six to a macro step."""
+"""Name of the rig as one FMU, and an inner step of Runge-Kutta [s], of six to a macro step."""
+_SELDOM = 1e-3
+"""Time between records of a host that looks seldom [s]."""
 _LONG, _SHORT = 1.0, 0.2
 """Simulated times [s]; what a loop costs is the difference, without what comes before it."""
 
@@ -77,17 +79,22 @@ def measure(repeats: int = 5) -> list[Speed]:
             for what, columns in ((f"{len(channels)} channels", channels), ("all", core.names)):
                 name = f"{called}, {what} recorded"
                 loops[name] = _fused(core, steps, columns)
-                errors[name] = _errors(core, channels, values_at(core, _TIMES, steps, channels))
+                found = values_at(core, _times(RECORD_STEP), steps, channels)
+                errors[name] = _errors(core, channels, found, RECORD_STEP)
             algorithm = LI(degree=3)
             name = f"{scene}, native FMUs, {algorithm} at {1e6 * algorithm.start_step:g} us"
             loops[name] = _coupled(system, algorithm, algorithm.start_step)
             errors[name] = (np.nan, np.nan)
             if scene != _AS_FMU:
                 continue
-            box = _as_fmu(scene, Path(scratch) / f"{_BOX}.fmu")
-            name = f"{scene}, one native FMU, inner steps of {1e6 * _INNER:g} us, all outputs read"
-            loops[name] = _coupled(box, Jacobi(order=0), RECORD_STEP)
-            errors[name] = _errors(core, channels, _of_fmu(box, channels))
+            file = Path(scratch) / f"{_BOX}.fmu"
+            export_fmu(_SYSTEM, file, scene=scene)
+            for inner, every in ((0.0, RECORD_STEP), (0.0, _SELDOM), (_INNER, RECORD_STEP)):
+                how = f"inner steps of {1e6 * inner:g} us" if inner else "condensed core"
+                name = f"{scene}, one native FMU, {how}, all outputs every {1e3 * every:g} ms"
+                box = _as_fmu(file, inner)
+                loops[name] = _coupled(box, Jacobi(order=0), every, every)
+                errors[name] = _errors(core, channels, _of_fmu(box, channels, every), every)
         best = dict.fromkeys(loops, np.inf)
         for _ in range(repeats):
             for name, loop in loops.items():
@@ -110,38 +117,45 @@ def _fused(core: Core, steps: Steps, columns: Sequence[str]) -> Callable[[float]
     return run
 
 
-def _coupled(system: System, algorithm: Algorithm, step: float) -> Callable[[float], float]:
-    """CPU time [s] of a coupled run of some length [s], with a macro step [s]."""
+def _coupled(
+    system: System, algorithm: Algorithm, step: float, every: float = RECORD_STEP
+) -> Callable[[float], float]:
+    """CPU time [s] of a coupled run of some length [s], with a macro step and records [s]."""
 
     def run(t_end: float) -> float:
         parts = open_parts(system, "native")
         begin = time.thread_time()
         with closing_all(parts):
-            simulate(system, parts, algorithm, make_grid(t_end, step, RECORD_STEP))
+            simulate(system, parts, algorithm, make_grid(t_end, step, every))
         return time.thread_time() - begin
 
     return run
 
 
-def _as_fmu(scene: str, file: Path) -> System:
-    """A system whose only part is the rig as a native FMU, at the start of a scene."""
-    export_fmu(_SYSTEM, file, scene=scene)
+def _as_fmu(file: Path, inner: float) -> System:
+    """A system whose only part is the rig as a native FMU, with inner steps [s]; 0: its own."""
     part = PartSpec(PartPath(_BOX), fmu=file)
     one = System(_BOX, "the rig as one FMU", (part,), ())
-    return prepared(one, None, Wishes(values={f"{_BOX}.micro_step": _INNER})).system
+    return prepared(one, None, Wishes(values={f"{_BOX}.micro_step": inner})).system
 
 
-def _of_fmu(box: System, columns: Sequence[str]) -> np.ndarray:
-    """Outputs (times, columns) of the rig as one FMU over the window."""
+def _of_fmu(box: System, columns: Sequence[str], every: float) -> np.ndarray:
+    """Outputs (times, columns) of the rig as one FMU over the window, so often [s]."""
     parts = open_parts(box, "native")
     with closing_all(parts):
-        grid = make_grid(_WINDOW, RECORD_STEP, RECORD_STEP)
-        found = simulate(box, parts, Jacobi(order=0), grid)
+        found = simulate(box, parts, Jacobi(order=0), make_grid(_WINDOW, every, every))
     return np.array([found.values[:, found.names.index(f"{_BOX}.{name}")] for name in columns]).T
 
 
-def _errors(core: Core, columns: Sequence[str], found: np.ndarray) -> tuple[float, float]:
+def _times(every: float) -> np.ndarray:
+    """Times of records over the window [s]."""
+    return np.arange(round(_WINDOW / every) + 1) * every
+
+
+def _errors(
+    core: Core, columns: Sequence[str], found: np.ndarray, every: float
+) -> tuple[float, float]:
     """Largest error of a group, and of a channel, of values (times, columns) over the window."""
-    exact = core.twin.solve(_TIMES, columns, _EXACT)
+    exact = core.twin.solve(_times(every), columns, _EXACT)
     off = differences(found, exact, columns, core.groups())
     return max(off.groups.values()), off.worst_difference

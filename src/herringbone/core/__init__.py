@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from herringbone.core.declaring.component import Beyond, Component, Kernels
     from herringbone.core.declaring.declaration import Declaration
-    from herringbone.core.declaring.hosting import Experiment, Hosting, Remark, RunsOn
+    from herringbone.core.declaring.hosting import ByTolerance, Experiment, Hosting, Remark, RunsOn
     from herringbone.core.declaring.laws import Laws, common_period
     from herringbone.core.declaring.variable import (
         Column,
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = [
     "EXIT_CODES",
     "Beyond",
+    "ByTolerance",
     "Column",
     "Component",
     "Declaration",
@@ -76,6 +77,7 @@ _WHERE = {
     "Component": "herringbone.core.declaring.component",
     "Kernels": "herringbone.core.declaring.component",
     "Declaration": "herringbone.core.declaring.declaration",
+    "ByTolerance": "herringbone.core.declaring.hosting",
     "Experiment": "herringbone.core.declaring.hosting",
     "Hosting": "herringbone.core.declaring.hosting",
     "Remark": "herringbone.core.declaring.hosting",

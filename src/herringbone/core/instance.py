@@ -76,6 +76,7 @@ class Instance:
             )
         if index >= self.component.declaration.mutable_size:
             check_value(self.name, self.component.declaration.variable(name), float(value))
+            self.work[:] = 0.0  # what kernels keep there follows from parameters
         elif not math.isfinite(value):
             raise ParameterError(f"{self.name}.{name} = {value}: it must be finite")
         self.block[index] = value

@@ -148,7 +148,8 @@ def add_log_categories(root: Element) -> None:
 
 def add_experiment(root: Element, component: Component) -> None:
     """Add the default experiment; the same in FMI 2.0 and 3.0."""
-    experiment = component.hosting.experiment if component.hosting else EXPERIMENT
+    by_tolerance = component.by_tolerance
+    experiment = by_tolerance.experiment if by_tolerance else EXPERIMENT
     given = {"startTime": "0", "stopTime": repr(experiment.stop)}
     if experiment.tolerance is not None:
         given["tolerance"] = repr(experiment.tolerance)

@@ -7,13 +7,6 @@ from types import ModuleType
 import numpy as np
 
 from herringbone.analysis.hosted.boundary import Boundary, make_boundary
-from herringbone.analysis.hosted.core_form import (
-    LENGTHS,
-    can_be_condensed,
-    core_equations,
-    core_form,
-)
-from herringbone.analysis.hosted.core_source import core_source
 from herringbone.analysis.hosted.declaration import (
     INNER_STEP,
     NEXT_STEP,
@@ -31,6 +24,8 @@ from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.remarks import remark_source, remarks_of
 from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice, models_of
+from herringbone.analysis.twin.block_core.form import core_form, why_not
+from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.composite import Composite
 from herringbone.analysis.twin.composite_parts import (
     Parts,
@@ -42,6 +37,7 @@ from herringbone.analysis.twin.composite_parts import (
 from herringbone.analysis.twin.composite_source import composite_source
 from herringbone.analysis.twin.source import twin_source
 from herringbone.core import (
+    ByTolerance,
     Component,
     Declaration,
     Experiment,
@@ -57,6 +53,7 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.condensed.in_block.form import Equations
 from herringbone.kernels.condensed.in_block.leaps import leaper
 from herringbone.kernels.condensed.in_block.places import work_places
 from herringbone.kernels.periodic.motion import periodic_scratch
@@ -65,6 +62,8 @@ from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper
 from herringbone.kernels.stepping.newton import newton_scratch
 
 _TOLERANCE = 1e-3
+LENGTHS = (1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5)
+"""Of steps of the condensed core, by rung [s]."""
 EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
 _NOT_SETTLED = (
@@ -96,7 +95,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
     )
     first = adaptive_work(count, _inputs(boundary))
-    form = core_form(parts, _inputs(boundary)) if can_be_condensed(boundary, parts) else None
+    inputs = _inputs(boundary)
+    form = core_form(parts, inputs, LENGTHS) if _can_be_condensed(boundary, parts) else None
     work = work_places(form, first).end if form else first
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses, work)
     places = Places(boundary, parts, declaration)
@@ -112,11 +112,11 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     source += remark_source(parts, declaration.first_table, status)
     core = None
     if form:
-        inputs = tuple(inside for _, inside in places.block_map().inputs)
-        source += core_source(parts, places.start(guesses), inputs)
+        fed = tuple(inside for _, inside in places.block_map().inputs)
+        source += core_source(parts, declaration.first_table, fed)
     module = load_generated("composite", source)
     if form:
-        equations = core_equations(boundary, parts, places, module)
+        equations = _core_equations(places, module)
         core = partial(leaper, form, work_places(form, first), equations)
     loader = loader_of(declaration, parts.instances, module)
     component = Component(
@@ -134,19 +134,21 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         hosting=Hosting(
             module.settle,
             _NOT_SETTLED,
-            remarks_of(parts, condensed=form is not None),
-            module.remark,
             tuple(
                 RunsOn(f"{f.name}.phi", f"{f.name}.w", since(f))
                 for f in boundary.flanges
                 if f.given is Given.MOTION
             ),
-            TOLERANCE,
-            EXPERIMENT,
             wanted.exchange,
             tuple(misfits(boundary, parts)),
             lambda: {flange: model.as_lists() for flange, (_, model) in models().items()},
             cache(lambda: advice(models())),
+        ),
+        by_tolerance=ByTolerance(
+            TOLERANCE,
+            EXPERIMENT,
+            remarks_of(parts, condensed=form is not None),
+            module.remark,
         ),
     )
     models = cache(lambda: models_of(composite, boundary.flanges))
@@ -172,15 +174,44 @@ def _inputs(boundary: Boundary) -> int:
     return sum(2 if f.given is Given.MOTION else 1 for f in boundary.flanges)
 
 
+def _can_be_condensed(boundary: Boundary, parts: Parts) -> bool:
+    """True if the host gives torques alone, and the parts are linear beside their laws."""
+    torques = all(f.given is Given.TORQUE for f in boundary.flanges)
+    return torques and not why_not(parts)
+
+
+def _core_equations(places: Places, module: ModuleType) -> Equations:
+    """The kernels of the condensed form."""
+    d = places.declaration
+    return Equations(
+        d.name,
+        np.array([d.index[v.name] for v in d.inputs], dtype=np.int64),
+        places.state_sizes,
+        -1,
+        module.system_rhs,
+        module.core_given,
+        module.core_signals,
+        module.core_prepare,
+        module.core_laws,
+        module.core_period,
+    )
+
+
 def _step_kernel(
     boundary: Boundary, declaration: Declaration, module: ModuleType, core: Callable | None
 ) -> Callable:
+    inner_step = declaration.index[INNER_STEP]
+
+    @inner(declaration.name)
+    def longest(b: np.ndarray, w: np.ndarray) -> float:
+        return float(b[inner_step])
+
     advance = adaptive_stepper(
         module.system_rhs,
         module.system_out,
         declaration,
         NEXT_STEP,
-        INNER_STEP,
+        longest,
         core,
         LENGTHS[-1],
     )

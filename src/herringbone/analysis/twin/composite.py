@@ -11,6 +11,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
+from herringbone.analysis.twin.block_core.form import core_form, why_not
+from herringbone.analysis.twin.block_core.source import core_source
+from herringbone.analysis.twin.block_core.steps import (
+    LENGTHS,
+    REMARK,
+    Stepping,
+    by_tolerance,
+    locals_of,
+    longest_step,
+    step_kernel,
+    stepping,
+)
 from herringbone.analysis.twin.composite_parts import (
     Parts,
     feedthrough_of,
@@ -38,6 +50,7 @@ _OWN = (MICRO_STEP, INTERFACE_DEGREE)
 _LONGEST_MICRO_STEP = 1e-4
 _MICRO_STEP_OF_NO_PART = 2.5e-6
 """Of systems in which no part has micro steps [s], such as a housing alone."""
+_DEAR = "Runge-Kutta alone integrates, not the condensed core"
 
 
 @dataclass(frozen=True)
@@ -48,10 +61,12 @@ class Composite:
         component: the component.
         resources: for every resource file, by its name in the component's resources folder, the
             file that is to lie there.
+        note: why its steps are dearer than they might be; empty if they are not.
     """
 
     component: Component
     resources: Mapping[str, Path]
+    note: str = ""
 
 
 def make_composite(
@@ -72,7 +87,9 @@ def make_composite(
     inside = system.without(*outside)
     parts = make_parts(inside)
     instances, layout = parts.instances, parts.layout
-    declaration = _declaration(inside, parts)
+    without_core = why_not(parts)
+    steps = None if without_core else _stepping(parts)
+    declaration = _declaration(inside, parts, steps)
     places = _block_map(declaration, instances, layout.block_first)
     source = composite_source(
         twin_source(parts.network, instances, layout),
@@ -82,24 +99,43 @@ def make_composite(
         places,
         OwnLines(rates=_still(parts, held)),
     )
+    if steps:
+        fed = tuple(to for _, to in places.inputs)
+        source += core_source(parts, declaration.first_table, fed, held=held)
+        source += REMARK.format(status=steps.at.status)
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
     component = Component(
         declaration,
-        Kernels(_step_kernel(declaration, module), module.system_rhs, module.system_out),
-        f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations.",
+        Kernels(_step_kernel(declaration, module, steps), module.system_rhs, module.system_out),
+        f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations."
+        + (f"\n\n{_DEAR}: {without_core}." if without_core else ""),
         load=loader,
         verify=loader.verify,
         start=module.system_start,
         indicators=module.system_indicators,
         indicator_count=sum(i.component.indicator_count for i in instances),
         nominals=nominals_of(declaration, parts),
-        longest_step=steppers.longest_step(declaration, MICRO_STEP),
+        longest_step=(longest_step if steps else steppers.longest_step)(declaration, MICRO_STEP),
+        by_tolerance=by_tolerance(module) if steps else None,
     )
-    return Composite(component, dict(resources_of(instances)))
+    note = f"{_DEAR}: {without_core}" if without_core else ""
+    return Composite(component, dict(resources_of(instances)), note)
 
 
-def _declaration(system: System, parts: Parts) -> Declaration:
+def _stepping(parts: Parts) -> Stepping:
+    """How a system steps that may have a condensed form."""
+    inputs = len(parts.open_inputs)
+    return stepping(core_form(parts, inputs, LENGTHS), inputs, _micro_step(parts))
+
+
+def _micro_step(parts: Parts) -> float:
+    """Shortest one of all parts [s]."""
+    steps = [i[MICRO_STEP] for i in parts.instances if MICRO_STEP in i.component.declaration.index]
+    return min(steps, default=_MICRO_STEP_OF_NO_PART)
+
+
+def _declaration(system: System, parts: Parts, steps: Stepping | None) -> Declaration:
     instances, layout = parts.instances, parts.layout
     depends = feedthrough_of(parts)
     variables: list[Variable] = []
@@ -115,25 +151,34 @@ def _declaration(system: System, parts: Parts) -> Declaration:
             elif kept and v.name not in _OWN:
                 start = float(instance.block[declaration.index[v.name]])
                 variables.append(replace(v, name=name, start=start, at_rest=""))
-    steps = [i[MICRO_STEP] for i in instances if MICRO_STEP in i.component.declaration.index]
-    variables.append(
-        parameter(
-            MICRO_STEP,
-            "s",
-            "longest Runge-Kutta step of all parts",
-            min(steps, default=_MICRO_STEP_OF_NO_PART),
-            minimum=1e-9,
-            maximum=_LONGEST_MICRO_STEP,
-        )
-    )
+    own, kept_size = locals_of(steps) if steps else ([], 0)
+    variables += [*own, _micro_step_parameter(system, parts, steps)]
     return Declaration(
         system.name,
         f"{system.description} ({', '.join(i.name for i in instances)} in one FMU)",
         variables,
         texts=texts_of(instances),
         vectors=vectors_of(instances, layout.block_first),
+        kept=kept_size,
         tables=sum(i.component.declaration.size for i in instances),
-        work=steppers.body_work(layout.state_first[-1], len(parts.open_inputs)),
+        work=steps.at.end
+        if steps
+        else steppers.body_work(layout.state_first[-1], len(parts.open_inputs)),
+        hidden=[v.name for v in own],
+    )
+
+
+def _micro_step_parameter(system: System, parts: Parts, steps: Stepping | None) -> Variable:
+    """Where steps follow the tolerance, it is 0 unless a part's micro step was chosen."""
+    chosen = any(MICRO_STEP in p.values for p in system.parts)
+    by_tolerance = "; 0: steps follow the tolerance" if steps else ""
+    return parameter(
+        MICRO_STEP,
+        "s",
+        f"longest Runge-Kutta step of all parts{by_tolerance}",
+        _micro_step(parts) if chosen or not steps else 0.0,
+        minimum=0.0 if steps else 1e-9,
+        maximum=_LONGEST_MICRO_STEP,
     )
 
 
@@ -166,7 +211,9 @@ def _block_map(
     )
 
 
-def _step_kernel(declaration: Declaration, module: ModuleType) -> Callable:
+def _step_kernel(declaration: Declaration, module: ModuleType, steps: Stepping | None) -> Callable:
+    if steps:
+        return step_kernel(declaration, module, steps, MICRO_STEP)
     advance = steppers.body_stepper(module.system_rhs, module.system_out, declaration)
     refresh = module.refresh
     micro_step, degree = declaration.indices(*_OWN)

@@ -74,7 +74,7 @@ def system_out(b: np.ndarray, t: float) -> None:
     refresh(b)
     place(b, t)
     scatter(blocks, b[{own}:{states}])
-    propagate(blocks, t)
+{prepare}    move(blocks, t)
     propagate(blocks, t)
     for i in range({outputs}):
         b[OUTPUT_TO[i]] = blocks[OUTPUT_FROM[i]]
@@ -135,6 +135,12 @@ def composite_source(
     indicating = {i.component.name for i in instances if i.component.indicators}
     lines = [twin]
     lines += [f'\n{n}_start = COMPONENTS["{n}"].start' for n in sorted(starting)]
+    preparing = {
+        i.component.name
+        for i in instances
+        if i.component.laws and hasattr(i.component.laws.prepare, "py_func")
+    }
+    lines += [f'\n{n}_prepare = COMPONENTS["{n}"].laws.prepare' for n in sorted(preparing)]
     lines += [f'\n{n}_indicators = COMPONENTS["{n}"].indicators' for n in sorted(indicating)]
     names = sorted({i.component.name for i in loading})
     lines += [f'\n{n}_load = COMPONENTS["{n}"].load.kernel' for n in names]
@@ -150,6 +156,11 @@ def composite_source(
         outputs=len(m.outputs),
         inputs="".join(f"    blocks[{to}] = b[{at}]\n" for at, to in m.inputs),
         own=m.own,
+        prepare="".join(
+            f"    {i.component.name}_prepare(blocks[{blocks[p]}:{blocks[p + 1]}])\n"
+            for p, i in enumerate(instances)
+            if i.component.name in preparing
+        ),
         own_place=own.place,
         own_rates=own.rates,
         own_results=own.results,

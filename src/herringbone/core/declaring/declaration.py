@@ -1,7 +1,8 @@
 """A component's declaration and the layout of its block.
 
-The block is one float64 array: mutable part (states, hidden states, inputs, outputs, locals),
-then parameters, then tables. The FMI value reference of a real is its index in the block.
+The block is one float64 array: mutable part (states, hidden states, inputs, outputs, locals,
+what steps go on with), then parameters, then tables. The FMI value reference of a real is its
+index in the block.
 """
 
 import re
@@ -49,6 +50,7 @@ class Declaration:
         variables: states first or not, in the order in which they are shown.
         texts: String parameters that name resource files.
         vectors: states whose number follows from resource files, such as modal coordinates.
+        kept: length of what steps go on with besides states and variables.
         tables: length of the table part of the block.
         work: length of the work space that the kernels need.
         roles: what the component is for.
@@ -70,6 +72,7 @@ class Declaration:
         *,
         texts: Iterable[Text] = (),
         vectors: Iterable[StateVector] = (),
+        kept: int = 0,
         tables: int = 0,
         work: int = 0,
         roles: Iterable[Role] = (),
@@ -80,6 +83,7 @@ class Declaration:
         self.description = description
         self.texts = tuple(texts)
         self.vectors = tuple(vectors)
+        self.kept = kept
         self.tables = tables
         self.work = work
         self.roles = tuple(roles)
@@ -192,6 +196,8 @@ class Declaration:
         plain_outputs = tuple(v for v in self.outputs if not v.nodes)
         locals_ = tuple(v for v in self._select(Causality.LOCAL) if not v.state)
         for v in (*self.inputs, *self.node_outputs, *plain_outputs, *locals_, *self.parameters):
+            if v is self.parameters[0]:
+                position += self.kept
             index[v.name] = position
             position += 1
             if v.nodes:
@@ -204,6 +210,11 @@ class Declaration:
     def mutable_size(self) -> int:
         """Length of the part that a step may change."""
         return self.index[self.parameters[0].name]
+
+    @property
+    def first_kept(self) -> int:
+        """Index of what steps go on with, the end of the mutable part."""
+        return self.mutable_size - self.kept
 
     @cached_property
     def first_table(self) -> int:

@@ -79,6 +79,24 @@ class Experiment(NamedTuple):
 
 
 @dataclass(frozen=True)
+class ByTolerance:
+    """How a native FMU's inner steps follow a tolerance, and what it says of them.
+
+    Attributes:
+        tolerance: name of the local that the wrapper sets to the host's tolerance.
+        experiment: the default experiment.
+        remarks: what may be told after a step, or at the end of initialisation.
+        remark: kernel remark(b, w, which, report) -> int, on block and work space: 1 where the
+            remark holds, with its numbers in the report (`REPORT` of them), else 0.
+    """
+
+    tolerance: str
+    experiment: Experiment
+    remarks: tuple[Remark, ...]
+    remark: Callable[["np.ndarray", "np.ndarray", int, "np.ndarray"], int]
+
+
+@dataclass(frozen=True)
 class Hosting:
     """What a component asks of the wrapper, besides kernels and declaration.
 
@@ -86,12 +104,7 @@ class Hosting:
         settle: kernel settle(b, t) -> int that makes the states at the start time from parameters
             and inputs; 0: as it was asked for. Otherwise the wrapper logs a line of `not_settled`.
         not_settled: by status, from 1: what was looked for in vain, and what is done instead.
-        remarks: what may be told after a step, or at the end of initialisation.
-        remark: kernel remark(b, w, which, report) -> int, on block and work space: 1 where the
-            remark holds, with its numbers in the report (`REPORT` of them), else 0.
         runs_on: inputs that run on.
-        tolerance: name of the local that the wrapper sets to the host's tolerance.
-        experiment: the default experiment.
         exchange: model exchange is offered.
         notes: lines on what lies inside that its maker should read.
         models: by flange, the linear equations that this was found with, as JSON may hold them.
@@ -100,11 +113,7 @@ class Hosting:
 
     settle: Callable[["np.ndarray", float], int]
     not_settled: tuple[str, ...]
-    remarks: tuple[Remark, ...]
-    remark: Callable[["np.ndarray", "np.ndarray", int, "np.ndarray"], int]
     runs_on: tuple[RunsOn, ...]
-    tolerance: str
-    experiment: Experiment
     exchange: bool
     notes: tuple[str, ...]
     models: Callable[[], dict[str, dict[str, list]]]

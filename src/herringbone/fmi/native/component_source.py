@@ -79,7 +79,7 @@ def _entries(
         refusals: how many reasons it has to refuse them.
     """
     component, declaration = used.component, used.component.declaration
-    hosting = component.hosting
+    hosting, by_tolerance = component.hosting, component.by_tolerance
     return {
         "name": _string(component.name),
         "token": _string(identifier(component, used.built_with)),
@@ -112,10 +112,10 @@ def _entries(
         "verify": "hb_verify" if loader and loader.check else "NULL",
         "settle": "hb_settle" if hosting else "NULL",
         "not_settled": "not_settled",
-        "remarks_count": len(hosting.remarks) if hosting else 0,
+        "remarks_count": len(by_tolerance.remarks) if by_tolerance else 0,
         "remarks": "remarks",
-        "remark": "hb_remark" if hosting else "NULL",
-        "tolerance": declaration.index[hosting.tolerance] if hosting else 0,
+        "remark": "hb_remark" if by_tolerance else "NULL",
+        "tolerance": declaration.index[by_tolerance.tolerance] if by_tolerance else 0,
         "watch": "&hb_watch" if hosting else "NULL",
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
@@ -189,7 +189,7 @@ def _runs_on(component: Component) -> Iterable[str]:
 
 
 def _remarks(component: Component) -> Iterable[str]:
-    for remark in component.hosting.remarks if component.hosting else ():
+    for remark in component.by_tolerance.remarks if component.by_tolerance else ():
         yield f"{{{_string(remark.format)}, {int(remark.warning)}}}"
 
 

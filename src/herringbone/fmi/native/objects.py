@@ -17,7 +17,7 @@ from numba import carray, types
 
 from herringbone.components.resources.loader import REPORT, ResourceLoader
 from herringbone.components.tangent import tangent_kernel
-from herringbone.core import Component
+from herringbone.core import Component, StructureError
 from herringbone.core.declaring.component import unbounded, unchanged
 from herringbone.fmi.native.platforms import Platform
 from herringbone.kernels.compiling.jit import c_code
@@ -32,6 +32,7 @@ _PASSES = 2
 _FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators"}
 """Entry points that a simulation calls all the time; what they call is made for speed."""
 _ANY_NAME = "k"  # LLVM appends a number
+_OF_THIS_PROCESS = "numba.dynamic.globals"
 _UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
@@ -115,7 +116,8 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     if of.hosting is not None:
         kernels_settle = of.hosting.settle
         found["hb_settle"] = (types.int32(_REALS, _TIME), settle)
-        kernels_remark = of.hosting.remark
+    if of.by_tolerance is not None:
+        kernels_remark = of.by_tolerance.remark
         found["hb_remark"] = (types.int32(_REALS, _REALS, types.int32, _REALS), remark)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
@@ -136,7 +138,17 @@ def _linked(
             whole = module
         else:
             whole.link_in(module)
+    _refuse_addresses(whole)
     return whole
+
+
+def _refuse_addresses(module: llvm.ModuleRef) -> None:
+    """Refuse code that reads an array of this process: one with gaps, or of more than 1 MB."""
+    if any(v.name.startswith(_OF_THIS_PROCESS) for v in module.global_variables):
+        raise StructureError(
+            "a kernel uses an array that is not contiguous, whose address would be that of this "
+            "process; copy it (numpy.ascontiguousarray) where the kernel is made"
+        )
 
 
 def _internalise(module: llvm.ModuleRef, entries: Iterable[str]) -> None:

@@ -83,6 +83,16 @@ def inner(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     return decorate
 
 
+def inner_inlined(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """As `inner`, for a function whose callers contain its code, see `inlined`."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        function.__qualname__ = f"{owner}.{function.__qualname__}"
+        return KernelDispatcher(function, {**_OPTIONS, "_nrt": False, "forceinline": True})
+
+    return decorate
+
+
 def outside(owner: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
     """As `inner`, for what seldom happens, see `rare`."""
 

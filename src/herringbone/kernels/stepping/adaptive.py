@@ -39,7 +39,7 @@ _FLOOR = 1e-12
 
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
-    return 7 * state_count + (STRIDE + 1) * input_count
+    return 7 * state_count + 1 + (STRIDE + 1) * input_count
 
 
 @kernel
@@ -79,13 +79,18 @@ def idle(b: np.ndarray, w: np.ndarray, t: float) -> None:
     """What such a component does to be ready."""
 
 
+@kernel
+def nothing(b: np.ndarray) -> None:
+    """What it does when others have changed its states."""
+
+
 def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     rhs: Rhs,
     out: Out,
     declaration: Declaration,
     next_step: str,
-    longest_step: str,
-    core: Callable[[Callable], tuple[Callable, Callable]] | None = None,
+    longest_step: Callable[[np.ndarray, np.ndarray], float],
+    core: Callable[[Callable], tuple[Callable, Callable, Callable]] | None = None,
     shortest: float = np.inf,
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
@@ -94,8 +99,8 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         rhs, out: kernels.
         declaration: of the component.
         next_step: name of the local that keeps the length of the next inner step [s].
-        longest_step: name of the local that no inner step is longer than [s].
-        core: makes, of the kernel that sets inputs, one that leaps ahead: `condensed.in_block`.
+        longest_step: kernel (b, w): no inner step is longer [s].
+        core: makes, of the kernel that sets inputs, those that leap ahead: `in_block.leaps`.
         shortest: length of its steps that ends where it stops [s].
 
     Returns:
@@ -105,7 +110,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     """
     n, visible = declaration.state_count, len(declaration.states)
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
-    following, longest = declaration.indices(next_step, longest_step)
+    following = declaration.index[next_step]
     kinds = list(dict.fromkeys(_kind(v) for v in declaration.states))
     kind_of = tuple(kinds.index(_kind(v)) for v in declaration.states)
     sizes, kind_count = tuple(size for _, size, _ in kinds), len(kinds)
@@ -114,8 +119,9 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     for vector in declaration.vectors:
         at_vector += vector.capacity
         ends.append(at_vector)
-    vectors = tuple(ends)
-    x0, slope, first, last, size_of, error_of_kind, at = (k * n for k in range(1, 8))
+    vector_count, vectors = len(ends), np.array(ends, dtype=np.int64)
+    x0, slope, first, last, size_of, error_of_kind, known = (k * n for k in range(1, 8))
+    at = known + 1
 
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
 
@@ -132,7 +138,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         for kind in range(kind_count):
             worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
         begin = visible
-        for v in range(len(vectors)):
+        for v in range(vector_count):
             size, error = _FLOOR, 0.0
             for i in range(begin, vectors[v]):
                 size = max(size, abs(b[i]))
@@ -174,6 +180,12 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     ) -> int:  # fmt: skip
         """Integrate from t + begin to t + end, inside the macro step."""
         done, hs = begin, 0.0
+        if w[known] == 0.0:
+            set_inputs(b, w, degree, begin / h)
+            rhs(b, t + begin, w[:n])
+            for i in range(n):
+                w[first + i] = w[i]
+            w[known] = 1.0
         while done < end:
             left = end - done
             count = max(1.0, math.ceil(left / b[following] - 1e-9))
@@ -186,7 +198,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                 for i in range(n):
                     w[first + i] = w[i]
                 if count > 1.0 or ahead > b[following]:
-                    b[following] = min(ahead, b[longest])
+                    b[following] = min(ahead, longest_step(b, w))
             else:
                 for i in range(n):
                     b[i] = w[x0 + i]
@@ -195,7 +207,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                     return TOO_SMALL
         return 0
 
-    leap, ready = core(set_inputs) if core else (stay, idle)
+    leap, ready, forget = core(set_inputs) if core else (stay, idle, nothing)
 
     @inner(declaration.name)
     def interval(
@@ -207,14 +219,13 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         while done < end:
             reached = leap(b, w, t, h, done, end, tolerance, degree)
             if reached > done:
-                set_inputs(b, w, degree, reached / h)
-                rhs(b, t + reached, w[:n])
-                for i in range(n):
-                    w[first + i] = w[i]
+                w[known] = 0.0
             done = min(end, reached + shortest)
-            status = explicit(b, w, t, h, reached, done, tolerance, degree)
-            if status != 0:
-                return status
+            if reached < done:
+                forget(b)
+                status = explicit(b, w, t, h, reached, done, tolerance, degree)
+                if status != 0:
+                    return status
         return 0
 
     @inner(declaration.name)
@@ -223,19 +234,17 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        if h == 0.0:
-            ready(b, w, t)
+        ready(b, w, t)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0
-        rhs(b, t, w[:n])
-        for i in range(n):
-            w[first + i] = w[i]
+        w[known] = 0.0
         for node in range(1, intervals + 1):
             end = h if node == intervals else h * node / intervals
             if status == 0 and end > begin:
                 status = interval(b, w, t, h, begin, end, tolerance, degree)
             begin = end
+            set_inputs(b, w, degree, node / intervals)
             out(b, t + end)
             store_node(b, first_output, outputs, node)
         restore_inputs(b, w, degree)

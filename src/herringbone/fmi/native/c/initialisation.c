@@ -164,6 +164,14 @@ static Status verify_tables(Instance *instance) {
     return STATUS_ERROR;
 }
 
+/* Inputs have no nodes yet. */
+static void step_of_no_length(Instance *instance) {
+    double *live = &instance->block[hb_component.degree], degree = *live;
+    *live = 0.0;
+    hb_component.step(instance->block, instance->work, instance->now.time, 0.0);
+    *live = degree;
+}
+
 Status instance_exit_initialisation(Instance *instance) {
     if (instance->now.phase != PHASE_INITIALISATION)
         return instance_refuse(instance, "exitInitializationMode");
@@ -179,8 +187,8 @@ Status instance_exit_initialisation(Instance *instance) {
                       hb_component.not_settled[instance->not_settled - 1]);
         log_write(&instance->log, STATUS_WARNING, &message);
     }
-    if (hb_component.settle && !instance->model_exchange) /* the first step is not longer then */
-        hb_component.step(instance->block, instance->work, instance->now.time, 0.0);
+    if (hb_component.tolerance && !instance->model_exchange) /* the first step is not longer then */
+        step_of_no_length(instance);
     if (!instance->model_exchange)
         instance_tell_remarks(instance);
     double *signal = instance->block + hb_component.first_output;

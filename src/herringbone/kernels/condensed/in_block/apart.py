@@ -10,6 +10,7 @@ import numpy as np
 from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
+from herringbone.kernels.condensed.in_block.rotations import rotation_finder
 
 
 def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
@@ -22,40 +23,44 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
         at: places in the work space.
         equations: of the component.
     """
-    owner, turning, given = equations.owner, equations.turning, equations.given
+    owner, given, values = equations.owner, equations.given, form.values
     n, channels, arguments = form.states, form.channels, form.arguments
     stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
     of = taken_places(form, at.rungs)
+    find_rotations = rotation_finder(form, at, owner)
 
     @outside(owner)
-    def answer(b: np.ndarray, w: np.ndarray) -> float:
-        """Rates and arguments at the states and channels; returns the size of the arguments."""
-        z, size = w[at.z : at.z + arguments], 0.0
-        given(b, w[at.x : at.x + n], w[at.u :], w[of.rates : of.rates + n], z)
-        for k in range(arguments):
-            size += abs(z[k])
-        return size
+    def answer(b: np.ndarray, w: np.ndarray) -> None:
+        """Rates and arguments at the states and channels."""
+        z = w[at.start : at.start + arguments]
+        given(b, w[at.x : at.x + n], w[at.now :], w[of.rates : of.rates + n], z)
 
     @outside(owner)
     def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
-        """Write matrices of the rest; False if it is none that the core can take."""
+        """Write matrices of the rest; False if laws depend on each other without delay."""
         dx, still = w[of.rates : of.rates + n], w[of.rates + n : of.rates + 2 * n]
+        z, direct = w[at.start : at.start + arguments], 0.0
         for i in range(n):
             w[at.x + i] = 0.0
         for c in range(channels):
-            w[at.u + c] = 0.0
-        not_linear = answer(b, w)
+            w[at.now + c] = 0.0
+        answer(b, w)
         for i in range(n):
             still[i] = dx[i]
             w[of.of_inputs + i * channels + channels - 1] = dx[i]
+        for k in range(arguments):
+            w[at.of_channels + k * channels + channels - 1] = z[k]
         for c in range(channels - 1):
-            w[at.u + c] = 1.0
-            not_linear += answer(b, w)
-            w[at.u + c] = 0.0
+            w[at.now + c] = 1.0
+            answer(b, w)
+            w[at.now + c] = 0.0
             for i in range(n):
                 w[of.of_inputs + i * channels + c] = dx[i] - still[i]
-        for c in range(channels):
-            not_linear += abs(w[of.of_inputs + turning * channels + c])
+            for k in range(arguments):
+                own = z[k] - w[at.of_channels + k * channels + channels - 1]
+                w[at.of_channels + k * channels + c] = own
+                if c < values:
+                    direct += abs(own)
         for j in range(n):
             w[at.x + j] = 1.0
             answer(b, w)
@@ -63,10 +68,9 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             for i in range(n):
                 w[of.whole + i * n + j] = dx[i] - still[i]
             for k in range(arguments):
-                w[of.of_states + k * n + j] = w[at.z + k]
-        for i in range(n):
-            not_linear += abs(w[of.whole + i * n + turning])
-        return not_linear == 0.0
+                own = z[k] - w[at.of_channels + k * channels + channels - 1]
+                w[of.of_states + k * n + j] = own
+        return direct == 0.0
 
     @outside(owner)
     def add_tangents(w: np.ndarray) -> None:
@@ -76,9 +80,12 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                 mean = tangent[s * arguments + k]
                 if mean != 0.0:
                     for i in range(n):
-                        by = mean * w[of.of_inputs + i * channels + int(stiff[s])]
+                        first = of.of_inputs + i * channels
+                        by = mean * w[first + int(stiff[s])]
                         for j in range(n):
                             w[of.whole + i * n + j] += by * w[of.of_states + k * n + j]
+                        for c in range(values, channels):
+                            w[first + c] += by * w[at.of_channels + k * channels + c]
 
     @outside(owner)
     def find_moving(w: np.ndarray) -> None:
@@ -98,28 +105,36 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                     can[i], again = 0.0, True
 
     @outside(owner)
-    def moving(w: np.ndarray) -> bool:
-        """List the states that move; False if one that never does is felt by others."""
-        can, count, felt = w[of.rates : of.rates + n], 0, 0.0
-        find_moving(w)
+    def is_felt(w: np.ndarray, j: int) -> bool:
+        """True if arguments, or rates of what moves, depend on a state."""
+        can, felt = w[of.rates : of.rates + n], 0.0
+        for k in range(arguments):
+            felt += abs(w[of.of_states + k * n + j])
         for i in range(n):
-            if can[i] != 0.0 and i != turning:
+            felt += abs(can[i] * w[of.whole + i * n + j])
+        return felt != 0.0
+
+    @outside(owner)
+    def list_moving(w: np.ndarray) -> None:
+        """List the states that move, or stay and are felt, but for those of the rotations."""
+        can, count = w[of.rates : of.rates + n], 0
+        find_moving(w)
+        for r in range(int(w[at.rotations])):
+            can[int(w[at.references + r])] = -1.0
+        for i in range(n):
+            if can[i] > 0.0 or (can[i] == 0.0 and is_felt(w, i)):
                 w[at.states + count] = i
                 count += 1
         w[at.inside] = count
-        for j in range(n):
-            if can[j] == 0.0:
-                for k in range(arguments):
-                    felt += abs(w[of.of_states + k * n + j])
-                for i in range(count):
-                    felt += abs(w[of.whole + int(w[at.states + i]) * n + j])
-        return felt == 0.0
 
     @outside(owner)
     def apart(b: np.ndarray, w: np.ndarray) -> bool:
         if not take_apart(b, w):
             return False
         add_tangents(w)
-        return moving(w)
+        if not find_rotations(w):
+            return False
+        list_moving(w)
+        return True
 
     return apart

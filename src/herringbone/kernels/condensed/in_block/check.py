@@ -13,6 +13,8 @@ from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_plac
 
 _LINEAR = 1e-7
 """Largest deviation of rates, over the sizes of the terms that are added."""
+_LATER = 1e3
+"""Time [s] after which nothing is brought in any more."""
 
 
 def checker(  # noqa: PLR0915 (kernels that share their layout)
@@ -25,57 +27,58 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         at: places in the work space.
         equations: of the component.
     """
-    owner, turning, inputs, sizes = (
-        equations.owner,
-        equations.turning,
-        *map(np.array, equations[2:4]),
-    )
-    rhs, given, prepare, laws = equations[4:8]
-    n, channels, arguments, of = (
-        form.states,
-        form.channels,
-        form.arguments,
-        taken_places(form, at.rungs),
-    )
-    values, stiff, unknowns, tangent = (
-        form.values, np.array(form.stiff), len(form.stiff), form.tangent.ravel()
-    )  # fmt: skip
-    capacity, input_count = at.capacity, form.inputs
+    owner, sizes, inputs = equations.owner, np.array(equations.sizes), equations.inputs
+    rhs, given, prepare = equations.rhs, equations.given, equations.prepare
+    laws, signals = equations.laws, equations.signals
+    n, channels, arguments, values = form.states, form.channels, form.arguments, form.values
+    stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
+    signal_count, first_input, input_count = form.signals, values + form.signals, form.inputs
+    of, capacity = taken_places(form, at.rungs), at.capacity
 
     @outside(owner)
-    def channels_at(b: np.ndarray, w: np.ndarray) -> None:
+    def channels_at(b: np.ndarray, w: np.ndarray, t: float) -> None:
         """Write the channels in the state of `at.x`, laws' values less their mean tangents."""
-        x, u, z = w[at.x : at.x + n], w[at.u :], w[at.z : at.z + arguments]
+        x, u, z = w[at.x : at.x + n], w[at.now :], w[at.start : at.start + arguments]
+        signals(b, t, u[values : values + signal_count])
+        for k in range(input_count):
+            u[first_input + k] = b[inputs[k]]
         given(b, x, u, w[of.rates : of.rates + n], z)
-        laws(b, z, u, w[at.k :], w[at.e :])
+        laws(b, t, z, u, w[at.k :], w[at.e :])
         for s in range(unknowns):
             for k in range(arguments):
                 u[int(stiff[s])] -= tangent[s * arguments + k] * z[k]
-        for k in range(input_count):
-            u[values + k] = b[inputs[k]]
         u[channels - 1] = 1.0
 
     @outside(owner)
-    def agrees(b: np.ndarray, w: np.ndarray, t: float) -> bool:
-        """True if the rates in the block's state are those of the form."""
-        count, u = int(w[at.inside]), w[at.u :]
-        dx, found = w[of.rates : of.rates + n], w[of.rates + n : of.rates + 2 * n]
-        terms = w[of.rates + 2 * n : of.rates + 3 * n]
+    def coordinate(b: np.ndarray, w: np.ndarray, i: int) -> float:
+        """The state `inside` i without what rotates."""
+        state = int(w[at.states + i])
+        value = b[state]
+        for r in range(int(w[at.rotations])):
+            rigid = w[at.rigid + r * n + state]
+            if rigid != 0.0:
+                value -= rigid * b[int(w[at.references + r])]
+        return value
+
+    @outside(owner)
+    def from_modes(b: np.ndarray, w: np.ndarray) -> None:
+        """Write rates of the states inside, sizes of their terms, then rates of the angles."""
+        count, u, k = int(w[at.inside]), w[at.now :], 0
+        found, terms = w[of.rates + n : of.rates + 2 * n], w[of.rates + 2 * n : of.rates + 3 * n]
+        angles = w[of.rates + 3 * n : of.rates + 4 * n]
         for i in range(n):
-            w[at.x + i] = b[i]
-        channels_at(b, w)
-        for i in range(count):
-            found[i], terms[i] = 0.0, 1e-300
-        k, angle = 0, 0.0
+            found[i], terms[i], angles[i] = 0.0, 1e-300, 0.0
         for mode in range(int(w[at.modes])):
             pair = w[at.rates + capacity + mode] != 0.0
             p, q = 0.0, 0.0
             for i in range(count):
-                value = b[int(w[at.states + i])]
+                value = coordinate(b, w, i)
                 p += value * w[at.back + k * count + i]
                 if pair:
                     q -= value * w[at.back + (k + 1) * count + i]
-            angle += p * w[at.turns + mode] - q * w[at.turns + capacity + mode]
+            for r in range(int(w[at.rotations])):
+                turns = at.turns + 2 * r * capacity + mode
+                angles[r] += p * w[turns] - q * w[turns + capacity]
             x, y = w[at.rates + mode], w[at.rates + capacity + mode]
             p, q = x * p - y * q, x * q + y * p
             size = abs(p) + abs(q)
@@ -90,15 +93,41 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
                 found[i] += g * p - h * q
                 terms[i] += (abs(g) + abs(h)) * size
             k += 2 if pair else 1
+
+    @outside(owner)
+    def agrees(b: np.ndarray, w: np.ndarray, t: float) -> bool:
+        """True if the rates in the block's state are those of the form."""
+        dx = w[of.rates : of.rates + n]
+        found, terms = w[of.rates + n : of.rates + 2 * n], w[of.rates + 2 * n : of.rates + 3 * n]
+        angles = w[of.rates + 3 * n : of.rates + 4 * n]
+        for i in range(n):
+            w[at.x + i] = b[i]
+        channels_at(b, w, t)
+        from_modes(b, w)
         rhs(b, t, dx)
-        for i in range(count):
-            if not abs(dx[int(w[at.states + i])] - found[i]) <= _LINEAR * terms[i]:
+        for i in range(int(w[at.inside])):
+            state = int(w[at.states + i])
+            rate = dx[state]
+            for r in range(int(w[at.rotations])):
+                rate -= w[at.rigid + r * n + state] * dx[int(w[at.references + r])]
+            if not abs(rate - found[i]) <= _LINEAR * terms[i]:
                 return False
-        return abs(dx[turning] - angle) <= _LINEAR * (abs(angle) + sizes[turning])
+        for i in range(int(w[at.inside])):
+            dx[int(w[at.states + i])] = 0.0
+        for r in range(int(w[at.rotations])):
+            turning = int(w[at.references + r])
+            off = abs(dx[turning] - angles[r])
+            if not off <= _LINEAR * (abs(angles[r]) + sizes[turning]):
+                return False
+            dx[turning] = 0.0
+        for i in range(n):
+            if dx[i] != 0.0:
+                return False
+        return True
 
     @outside(owner)
     def holds(b: np.ndarray, w: np.ndarray, t: float) -> bool:
-        """True if it does here, and where all states are larger."""
+        """True if it does here, and where all states are larger, now and later."""
         kept = w[of.room : of.room + n]
         for i in range(n):
             kept[i] = b[i]
@@ -107,7 +136,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         for i in range(int(w[at.inside])):
             state = int(w[at.states + i])
             b[state] += sizes[state]
-        found = found and agrees(b, w, t)
+        found = found and agrees(b, w, t + _LATER)
         for i in range(n):
             b[i] = kept[i]
         return found

@@ -1,5 +1,6 @@
 """The condensed form of a component in its block, found when its parameters are known."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -26,9 +27,18 @@ def condenser(
         at: places in the work space.
         equations: of the component.
     """
+    capacity = at.capacity
     owner, lengths, rungs = equations.owner, np.array(form.lengths), len(form.lengths)
     apart, holds = apart_taker(form, at, equations), checker(form, at, equations)
-    (find, arrange), make = mode_finder(form, at, equations), rung_maker(form, at, owner)
+    (find, arrange), make = mode_finder(form, at, owner), rung_maker(form, at, owner)
+
+    @outside(owner)
+    def fastest(w: np.ndarray) -> float:
+        found = 0.0
+        for mode in range(int(w[at.modes])):
+            real, imag = w[at.rates + mode], w[at.rates + capacity + mode]
+            found = max(found, math.sqrt(real * real + imag * imag))
+        return found
 
     @outside(owner)
     def condense(b: np.ndarray, w: np.ndarray, t: float) -> None:
@@ -36,6 +46,7 @@ def condenser(
         if not apart(b, w) or not find(w) or not holds(b, w, t):
             return
         arrange(w)
+        w[at.fastest] = fastest(w)
         for rung in range(rungs):
             make(w, rung, lengths[rung])
         w[at.status] = FOUND

@@ -4,87 +4,189 @@ from collections.abc import Callable
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.columns import add_columns
+from herringbone.kernels.compiling.jit import inner, outside
+from herringbone.kernels.compiling.views import integers, matrix
+from herringbone.kernels.condensed.channels import inputs
+from herringbone.kernels.condensed.collocation import less_tangents
+from herringbone.kernels.condensed.in_block.arrays import array_kernels
 from herringbone.kernels.condensed.in_block.form import Equations, Form
-from herringbone.kernels.condensed.in_block.places import WorkPlaces
+from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size
+from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
 
 
-def coordinate_kernels(
+def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     form: Form, at: WorkPlaces, equations: Equations
-) -> tuple[Callable, Callable, Callable]:
-    """Compile the ways between states and coordinates, and over a step.
+) -> tuple[Callable, Callable, Callable, Callable]:
+    """Compile the ways between states and coordinates.
 
-    They are enter(b, w), which writes the laws there, too, leave(b, w), and advance(w, begin), with
-    the rung that begins there.
+    They are enter(b, w, t, close), which writes the laws there, too, and leave(b, w); with a place
+    for what is kept, belongs(b, w) -> bool: whether the states are to the bit those that follow
+    from it; and forget(b): the states were changed.
 
     Args:
         form: of the component.
         at: places in the work space.
         equations: of the component.
     """
-    owner, turning, laws = equations.owner, equations.turning, equations.laws
-    values, arguments, kinks, tangents = form.values, form.arguments, form.kinks, len(form.mean)
-    stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
-    degree, count, capacity = form.degree, form.degree + 1, at.capacity
-    total = form.channels * count
+    owner, laws, signals, kept = equations.owner, equations.laws, equations.signals, equations.kept
+    n, values, channels, arguments = form.states, form.values, form.channels, form.arguments
+    first_signal, signal_count, first_input = form.values, form.signals, form.values + form.signals
+    given, input_count, stiff = equations.inputs, form.inputs, np.array(form.stiff)
+    degree, count, capacity, unknowns = form.degree, form.degree + 1, at.capacity, len(form.stiff)
+    table_of, nodes_of, _ = array_kernels(form, at, owner)
+    size, goes_on = kept_size(form) - 1, equations.kept >= 0
 
-    @inner(owner)
-    def laws_there(b: np.ndarray, w: np.ndarray, modes: int) -> None:
+    @outside(owner)
+    def neglect(w: np.ndarray, modes: int, close: float) -> None:
+        """Find what of the laws' values is too small to be felt, from those there."""
+        for value in range(values):
+            w[at.least + value] = 0.0
+            felt = np.inf
+            for s in range(unknowns):
+                if value == int(stiff[s]):
+                    felt = 0.0
+            for mode in range(modes):
+                if felt == 0.0:
+                    break
+                own = moved(w, mode, value)
+                if own > 0.0:
+                    by_stiff = 0.0
+                    for s in range(unknowns):
+                        other = int(stiff[s])
+                        by_stiff = max(by_stiff, moved(w, mode, other) * w[at.scale + other])
+                    felt = min(felt, by_stiff / own)
+            if felt < np.inf:
+                w[at.least + value] = _NEGLIGIBLE * close * felt
+
+    @outside(owner)
+    def moved(w: np.ndarray, mode: int, channel: int) -> float:
+        """What a channel moves a mode by."""
+        place = at.bq + channel * capacity + mode
+        return abs(w[place]) + abs(w[place + channels * capacity])
+
+    @outside(owner)
+    def laws_there(b: np.ndarray, w: np.ndarray, t: float, modes: int) -> None:
         """Write the laws at the coordinates, as if a step had ended there."""
-        z = w[at.z : at.z + arguments]
+        table, nodes, u = table_of(w), nodes_of(w), w[at.now :]
+        z = nodes.start
+        signals(b, t, u[first_signal : first_signal + signal_count])
+        for k in range(input_count):
+            u[first_input + k] = b[given[k]]
+        u[channels - 1] = 1.0
         for a in range(arguments):
-            z[a] = w[at.of_angle + a] * b[turning]
+            z[a] = 0.0
+            for r in range(int(w[at.rotations])):
+                z[a] += w[at.of_angles + r * arguments + a] * b[int(w[at.references + r])]
+            for c in range(values, channels):
+                z[a] += w[at.of_channels + a * channels + c] * u[c]
         for mode in range(modes):
             x, y, row = w[at.q + mode], w[at.q + modes + mode], at.carg + mode
             for a in range(arguments):
                 z[a] += w[row + a * capacity] * x - w[row + (arguments + a) * capacity] * y
-        laws(b, z, w[at.f : at.f + values], w[at.k : at.k + tangents], w[at.e : at.e + kinks])
+        laws(b, t, z, nodes.f[0], nodes.k[0], nodes.e[0])
         for value in range(values):
-            w[at.last + value * count + degree] = w[at.f + value]
-        for s in range(unknowns):
-            place = at.last + int(stiff[s]) * count + degree
-            for a in range(arguments):
-                w[place] -= tangent[s * arguments + a] * z[a]
+            table.scale[value] = abs(nodes.f[0, value])
+            end = at.last + value * count + degree
+            w[end] = less_tangents(table, value, nodes.f[0, value], z)
 
     @inner(owner)
-    def enter(b: np.ndarray, w: np.ndarray) -> None:
+    def states_of(b: np.ndarray, w: np.ndarray) -> None:
+        """Write the states inside to `at.x`, at the angles of the block."""
         inside, modes = int(w[at.inside]), int(w[at.modes])
         x = w[at.x : at.x + inside]
         for i in range(inside):
-            x[i] = b[int(w[at.states + i])]
-        for k in range(2 * modes + 1):
+            x[i] = 0.0
+        shapes = matrix(w, at.shapes, 2 * modes, inside)
+        add_product(shapes, w[at.q : at.q + 2 * modes], x)
+        for r in range(int(w[at.rotations])):
+            angle, v = b[int(w[at.references + r])], w[at.rigid + r * n : at.rigid + (r + 1) * n]
+            for i in range(inside):
+                rigid = v[int(w[at.states + i])]
+                if rigid != 0.0:
+                    x[i] += rigid * angle
+
+    @inner(owner)
+    def enter(b: np.ndarray, w: np.ndarray, t: float, close: float) -> None:
+        if goes_on and b[kept] != 0.0:
+            copy(b[kept + 1 : kept + 1 + size], w[at.q : at.q + size])
+            return
+        inside, modes = int(w[at.inside]), int(w[at.modes])
+        x = w[at.x : at.x + inside]
+        for i in range(inside):
+            state = int(w[at.states + i])
+            x[i] = b[state]
+            for r in range(int(w[at.rotations])):
+                rigid = w[at.rigid + r * n + state]
+                if rigid != 0.0:
+                    x[i] -= rigid * b[int(w[at.references + r])]
+        for k in range(at.q_size):
             w[at.q + k] = 0.0
-        add_columns(w[at.back :], 2 * modes, x, inside, w[at.q :], 2 * modes)
-        laws_there(b, w, modes)
+        back = matrix(w, at.back, inside, 2 * modes)
+        add_product(back, x, w[at.q : at.q + 2 * modes])
+        laws_there(b, w, t, modes)
+        neglect(w, modes, close)
+        w[at.before] = -1.0
 
     @inner(owner)
     def leave(b: np.ndarray, w: np.ndarray) -> None:
-        inside, modes = int(w[at.inside]), int(w[at.modes])
-        for i in range(inside):
-            w[at.x + i] = 0.0
-        add_columns(w[at.shapes :], inside, w[at.q :], 2 * modes, w[at.x :], inside)
-        for i in range(inside):
+        modes = int(w[at.modes])
+        for r in range(int(w[at.rotations])):
+            b[int(w[at.references + r])] += w[at.q + 2 * modes + r]
+            w[at.q + 2 * modes + r] = 0.0
+        states_of(b, w)
+        for i in range(int(w[at.inside])):
             b[int(w[at.states + i])] = w[at.x + i]
-        b[turning] += w[at.q + 2 * modes]
+        if goes_on:
+            b[kept] = 1.0
+            copy(w[at.q : at.q + size], b[kept + 1 : kept + 1 + size])
+
+    @outside(owner)
+    def belongs(b: np.ndarray, w: np.ndarray) -> bool:
+        if not goes_on or b[kept] == 0.0:
+            return False
+        copy(b[kept + 1 : kept + 1 + size], w[at.q : at.q + size])
+        states_of(b, w)
+        for i in range(int(w[at.inside])):
+            if b[int(w[at.states + i])] != w[at.x + i]:
+                return False
+        return True
 
     @inner(owner)
-    def advance(w: np.ndarray, begin: int) -> None:
-        modes = int(w[at.modes])
-        q, of_angle = w[at.q : at.q + 2 * modes + 1], w[begin + at.angle :]
-        turn, other = w[begin + at.turn :], w[begin + at.turn + capacity :]
-        first, second = 0.0, 0.0
-        for mode in range(modes):
-            x, y = q[mode], q[modes + mode]
-            first += of_angle[mode] * x
-            second += of_angle[modes + mode] * y
-            q[mode] = turn[mode] * x - other[mode] * y
-            q[modes + mode] = turn[mode] * y + other[mode] * x
-        q[2 * modes] += first + second
-        add_columns(w[begin + at.push :], at.q_size, w[at.v :], total, q, 2 * modes + 1)
-        for k in range(kinks):
-            w[at.e + k] = w[at.e + degree * kinks + k]
-        for k in range(values * count):
-            w[at.last + k] = w[at.u + k]
+    def forget(b: np.ndarray) -> None:
+        if goes_on:
+            b[kept] = 0.0
 
-    return enter, leave, advance
+    return enter, leave, belongs, forget
+
+
+_NEGLIGIBLE = 1e-5
+"""Of the residual that solves a step: what a value moves a coordinate by, at most, over what the
+stiff values do, to be left out."""
+
+
+def advancing(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile advance(w, begin, rung): the coordinates at the end of a step that is solved."""
+    degree, count, channels, kinks = form.degree, form.degree + 1, form.channels, form.kinks
+    arguments, rows, places = form.arguments, form.rows, form.nodes
+
+    @inner(owner)
+    def advance(w: np.ndarray, begin: int, rung: int) -> None:
+        modes, rotations = int(w[at.modes]), int(w[at.rotations])
+        q = w[at.q : at.q + 2 * modes + rotations]
+        for r in range(rotations):
+            q[2 * modes + r] += w[at.free + rows + r]
+        real = w[begin + at.turn : begin + at.turn + modes]
+        turn(real, w[begin + at.turn + modes : begin + at.turn + 2 * modes], q)
+        size, chosen = channels * count, integers(w, at.chosen, channels * count)
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        least = w[at.least : at.least + channels]
+        found = inputs(places, least, u, 0, channels, v, chosen)
+        push = matrix(w, begin + at.push, size, at.q_size)
+        add_chosen(push, w[at.v :], chosen, found, q)
+        copy(w[at.e + degree * kinks : at.e + count * kinks], w[at.e : at.e + kinks])
+        end = at.z + degree * arguments
+        copy(w[end - arguments : end], w[at.start : at.start + arguments])
+        copy(w[at.u : at.u + size], w[at.last : at.last + size])
+        w[at.before] = rung
+
+    return advance

@@ -9,23 +9,28 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Form:
-    """A component whose equations are x' = A x + B u, z = C x; u: laws' values, inputs, 1.
+    """A component with x' = A x + B u, z = C x + D u; u: laws' values, signals, inputs, 1.
 
     Attributes:
         states: how many.
+        turning: those that are angles which grow.
         arguments, values, kinks: of all laws.
         stiff: their values that are unknowns of a step.
         of_tangent: which of these each tangent belongs to.
         directions: (tangents, arguments).
         mean: (tangents,) mean tangents.
-        inputs: how many.
+        sharp: (n, arguments) directions along which arguments are taken at all nodes; along others
+            they are linear over a step.
+        signals, inputs: how many; signals are known over time, inputs are the host's.
         nodes: (degree + 1,) of a step, from 0 to 1.
         fit: (degree + 1, degree + 1): powers of the polynomial through values at the nodes.
-        ahead: (degree + 1, degree + 1): values of a step, continued over one that is as long.
-        lengths: of steps [s], each half of the one before.
+        ahead: (2, degree + 1): first and second power, since the end of a step, of the parabola
+            through its end that fits its other values best.
+        lengths: of steps, by rung, falling [s].
     """
 
     states: int
+    turning: tuple[int, ...]
     arguments: int
     values: int
     kinks: int
@@ -33,6 +38,8 @@ class Form:
     of_tangent: tuple[int, ...]
     directions: np.ndarray
     mean: np.ndarray
+    sharp: np.ndarray
+    signals: int
     inputs: int
     nodes: np.ndarray
     fit: np.ndarray
@@ -46,8 +53,13 @@ class Form:
 
     @property
     def channels(self) -> int:
-        """Laws' values, inputs, and the 1."""
-        return self.values + self.inputs + 1
+        """Laws' values, signals, inputs, and the 1."""
+        return self.values + self.signals + self.inputs + 1
+
+    @property
+    def rows(self) -> int:
+        """What is wanted of the arguments in a step: along sharp directions, and all at its end."""
+        return (self.degree - 1) * len(self.sharp) + self.arguments
 
     @property
     def tangent(self) -> np.ndarray:
@@ -63,22 +75,26 @@ class Equations(NamedTuple):
 
     Attributes:
         owner: name of the component, for messages.
-        turning: the state that is an angle, on which no rate depends.
-        inputs: places of the inputs in the block.
+        inputs: (inputs,) places of the inputs in the block.
         sizes: (states,) usual ones.
+        kept: place in the block of what a core goes on with, `kept_size` long; -1: it begins anew
+            in every call.
         rhs: the component's kernel.
-        given: kernel (b, x, u, dx, z), rates and arguments where laws' values and inputs are given.
+        given: kernel (b, x, u, dx, z), rates and arguments where laws' values, signals and inputs
+            are given.
+        signals: kernel (b, t, to), writes the signals at a time [s].
         prepare: kernel (b), before the laws.
-        laws: kernel (b, z, f, k, e), values, tangents and indicators at arguments.
+        laws: kernel (b, t, z, f, k, e), values, tangents and indicators at arguments and a time.
         period: kernel (b), time in which the laws repeat themselves [s].
     """
 
     owner: str
-    turning: int
-    inputs: tuple[int, ...]
+    inputs: np.ndarray
     sizes: tuple[float, ...]
+    kept: int
     rhs: Callable
     given: Callable
+    signals: Callable
     prepare: Callable
     laws: Callable
     period: Callable

@@ -5,28 +5,23 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
-from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
 from herringbone.kernels.eigen.vectors import modes as find_modes
 
 
 def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
-    form: Form, at: WorkPlaces, equations: Equations
+    form: Form, at: WorkPlaces, owner: str
 ) -> tuple[Callable[[np.ndarray], bool], Callable[[np.ndarray], None]]:
     """Compile find(w) -> bool, which writes the modes, and arrange(w), when they are checked.
 
     Args:
         form: of the component.
         at: places in the work space.
-        equations: of the component.
+        owner: of the kernels.
     """
-    owner, turning, capacity = equations.owner, equations.turning, at.capacity
-    n, channels, arguments, of = (
-        form.states,
-        form.channels,
-        form.arguments,
-        taken_places(form, at.rungs),
-    )
+    n, channels, arguments, capacity = form.states, form.channels, form.arguments, at.capacity
+    of = taken_places(form, at.rungs)
 
     @outside(owner)
     def eigenvalues(w: np.ndarray) -> bool:
@@ -45,7 +40,7 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
             w[of.room : of.end],
             count,
         )
-        if found < 0 or 2 * found >= at.q_size:
+        if found < 0 or found > capacity:
             return False
         w[at.modes] = found
         for mode in range(found):
@@ -53,36 +48,52 @@ def mode_finder(  # noqa: PLR0915 (kernels that share their layout)
         return True
 
     @outside(owner)
+    def seen(w: np.ndarray, row: int, k: int, mode: int, to: int, apart: int) -> None:
+        """Write what a row over the states is of a mode, real and imaginary part `apart`."""
+        g, h = 0.0, 0.0
+        count = int(w[at.inside])
+        pair = w[at.rates + capacity + mode] != 0.0
+        for i in range(count):
+            value = w[row + int(w[at.states + i])]
+            g += value * w[at.shapes + i * count + k]
+            if pair:
+                h += value * w[at.shapes + i * count + k + 1]
+        w[to], w[to + apart] = g, h
+
+    @outside(owner)
+    def driven(w: np.ndarray, channel: int, k: int, mode: int) -> None:
+        """Write what a channel does to a mode."""
+        g, h = 0.0, 0.0
+        count, rotations = int(w[at.inside]), int(w[at.rotations])
+        pair = w[at.rates + capacity + mode] != 0.0
+        for i in range(count):
+            state = int(w[at.states + i])
+            value = w[of.of_inputs + state * channels + channel]
+            for r in range(rotations):
+                rigid = w[at.rigid + r * n + state]
+                if rigid != 0.0:
+                    reference = int(w[at.references + r])
+                    value -= rigid * w[of.of_inputs + reference * channels + channel]
+            g += value * w[at.back + k * count + i]
+            if pair:
+                h -= value * w[at.back + (k + 1) * count + i]
+        w[at.bq + channel * capacity + mode] = g
+        w[at.bq + (channels + channel) * capacity + mode] = h
+
+    @outside(owner)
     def in_modes(w: np.ndarray) -> None:
         """Write what acts on the modes, and what is wanted of them."""
-        count, k = int(w[at.inside]), 0
+        k = 0
         for mode in range(int(w[at.modes])):
-            pair = w[at.rates + capacity + mode] != 0.0
-            for row in range(arguments + 1):
-                first = of.of_states + row * n if row < arguments else of.whole + turning * n
-                g, h = 0.0, 0.0
-                for i in range(count):
-                    value = w[first + int(w[at.states + i])]
-                    g += value * w[at.shapes + i * count + k]
-                    if pair:
-                        h += value * w[at.shapes + i * count + k + 1]
-                if row < arguments:
-                    w[at.carg + row * capacity + mode] = g
-                    w[at.carg + (arguments + row) * capacity + mode] = h
-                else:
-                    w[at.turns + mode], w[at.turns + capacity + mode] = g, h
+            for row in range(arguments):
+                to = at.carg + row * capacity + mode
+                seen(w, of.of_states + row * n, k, mode, to, arguments * capacity)
+            for r in range(int(w[at.rotations])):
+                to = at.turns + 2 * r * capacity + mode
+                seen(w, of.whole + int(w[at.references + r]) * n, k, mode, to, capacity)
             for c in range(channels):
-                g, h = 0.0, 0.0
-                for i in range(count):
-                    value = w[of.of_inputs + int(w[at.states + i]) * channels + c]
-                    g += value * w[at.back + k * count + i]
-                    if pair:
-                        h -= value * w[at.back + (k + 1) * count + i]
-                w[at.bq + c * capacity + mode] = g
-                w[at.bq + (channels + c) * capacity + mode] = h
-            k += 2 if pair else 1
-        for row in range(arguments):
-            w[at.of_angle + row] = w[of.of_states + row * n + turning]
+                driven(w, c, k, mode)
+            k += 2 if w[at.rates + capacity + mode] != 0.0 else 1
 
     @outside(owner)
     def find(w: np.ndarray) -> bool:

@@ -6,19 +6,22 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.collocated import difference_kernel, doubts, iteration
-from herringbone.kernels.condensed.in_block.columns import add_columns
+from herringbone.kernels.compiling.views import integers, matrix
+from herringbone.kernels.condensed.channels import inputs
+from herringbone.kernels.condensed.in_block.collocated import doubts, iteration
 from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
-from herringbone.kernels.condensed.in_block.coordinates import coordinate_kernels
+from herringbone.kernels.condensed.in_block.coordinates import advancing, coordinate_kernels
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
+from herringbone.kernels.condensed.modal import add_chosen, add_product
 
 _CLOSE = 10.0
 """Residual of the laws' values, over their size and the tolerance, whose correction solves a step.
 
 A correction makes it a thousand times smaller, or more."""
-_ROUGH = 5.0
-"""Highest power of the laws' values over a step, over their size and the tolerance, at most."""
+_ROUGH = 1.0
+"""Highest power of the laws' values over a step, over their size and the tolerance, at most; the
+error of a rig is a third to twice the largest one."""
 _PER_PERIOD = 0.055
 """Share of a period of the laws that a step has at most, at the tolerance _USUAL; there the error
 of a gearbox is a seventh to a half of it. It falls with the fourth power of the step, or faster."""
@@ -27,81 +30,113 @@ _SAME = 1e-9
 """Relative difference of lengths that are one: rounding of times."""
 
 
-def predictor(form: Form, at: WorkPlaces, owner: str) -> Callable:
-    """Compile predict(w, onward): along the polynomials of the last step, or constant."""
-    values, ahead = form.values, form.ahead.ravel()
-    degree, count = form.degree, form.degree + 1
+def step_beginner(
+    form: Form, at: WorkPlaces, equations: Equations, set_inputs: Callable
+) -> Callable:
+    """Compile begin_step(b, w, begin, rung, t, length, c, dc, order).
+
+    It writes the channels of the step from t [s] on, the laws' as they are expected, and what does
+    not depend on these. The step lies between c and c + dc of the macro step.
+    """
+    owner, given, signals = equations.owner, equations.inputs, equations.signals
+    values, channels = form.values, form.channels
+    count, ahead, nodes, lengths = form.degree + 1, form.ahead, form.nodes, np.array(form.lengths)
+    signal_count, first_input, input_count = form.signals, values + form.signals, form.inputs
 
     @inner(owner)
-    def predict(w: np.ndarray, onward: bool) -> None:
-        """Write the laws' values of the next step from those of the last one."""
+    def expect(w: np.ndarray, share: float) -> None:
+        """Write the laws' values of a step, a share of the last one's length; 0: constant."""
         for value in range(values):
-            own = w[at.last + value * count : at.last + (value + 1) * count]
-            to = w[at.u + value * count : at.u + (value + 1) * count]
+            own, to = w[at.last + value * count :], w[at.u + value * count :]
+            end, slope, bend = own[count - 1], 0.0, 0.0
+            for i in range(count - 1):
+                slope += ahead[0, i] * (own[i] - end)
+                bend += ahead[1, i] * (own[i] - end)
             for i in range(count):
-                to[i] = own[degree]
-            if onward:
-                for m in range(degree):
-                    change = own[m] - own[degree]
-                    for i in range(1, count):
-                        to[i] += ahead[m * count + i] * change
+                c = share * nodes[i]
+                to[i] = end + c * (slope + c * bend)
 
-    return predict
+    @inner(owner)
+    def begin_step(
+        b: np.ndarray, w: np.ndarray, begin: int, rung: int, t: float, length: float, c: float,
+        dc: float, order: int,
+    ) -> None:  # fmt: skip
+        size, before, now = channels * count, int(w[at.before]), w[at.now :]
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        chosen = integers(w, at.chosen, size)
+        expect(w, lengths[rung] / lengths[before] if before >= 0 else 0.0)
+        for i in range(count):
+            set_inputs(b, w, order, c + nodes[i] * dc)
+            for k in range(input_count):
+                u[first_input + k, i] = b[given[k]]
+            signals(b, t + nodes[i] * length, now[:signal_count])
+            for k in range(signal_count):
+                u[values + k, i] = now[k]
+            u[channels - 1, i] = 1.0
+        free = w[at.free : at.free + at.width]
+        for row in range(at.width):
+            free[row] = 0.0
+        modes, rotations = int(w[at.modes]), int(w[at.rotations])
+        used = 2 * modes + rotations
+        of_state = matrix(w, begin + at.of_state, used, at.width)
+        add_product(of_state, w[at.q : at.q + used], free)
+        for r in range(rotations):
+            angle, own = b[int(w[at.references + r])], of_state[2 * modes + r]
+            for row in range(at.width):
+                free[row] += own[row] * angle
+        least = w[at.least : at.least + channels]
+        found = inputs(nodes, least, u, values, channels, v, chosen)
+        of_inputs = matrix(w, begin + at.of_inputs, size, at.width)
+        add_chosen(of_inputs, w[at.v :], chosen, found, free)
+
+    return begin_step
 
 
 def leaper(  # noqa: PLR0915 (kernels that share their layout)
     form: Form, at: WorkPlaces, equations: Equations, set_inputs: Callable
-) -> tuple[Callable, Callable]:
+) -> tuple[Callable, Callable, Callable]:
     """Compile the leaps of a component.
 
     Returns:
         leap(b, w, t, h, begin, end, tolerance, order) -> float: from t + begin towards t + end
         inside of a macro step of length h [s]; time since t that it has reached. It leaves what is
-        shorter than the shortest step, and stops where a law bends, where the iteration does not
-        end, or where the tolerance asks for shorter steps. And ready(b, w, t), which makes what
-        leaps need, if it is not there.
+        shorter than the shortest step, and stops where in the shortest step a law bends or its
+        values are rough, and where the iteration does not end.
+        ready(b, w, t): finds the condensed form, if that is not done.
+        forget(b): the states are others than it left.
     """
-    owner, turning, inputs = equations.owner, equations.turning, np.array(equations.inputs)
-    prepare, period, condense = equations.prepare, equations.period, condenser(form, at, equations)
-    enter, leave, advance = coordinate_kernels(form, at, equations)
-    differences, iterate = difference_kernel(form, at, owner), iteration(form, at, equations)
-    (bends, rough), predict = doubts(form, at, owner), predictor(form, at, owner)
-    values, channels, arguments = form.values, form.channels, form.arguments
-    nodes, degree, count, rows = form.nodes, form.degree, form.degree + 1, at.rows
-    lengths, rungs, input_count = np.array(form.lengths), len(form.lengths), form.inputs
+    owner, prepare, period = equations.owner, equations.prepare, equations.period
+    condense = condenser(form, at, equations)
+    enter, leave, belongs, forget = coordinate_kernels(form, at, equations)
+    begin_step = step_beginner(form, at, equations, set_inputs)
+    iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
+    bends, rough = doubts(form, at, owner)
+    lengths, rungs = np.array(form.lengths), len(form.lengths)
     shortest = float(lengths[-1])
 
     @inner(owner)
-    def begin_step(
-        b: np.ndarray, w: np.ndarray, begin: int, done: float, length: float, h: float, order: int
-    ) -> None:
-        """Write what does not depend on the laws' values of this step."""
-        modes = int(w[at.modes])
-        for i in range(count):
-            set_inputs(b, w, order, (done + nodes[i] * length) / h)
-            for k in range(input_count):
-                w[at.u + (values + k) * count + i] = b[inputs[k]]
-            w[at.u + (channels - 1) * count + i] = 1.0
-        differences(w, values, channels)
-        angle = b[turning] + w[at.q + 2 * modes]
-        for i in range(degree):
-            for a in range(arguments):
-                w[at.free + i * arguments + a] = w[at.of_angle + a] * angle
-        add_columns(w[begin + at.q_rows :], rows, w[at.q :], 2 * modes, w[at.free :], rows)
-        of_inputs = w[begin + at.of_inputs + values * count * rows :]
-        add_columns(
-            of_inputs,
-            rows,
-            w[at.v + values * count :],
-            (channels - values) * count,
-            w[at.free :],
-            rows,
-        )
+    def choose(most: float, left: float) -> int:
+        """The longest rung up to a length, or one of half of it that divides what is left; -1."""
+        longest = -1
+        for rung in range(rungs):
+            length = lengths[rung]
+            if length > most * (1.0 + _SAME):
+                continue
+            if longest < 0:
+                longest = rung
+            count = left / length
+            if abs(count - math.floor(count + 0.5)) <= _SAME * count:
+                return rung
+            if length < 0.5 * most:
+                break
+        return longest
 
     @inner(owner)
     def ready(b: np.ndarray, w: np.ndarray, t: float) -> None:
         if w[at.status] == 0.0:
             condense(b, w, t)
+            if w[at.status] != FOUND or not belongs(b, w):
+                forget(b)
 
     @inner(owner)
     def leap(
@@ -113,28 +148,30 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
         longest *= math.sqrt(math.sqrt(tolerance / _USUAL))
         if end - done < shortest * (1.0 - _SAME) or longest < shortest:
             return done
-        ready(b, w, t)
         if w[at.status] != FOUND:
             return done
         prepare(b)
-        enter(b, w)
-        rung, before = 0, -1
-        while rung < rungs:
+        enter(b, w, t + done, _CLOSE * tolerance)
+        while True:
+            rung = choose(min(longest, end - done), end - done)
+            if rung < 0:
+                break
             length = lengths[rung]
-            if length > longest or end - done < length * (1.0 - _SAME):
-                rung += 1
-                continue
             place = at.rungs + rung * at.rung_size
-            predict(w, before == rung)
-            begin_step(b, w, place, done, length, h, order)
-            if not iterate(b, w, place, _CLOSE * tolerance) or bends(w):
+            begin_step(b, w, place, rung, t + done, length, done / h, length / h, order)
+            if not iterate(b, w, place, t + done, length, _CLOSE * tolerance):
                 break
+            straight = bends(w)
+            if straight < 1.0:
+                longest = straight * length
+                continue
             if rough(w) > _ROUGH * tolerance:
-                break
-            differences(w, 0, values)
-            advance(w, place)
-            done, before = done + length, rung
-        leave(b, w)
+                longest = 0.5 * length
+                continue
+            advance(w, place, rung)
+            done += length
+        if done > begin:
+            leave(b, w)
         return end if end - done < shortest * _SAME else done
 
-    return leap, ready
+    return leap, ready, forget

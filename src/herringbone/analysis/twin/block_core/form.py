@@ -1,0 +1,121 @@
+"""The form in which a system as one component is condensed, and when it can be."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from herringbone.analysis.twin.composite_parts import Parts
+from herringbone.analysis.twin.condensed.equations import laws_of
+from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients
+from herringbone.core import Laws, StructureError
+from herringbone.kernels.condensed.in_block.form import Form
+
+DEGREE = 4
+
+
+def laws_of_parts(parts: Parts) -> dict[int, Laws]:
+    """The laws of the parts that have some, by the parts' number.
+
+    Raises:
+        StructureError: a part's equations cannot be taken apart.
+    """
+    return {p: found for p, i in enumerate(parts.instances) if (found := laws_of(i))}
+
+
+def why_not(parts: Parts) -> str:
+    """Why a system has no condensed form, as far as its structure tells; empty if it may have."""
+    try:
+        laws = laws_of_parts(parts)
+    except StructureError as error:
+        return str(error)
+    return "" if laws else "no part has laws beside its linear equations"
+
+
+def core_form(parts: Parts, inputs: int, lengths: Sequence[float]) -> Form:
+    """The form; mean tangents are those of the parameters as they are exported.
+
+    Other ones are as good for the solution, but take more iterations.
+
+    Args:
+        parts: of the system.
+        inputs: how many the host gives.
+        lengths: of steps, falling [s].
+    """
+    laws = laws_of_parts(parts)
+    stiff: list[int] = []
+    of_tangent: list[int] = []
+    arguments = sum(len(own.arguments) for own in laws.values())
+    directions, sharp = [np.zeros((0, arguments))], [np.zeros((0, arguments))]
+    mean = []
+    value = at = 0
+    for p, own in laws.items():
+        block = parts.instances[p].block
+        unknown = sorted(set(own.stiff))
+        of_tangent += [len(stiff) + unknown.index(v) for v in own.stiff]
+        stiff += [value + v for v in unknown]
+        directions.append(_among(own.directions(block), at, arguments))
+        for rows in (own.sharp or own.directions, own.fine):
+            if rows is not None:
+                sharp.append(_among(rows(block), at, arguments))
+        mean.append(own.mean(block))
+        value, at = value + len(own.values), at + len(own.arguments)
+    nodes = np.array(LOBATTO[DEGREE])
+    return Form(
+        states=parts.layout.state_first[-1],
+        turning=_turning(parts),
+        arguments=arguments,
+        values=value,
+        kinks=sum(own.kinks for own in laws.values()),
+        stiff=tuple(stiff),
+        of_tangent=tuple(of_tangent),
+        directions=np.concatenate(directions),
+        mean=np.concatenate(mean),
+        sharp=np.concatenate(sharp),
+        signals=len(signals_of(parts)),
+        inputs=inputs,
+        nodes=nodes,
+        fit=coefficients(DEGREE),
+        ahead=parabola_since_end(nodes),
+        lengths=tuple(lengths),
+    )
+
+
+def parabola_since_end(nodes: np.ndarray) -> np.ndarray:
+    """First and second power (2, nodes), see `Form.ahead`; a higher one goes farther off."""
+    found = np.zeros((2, nodes.size))
+    found[:, :-1] = np.linalg.pinv(np.vander(nodes - 1.0, 3, increasing=True)[:-1, 1:])
+    return found
+
+
+def _among(rows: np.ndarray, at: int, arguments: int) -> np.ndarray:
+    """Rows over the arguments of all laws, from those over a part's own."""
+    whole = np.zeros((len(rows), arguments))
+    whole[:, at : at + rows.shape[1]] = rows
+    return whole
+
+
+def _turning(parts: Parts) -> tuple[int, ...]:
+    """States that are angles which grow."""
+    return tuple(
+        first + k
+        for first, i in zip(parts.layout.state_first, parts.instances, strict=False)
+        for k, v in enumerate(i.component.declaration.states)
+        if v.steady == "rotating"
+    )
+
+
+def pure_sources(parts: Parts) -> list[int]:
+    """Sources whose outputs are known over time."""
+    return [
+        p
+        for p in parts.network.sources
+        if not parts.instances[p].component.declaration.state_count
+        and not any(name.startswith(f"{parts.instances[p].name}.") for name in parts.open_inputs)
+    ]
+
+
+def signals_of(parts: Parts) -> list[tuple[int, str]]:
+    """Outputs of sources that others take: part and name."""
+    sources = set(pure_sources(parts))
+    used = {(c.source, c.output) for c in parts.network.connections if c.source in sources}
+    return sorted(used)

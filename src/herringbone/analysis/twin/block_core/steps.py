@@ -1,0 +1,146 @@
+"""Steps of a system as one component that follow a tolerance: condensed core, and Runge-Kutta."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+
+from herringbone.core import ByTolerance, Declaration, Experiment, Remark, Variable, local
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.kernels import steppers
+from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.condensed.in_block.condense import FOUND
+from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.kernels.condensed.in_block.leaps import leaper
+from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places
+from herringbone.kernels.stepping.adaptive import (
+    FIRST,
+    LARGEST,
+    LONGEST_STEP,
+    adaptive_stepper,
+    adaptive_work,
+)
+
+TOLERANCE, NEXT_STEP = "tolerance", "next_inner_step"
+_USUAL = 1e-3
+LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5, 1.25e-5)
+"""Of steps of the condensed core, by rung [s]."""
+_EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_USUAL)
+_STABLE = 2.0
+"""Of Runge-Kutta: largest eigenvalue times step; the limit is 2.8, and tangents may be steeper."""
+_HIDDEN = 1e-6
+"""Usual size of elements of vectors, in their units."""
+_NOT_LINEAR = Remark(
+    "Runge-Kutta alone integrates, at several times the CPU time of the condensed core: with these "
+    "parameters the equations have no condensed form; look for stiffnesses and dampings of 0, and "
+    "for parts that are not linear beside the laws they had at export"
+)
+REMARK = """
+
+@kernel
+def remark(b: np.ndarray, w: np.ndarray, which: int, report: np.ndarray) -> int:
+    return 1 if w[{status}] < 0.0 else 0
+"""
+"""Source of the kernel of the remarks."""
+
+
+class Stepping(NamedTuple):
+    """How a system as one component steps.
+
+    Attributes:
+        form: in which it is condensed.
+        at: places in the work space.
+        micro_step: of Runge-Kutta where there is no condensed form [s].
+    """
+
+    form: Form
+    at: WorkPlaces
+    micro_step: float
+
+
+def stepping(form: Form, inputs: int, micro_step: float) -> Stepping:
+    """Places for a form whose host gives so many inputs."""
+    return Stepping(form, work_places(form, adaptive_work(form.states, inputs)), micro_step)
+
+
+def locals_of(found: Stepping) -> tuple[list[Variable], int]:
+    """Hidden locals, and the length of what else the steps go on with."""
+    tolerance = replace(local(TOLERANCE, "1", "of inner steps"), start=_USUAL)
+    following = replace(local(NEXT_STEP, "s", "length of the next inner step"), start=FIRST)
+    return [tolerance, following], kept_size(found.form)
+
+
+def by_tolerance(module: ModuleType) -> ByTolerance:
+    """What the wrapper hands over and tells."""
+    return ByTolerance(TOLERANCE, _EXPERIMENT, (_NOT_LINEAR,), module.remark)
+
+
+def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndarray], float]:
+    """Compile the longest step [s] of one call, by the micro step if there is one."""
+    of_micro_steps = steppers.longest_step(declaration, micro_step)
+
+    @inner(declaration.name)
+    def longest(b: np.ndarray) -> float:
+        found = of_micro_steps(b)
+        return found if found > 0.0 else LONGEST_STEP
+
+    return longest
+
+
+def step_kernel(
+    declaration: Declaration, module: ModuleType, found: Stepping, micro_step: str
+) -> Callable:
+    """Compile the step of a component.
+
+    Args:
+        declaration: of the component.
+        module: its kernels.
+        found: how it steps.
+        micro_step: name of the parameter that, above 0, asks for Runge-Kutta alone.
+    """
+    d, at, micro = declaration, found.at, found.micro_step
+    kept, refresh = d.first_kept, module.refresh
+    sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
+    equations = Equations(
+        d.name,
+        np.array(d.indices(*(v.name for v in d.inputs)), dtype=np.int64),
+        sizes,
+        kept,
+        module.system_rhs,
+        module.core_given,
+        module.core_signals,
+        module.core_prepare,
+        module.core_laws,
+        module.core_period,
+    )
+
+    @inner(d.name)
+    def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
+        if w[at.status] != FOUND:
+            return micro
+        return min(LARGEST, _STABLE / w[at.fastest])
+
+    by_core = adaptive_stepper(
+        module.system_rhs,
+        module.system_out,
+        d,
+        NEXT_STEP,
+        longest_inner_step,
+        partial(leaper, found.form, at, equations),
+        LENGTHS[-1],
+    )
+    fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
+    micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
+
+    @inner(d.name)
+    def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
+        refresh(b)
+        if b[micro_at] > 0.0:
+            b[kept] = 0.0
+            return fixed(b, w, t, h, b[micro_at], int(b[degree]))
+        return by_core(b, w, t, h, b[tolerance], int(b[degree]))
+
+    return step
