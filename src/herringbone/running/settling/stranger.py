@@ -23,6 +23,8 @@ _SHARES = {InputRule.MEAN: 0.5, InputRule.START: 0.0, InputRule.END: 1.0}
 _CHANGES = 5e-4
 """Of the largest value of its unit that counts as settled: over the last quarter; or of its curve
 there about a straight line, and of its end if it is given half the time."""
+_CURVED = 5e-3
+"""The same about a straight line, of what has settled before: drag that rises with the speed."""
 _NOTHING = {"m": 1e-12, "rad": 1e-9, "m/s": 1e-9, "rad/s": 1e-6, "N": 1e-6, "N.m": 1e-6}
 _WATCHED = 200
 """Points of the last quarter that are looked at."""
@@ -136,7 +138,7 @@ class Stranger:
             last = trial.values()
         finally:
             trial.close()
-        path, line = np.array([*seen, last]), np.linspace(-1.0, 1.0, len(seen) + 1)
+        path, line = np.array(seen), np.linspace(-1.0, 1.0, len(seen))
         change, worst = self._change(path)
         slope = line @ path / (line @ line)
         bend, _ = self._change(path, np.outer(line, slope))
@@ -168,9 +170,15 @@ class Stranger:
             largest[unit] = max(largest[unit], abs(float(value)))
         return np.array([largest[unit] for unit in units])
 
-    def is_settled(self, found: Settled, before: Settled | None) -> bool:
-        """If nothing changes any more but evenly, as it did in half the time."""
-        if found.change <= _CHANGES:
+    def is_settled(self, found: Settled, before: Settled | None, *, known: bool) -> bool:
+        """If nothing changes any more but evenly, as it did in half the time.
+
+        Args:
+            found: after some time.
+            before: after half of it; None: not tried.
+            known: it settles in this time under another motion.
+        """
+        if found.change <= _CHANGES or (known and found.bend <= _CURVED):
             return True
         if before is None or found.bend > _CHANGES:
             return False
