@@ -99,11 +99,12 @@ def _predicted(
         replace_parts=replacements(options),
     )
     wishes = operated(options.system, options.scene, wishes, **operating_point(options))
-    structure, scene, notes = prepared(options.system, options.scene, wishes)
+    trials = LI().start_step
+    structure, scene, notes = prepared(options.system, options.scene, wishes, trial_step=trials)
     for note in notes:
         tell(note)
     structure = under_load(structure)
-    bar, trials = tqdm(unit=" matrices", disable=None), LI().start_step
+    bar = tqdm(unit=" matrices", disable=None)
     with bar, opened_surrogates(structure, trials) as foreign:
         structure, missing = without_missing(structure, foreign)
         for line in missing:

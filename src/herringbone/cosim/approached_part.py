@@ -46,6 +46,11 @@ class ApproachedPart(PartAdapter):
             super().close()
 
 
+def approached(part: Part, given: Approach | None) -> Part:
+    """The part, with its approach in front of it if it has one."""
+    return part if given is None else ApproachedPart(part, given)
+
+
 def approach(trial: Trial, given: Approach) -> None:
     """Step a part up to the start of the run; raises Refused."""
     for t, h in given.steps():

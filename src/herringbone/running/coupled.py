@@ -39,7 +39,7 @@ from herringbone.running.fused.beside import (
     with_core_steps,
     with_recorded_channels,
 )
-from herringbone.running.loading import instances, open_parts
+from herringbone.running.loading import in_one_run, instances, open_parts
 from herringbone.running.operating.lean import with_row
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.remembered_answers import bond_of, stability_warning
@@ -110,7 +110,7 @@ class Coupled(NamedTuple):
         every: with all communication points, if these were asked for.
         recording: of the run.
         algorithm: that was chosen.
-        once: a part can be instantiated once only.
+        once: a part can be in no other run of this process.
         exchanged: outputs of foreign parts that other parts take.
     """
 
@@ -209,7 +209,7 @@ def _coupled(
             result = every if output is None else output.seen(every)
         if recorded:
             recorded(result)
-        once = any(part.once for part in opened)
+        once = bool(in_one_run(system))
         exchanged = exchanged_outputs(exchanging, parts)
     return Coupled(result, every, recording, algorithm, once, exchanged)
 

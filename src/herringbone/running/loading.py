@@ -14,9 +14,9 @@ from herringbone.core.caching.remembered import Remembered, content_key
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import STRUCTURE, Part, PartVariable
 from herringbone.core.places.files import as_texts, beside, is_file, same_folder
-from herringbone.cosim.approached_part import ApproachedPart
+from herringbone.cosim.approached_part import approached
 from herringbone.cosim.fmu.file import require_file
-from herringbone.cosim.fmu.opening import many_of, open_fmu
+from herringbone.cosim.fmu.opening import many_of, open_fmu, runs_again
 from herringbone.cosim.ssp.format import is_ssp
 from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.cosim.structure.system_file import find_system, read_system
@@ -143,8 +143,7 @@ def open_parts(system: System, fmu: str) -> list[Part]:
             _set_values(parts[-1], spec)
             if spec.foreign and system.connections:
                 parts[-1] = in_si_units(parts[-1])
-            if spec.approach:
-                parts[-1] = ApproachedPart(parts[-1], spec.approach)
+            parts[-1] = approached(parts[-1], spec.approach)
     except HerringboneError:
         for part in parts:
             part.close()
@@ -170,6 +169,11 @@ def instances(spec: PartSpec) -> Iterator[Callable[[], Part]]:
             return in_si_units(part)
 
         yield with_values
+
+
+def in_one_run(system: System) -> list[str]:
+    """Foreign parts that can be in no second run of this process; raises FmuError."""
+    return [p.name for p in system.parts if p.fmu and not runs_again(p.name, p.fmu)]
 
 
 def _set_values(part: Part, spec: PartSpec) -> None:

@@ -23,6 +23,7 @@ from herringbone.analysis.stability.steps.step_limits import (
     clocks_of,
     step_limits,
 )
+from herringbone.analysis.stability.surrogates.sampled import common_steps
 from herringbone.core import HerringboneError, Instance, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.declaring.roles import Quantity, Role
@@ -121,7 +122,7 @@ def stability(
         notes.append("algorithms are not ranked: the rule of accuracy knows no foreign parts")
     else:
         ranking = rank(by_limit, highest, tolerance, _micro_step(instances))
-    notes += _on_a_grid(limits, strangers, simulate=simulate)
+    notes += _on_a_grid(limits, strangers)
     notes += [f"{name} is not ranked: {why}" for name, why in ranking.unranked.items()]
     notes += _unfrozen(instances)
     return Stability(
@@ -142,14 +143,13 @@ def stability(
     )
 
 
-def _on_a_grid(limits: Sequence[StepLimits], strangers: Strangers, *, simulate: bool) -> list[str]:
+def _on_a_grid(limits: Sequence[StepLimits], strangers: Strangers) -> list[str]:
     """A line on which steps were looked at, if parts have clocks."""
     clocks, looked = clocks_of(strangers), max((found.steps for found in limits), default=0)
     if not clocks or not looked:
         return []
     known = ", ".join(f"{clock.name} every {clock.period:g} s" for clock in clocks)
-    runs = "; their limits are not looked for by runs" if simulate else ""
-    return [f"parts with clocks: {known}: {looked} steps that go with these were looked at{runs}"]
+    return [f"parts with clocks: {known}: {looked} steps that go with these were looked at"]
 
 
 def _found(
@@ -160,9 +160,10 @@ def _found(
     strangers: Strangers,
 ) -> StepLimits:
     limit = step_limits(system, algorithm, progress, strangers)
-    if not simulate or limit.steps:
+    if not simulate:
         return limit
-    seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands, strangers)
+    grid = common_steps(clocks_of(strangers), limit.largest) if limit.steps else ()
+    seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands, strangers, grid)
     return replace(limit, simulated_limit=seen)
 
 

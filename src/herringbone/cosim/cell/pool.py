@@ -27,7 +27,9 @@ def cell_for(name: str, file: Path, model: ModelDescription, folder: Path) -> Ce
         return cell
     known = read_variables(model)
     sized = any(v.causality == STRUCTURE for v in known.values())
-    return Cell(name, content, room(len(known), sized=sized), folder)
+    cell = Cell(name, content, room(len(known), sized=sized), folder)
+    cell.once = bool(model.coSimulation.canBeInstantiatedOnlyOncePerProcess)
+    return cell
 
 
 def give_back(cell: Cell) -> None:
@@ -60,7 +62,7 @@ def applied(name: str, file: Path, model: ModelDescription, function: Callable[[
 def _is_as_new(cell: Cell) -> bool:
     """True if its FMU did nothing to a cell that shows."""
     try:
-        if cell.lost or cell.ask("changed", -1):
+        if cell.once or cell.lost or cell.ask("changed", -1):
             return False
     except HerringboneError:
         return False

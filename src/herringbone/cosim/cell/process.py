@@ -56,9 +56,14 @@ class Cell:
         folder: that it removes if its master is killed; those of its instances are added.
         words: that the operations of the compiled loop need at most.
 
+    Attributes:
+        once: its FMU allows one instance per process, so that it is not used again.
+
     Raises:
         FmuError: it does not start.
     """
+
+    once = False
 
     def __init__(self, name: str, content: str, words: int, folder: Path) -> None:
         self.name, self.content = name, content

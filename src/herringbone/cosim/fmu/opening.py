@@ -55,6 +55,18 @@ def open_fmu(
         raise
 
 
+def runs_again(name: str, file: Path) -> bool:
+    """True if an FMU can be in one run after another.
+
+    That is so unless it allows one instance per process, and is loaded into this one.
+
+    Raises:
+        FmuError: it cannot be read.
+    """
+    abilities = read_fmu(file).coSimulation
+    return not abilities.canBeInstantiatedOnlyOncePerProcess or _needs_cell(name, file)
+
+
 def applied(file: Path, function: Callable[[Path], T]) -> T:
     """What a function, which opens an FMU, finds about it, where this FMU belongs.
 

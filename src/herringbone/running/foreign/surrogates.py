@@ -6,13 +6,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, round_period
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
 from herringbone.analysis.stability.surrogates.surrogate import Surrogate
+from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import FmuError, HerringboneError
 from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.adapter import WithoutStates
+from herringbone.cosim.approached_part import approached
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.signature.amplitudes import amplitude
@@ -122,6 +125,8 @@ def under_load(system: System) -> System:
     """
     if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
         return system
+    if any(part.approach for part in system.parts):
+        return _turned_back(system)  # in equilibrium with all of them
     steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
     known = known_parts(steady)
     own = loaded(known, _TORQUE)
@@ -136,6 +141,19 @@ def under_load(system: System) -> System:
         return steady.with_values(loaded_start(own)[0])
     except HerringboneError:
         return system
+
+
+def _turned_back(system: System) -> System:
+    """The system with its shafts turned back to angles near 0, where differences are exact."""
+    twin = Twin(known_parts(system))
+    x = twin.state
+    rates = twin.rhs(0.0, x)
+    turning = [i for i in twin.turning if rates[i] != 0.0]
+    if not turning:
+        return system
+    time = x[turning[0]] / rates[turning[0]]
+    names = names_of_states(twin)
+    return system.with_values({names[i]: float(x[i] - time * rates[i]) for i in turning})
 
 
 def _add(
@@ -162,7 +180,9 @@ def _add(
     elif made.model is None:
         found.missing[part.name] = made.why
     else:
-        found.strangers[part.name] = Stranger(part, made, lambda: alike(part, make()))
+        found.strangers[part.name] = Stranger(
+            part, made, lambda: alike(part, approached(make(), spec.approach))
+        )
 
 
 def _surrogate(

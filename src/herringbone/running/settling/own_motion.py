@@ -1,6 +1,6 @@
 """What a system of components gives to others in a steady motion in which these answer."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -57,6 +57,16 @@ class OwnMotion:
     def at_acceleration(self, acceleration: float) -> "OwnMotion":
         """The same at another acceleration [rad/s^2]; own parts do not balance then."""
         return replace(self, acceleration=acceleration)
+
+    def turned_on(self, angle: Callable[[float, float], float]) -> "OwnMotion":
+        """The same with angles further by what a function makes of rate and second rate."""
+        found = {
+            path: output._replace(value=output.value + angle(*self.rates(output)))
+            if self.turns(path)
+            else output
+            for path, output in self.outputs.items()
+        }
+        return replace(self, outputs=found)
 
     def turns(self, path: str) -> bool:
         """If an output is an angle that turns."""

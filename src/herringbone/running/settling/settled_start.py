@@ -4,9 +4,9 @@ Nobody can set the states of a foreign FMU. But it can be stepped before the run
 inputs of the steady motion, until it answers steadily. What it answers then is what own parts are
 balanced with; as what it is given follows from these, answers are looked for that come back.
 
-Own parts turn by the angle by which foreign ones are turned on the way, so that these begin where
-they declare. Torques that do not balance speed the drivetrain up evenly, if no controller holds the
-speed: parts settle under this acceleration, too.
+Own parts turn by the angle by which foreign ones are turned on the way, so that the slowest of
+these begins where it declares. Torques that do not balance speed the drivetrain up evenly, if no
+controller holds the speed: parts settle under this acceleration, too.
 """
 
 from collections.abc import Callable, Iterator
@@ -90,9 +90,9 @@ class _Search:
     def __init__(self, known: System, network: Network, strangers: list[Stranger]) -> None:
         self._system, self._strangers = known, strangers
         self._links = Links(network, strangers)
-        self._duration, self._gradual = _FIRST, True
+        self._durations = {part.name: _STEP if part.at_once else _FIRST for part in strangers}
+        self._gradual, self._settle = True, set[str]()
         self._answer = np.zeros(len(self._links.has_states))
-        self._known_to_settle = False
 
     def found(self) -> SettledStart:
         """The start; raises NotSettledError, HerringboneError."""
@@ -129,12 +129,16 @@ class _Search:
         found = own_motion(self._system, answers, self._links.own_outputs)
         if not any(map(found.turns, found.outputs)):
             return found
-        way = Approach((), self._duration, _STEP, gradual=self._gradual)
+        way = self._way()
         turned = {
             path: value_at(self._system, path) + way.turned(*found.rates(angle))
             for path, angle in found.angles.items()
         }
         return own_motion(self._system.with_values(turned), answers, self._links.own_outputs)
+
+    def _way(self) -> Approach:
+        """Of own parts, which turn as long as the slowest foreign one."""
+        return Approach((), max(self._durations.values()), _STEP, gradual=self._gradual)
 
     def _untouched(self) -> np.ndarray:
         """Answers to the inputs at which strangers begin."""
@@ -151,34 +155,38 @@ class _Search:
 
     def _approach(self, part: Stranger, motion: OwnMotion) -> Approach:
         given = self._links.given(part, motion, self._answer)
-        duration = _STEP if part.at_once else self._duration
-        return part.approach(given, duration, _STEP, gradual=self._gradual)
+        return part.approach(given, self._durations[part.name], _STEP, gradual=self._gradual)
 
     def _settled(self, motion: OwnMotion) -> np.ndarray:
-        """What strangers come to; longer and longer until all do."""
-        before: dict[str, Settled] = {}
-        while True:
-            found = {p.name: p.settled(self._approach(p, motion)) for p in self._strangers}
-            self._answer = self._links.row({name: s.outputs for name, s in found.items()})
-            late = [
-                p for p in self._strangers if not p.is_settled(found[p.name], before.get(p.name))
-            ]
-            if not late or self._known_to_settle:
-                self._known_to_settle = True
-                return self._answer
-            self._lengthen(late[0], found[late[0].name])
-            before = found
+        """What strangers come to, each in its own time, longer and longer until it does."""
+        found = {}
+        for part in self._strangers:
+            before, now = None, part.settled(self._approach(part, motion))
+            while not part.is_settled(now, before, known=part.name in self._settle):
+                motion = self._lengthen(part, now, motion)
+                before, now = now, part.settled(self._approach(part, motion))
+            self._settle.add(part.name)
+            found[part.name] = now.outputs
+        self._answer = self._links.row(found)
+        return self._answer
 
-    def _lengthen(self, part: Stranger, found: Settled) -> None:
-        """Twice the time; raises NotSettledError if that is too long."""
+    def _lengthen(self, part: Stranger, found: Settled, motion: OwnMotion) -> OwnMotion:
+        """Twice the time, and the motion that goes with it.
+
+        Raises:
+            NotSettledError: that is too long.
+        """
+        before = self._way()
         if part.at_once:
             raise NotSettledError(f"{part.name}: {found.worst} has no steady value")
-        self._duration *= 2.0
-        if self._duration > LONGEST:
+        self._durations[part.name] *= 2.0
+        if self._durations[part.name] > LONGEST:
             raise NotSettledError(
                 f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
-                f"{0.5 * self._duration:.3g} s"
+                f"{0.5 * self._durations[part.name]:.3g} s"
             )
+        now = self._way()
+        return motion.turned_on(lambda *rates: now.turned(*rates) - before.turned(*rates))
 
     def _begins_gently(self, motion: OwnMotion) -> bool:
         """If foreign parts answer less to shafts that speed up than to shafts that turn at once."""

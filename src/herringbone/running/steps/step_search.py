@@ -18,10 +18,10 @@ from dataclasses import replace
 
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import LI
-from herringbone.cosim.fmu.file import read_fmu
 from herringbone.cosim.structure.system import System
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
+from herringbone.running.loading import in_one_run
 from herringbone.running.operating.lean import with_row
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import judged
@@ -42,7 +42,7 @@ def searched_tolerance(system: System, asked: Asked) -> float | None:
     tells which step suits them.
 
     Raises:
-        ParameterError: a tolerance is asked for, but an FMU can be instantiated once only.
+        ParameterError: a tolerance is asked for, but an FMU can be in one run of this process only.
         FmuError: one cannot be read.
     """
     if not system.foreign_parts or not system.connections:
@@ -51,13 +51,13 @@ def searched_tolerance(system: System, asked: Asked) -> float | None:
         unknown = asked.step is None and asked.algorithm is None and asked.probe
         if not unknown or len(system.foreign_parts) < len(system.parts):
             return None
-    single = [name for name in system.foreign_parts if _once(system, name)]
+    single = in_one_run(system)
     if asked.tolerance is None:
         return None if single else _DEFAULT
     if single:
         raise ParameterError(
-            f"tolerance = {asked.tolerance:g}: {', '.join(single)} can be instantiated once only, "
-            "and a step is found by several runs; give a --step"
+            f"tolerance = {asked.tolerance:g}: {', '.join(single)} can be instantiated once only "
+            "in this process, and a step is found by several runs; give a --step"
         )
     return asked.tolerance if asked.algorithm is None or not asked.algorithm.adaptive else None
 
@@ -110,8 +110,3 @@ def first_step(system: System, scene: Scene) -> float:
     own = len(system.foreign_parts) < len(system.parts)
     longest = scene.t_end / _PIECES
     return min(longest, _COARSE * LI().default_step) if own else longest
-
-
-def _once(system: System, name: str) -> bool:
-    model = read_fmu(str(system.part(name).fmu))
-    return bool(model.coSimulation.canBeInstantiatedOnlyOncePerProcess)

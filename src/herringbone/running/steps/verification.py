@@ -98,7 +98,11 @@ def verified_by_longer_steps(
         result, system, scene, found, asked: see `verified`.
     """
     if found.once:
-        return _with_note(result, "the error is not known: an FMU can be instantiated once only")
+        return _with_note(
+            result,
+            "the error is not known: an FMU can be instantiated once only, and runs in this "
+            "process; in child processes (on Linux, without --in-process) it is told",
+        )
     step = found.recording.step
     runs = [found.result]
     for times in (2.0, 4.0):

@@ -27,6 +27,7 @@ def nonlinear_limit(
     predicted: float,
     bands: Bands = (),
     strangers: Strangers = NO_STRANGERS,
+    grid: Sequence[float] = (),
 ) -> float | None:
     """First macro step [s] at which runs of the non-linear parts are unstable, to 1 %.
 
@@ -36,6 +37,7 @@ def nonlinear_limit(
         predicted: limit of the linear parts [s].
         bands: predicted unstable steps (from, to) [s].
         strangers: its foreign parts.
+        grid: steps [s] that go with their clocks, ascending; the limit is one of these.
 
     Returns:
         A step between half the predicted limit and twice of it; None if runs are stable, or
@@ -49,6 +51,9 @@ def nonlinear_limit(
         )
         return growth > 0.0
 
+    if grid:
+        near = [step for step in grid if LOWEST * predicted <= step <= HIGHEST * predicted]
+        return next(filter(unstable, near), None)
     return first_unstable(unstable, predicted, bands)
 
 
