@@ -1,8 +1,8 @@
 """Sweeps on many cores, killed, and long: `python -m campaigns.sweeps efficiency|kills|memory`.
 
 efficiency [POINTS [T_END]]: transient points in this process, in two processes, and on a local Dask
-cluster, if that is installed; the same bits, and serial CPU time over that of all processes. The
-share of wall time is that of an idle machine only.
+cluster as docs/sweeps.md has it, if that is installed; the same bits, and serial CPU time over that
+of all processes. The share of wall time is that of an idle machine only.
 kills [COUNT [SEED]]: kill -9 of a worker or of the parent at random moments, then the same command
 again: the same table, bit for bit.
 memory [POINTS]: a cheap study of so many points; memory of the process over its course.
@@ -35,7 +35,11 @@ def main():
                   output=folder)
     begin = time.perf_counter()
     if how == "dask":
+        import dask
         from dask.distributed import Client, LocalCluster
+        dask.config.set({  # see docs/sweeps.md
+            "distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s",
+        })
         with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
             with Client(cluster) as client:
                 hb.sweep("test_rig", executor=client.get_executor(), **wanted)
