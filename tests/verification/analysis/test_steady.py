@@ -8,9 +8,9 @@ from support.own_pair import write_pair
 from threadpoolctl import threadpool_limits
 
 import herringbone as hb
-from herringbone.analysis.steady.assumed import assumed
-from herringbone.analysis.steady.marched import start_of
-from herringbone.analysis.steady.sensitivity import sensitivities
+from herringbone.analysis.steady.marching.marched import start_of
+from herringbone.analysis.steady.sensitivities.assumed import assumed
+from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
 from herringbone.analysis.twin.fused.core import Steps

@@ -9,7 +9,7 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accu
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.repeated import Repeated, repeated
+from herringbone.analysis.steady.marching.repeated import Repeated, repeated
 from herringbone.analysis.steady.resolution import first
 from herringbone.analysis.steady.structure import Structure
 

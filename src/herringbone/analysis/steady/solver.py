@@ -25,8 +25,8 @@ from herringbone.analysis.steady.guess import (
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marched import March
-from herringbone.analysis.steady.repeated import Repeated
+from herringbone.analysis.steady.marching.marched import March
+from herringbone.analysis.steady.marching.repeated import Repeated
 from herringbone.analysis.steady.resolution import first
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SteadyState

@@ -22,8 +22,8 @@ from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
-    from herringbone.analysis.steady.sensitivity import Sensitivity
-    from herringbone.analysis.steady.settled import SettledState
+    from herringbone.analysis.steady.of_runs.settled import SettledState
+    from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
     from herringbone.analysis.steady.state import SteadyState
 
 
@@ -117,9 +117,9 @@ def _sensitivities(
     state: "SteadyState | SettledState", options: argparse.Namespace
 ) -> dict[str, dict[str, "Sensitivity"]]:
     """By group and parameter; none, with a line, where there are none."""
-    from herringbone.analysis.steady.assumed import Changes, assumed  # noqa: PLC0415 (numba)
-    from herringbone.analysis.steady.sensitivity import sensitivities  # noqa: PLC0415
-    from herringbone.analysis.steady.settled import UNTOLD, SettledState  # noqa: PLC0415
+    from herringbone.analysis.steady.of_runs.settled import UNTOLD, SettledState  # noqa: PLC0415
+    from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed  # noqa: PLC0415 (numba)
+    from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities  # noqa: PLC0415
 
     if options.sensitivities is None or not state.found:
         return {}

@@ -9,10 +9,10 @@ import numpy as np
 
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
-from herringbone.analysis.steady.assumed import Changes, assumed
 from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.periodic import PeriodicMotion
-from herringbone.analysis.steady.sensitivity import sensitivities
+from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
+from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
 from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState

@@ -13,7 +13,7 @@ import numpy as np
 
 from herringbone.analysis.steady.guess import SETTLING, beginnings
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marched import Following, March
+from herringbone.analysis.steady.marching.marched import Following, March
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
