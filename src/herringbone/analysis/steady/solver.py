@@ -22,7 +22,7 @@ from herringbone.analysis.steady.guess import (
     standing,
     turns,
 )
-from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
+from herringbone.analysis.steady.harmonic_balance.accuracy import accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.marched import March
@@ -113,7 +113,8 @@ class SteadySolver:
             given = motion_at(structure, point)
             found, notes = self._found(structure, given, near, point)
         motion, orbit, errors, settled = found
-        if point.torque == 0.0 and not orbit.converged:
+        if point.torque == 0.0 and not (orbit.converged and errors.left_out):
+            orbit = orbit._replace(converged=False)  # rest with open teeth may be at any gap
             notes = (*notes, _NO_LOAD)
         before = near._replace(before=None) if near else None
         return SteadyState(
@@ -202,8 +203,8 @@ class SteadySolver:
             if period is None:
                 return None
             orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
-            if not orbit.converged:
-                return Found(motion, orbit, Accuracy({}, {}, {}, {}))
+            if not (orbit.converged and turns(orbit)):
+                return none_found(motion, orbit)
             errors = accuracy(structure, period, motion, orbit)
             if errors.worst <= self.tolerance or resolution.finest(period):
                 return Found(motion, orbit, errors)
