@@ -12,6 +12,7 @@ from herringbone.commands.options import (
     add_replacements,
     add_scene,
     add_sensitivities,
+    add_solver,
     add_start_values,
     given_by,
     operating_point,
@@ -40,6 +41,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="with foreign parts, which are run until they settle: duration at most, 10 s",
     )  # fmt: skip
     add_sensitivities(sub)
+    add_solver(sub)
     sub.add_argument(
         "-o", "--output", type=Path,
         help="folder for orders.csv, steady.json, steady.png, and tornado.GROUP.png",
@@ -66,6 +68,7 @@ def run(options: argparse.Namespace) -> int:
         replace_parts=replacements(options),
         tolerance=options.tolerance,
         longest=options.longest,
+        **({"solver": options.solver} if options.solver else {}),
     )
     for note in state.notes:
         say(note)
