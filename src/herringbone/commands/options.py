@@ -119,6 +119,14 @@ def add_sensitivities(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_solver(sub: argparse.ArgumentParser) -> None:
+    """Declare what is to find a steady state."""
+    sub.add_argument(
+        "--solver", choices=("auto", "shooting"),
+        help="auto: harmonic balance, and what else finds a motion where that does not; shooting",
+    )  # fmt: skip
+
+
 def spread_of(options: argparse.Namespace) -> float:
     """By what share parameters may err; raises ParameterError."""
     factor = options.known_within

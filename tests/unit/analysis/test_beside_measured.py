@@ -31,6 +31,12 @@ def vibration(time, speed=1.0, seed=0):
     return np.cos(2.0 * np.pi * np.outer(time, frequencies) + phases) @ (sizes * resonance)
 
 
+def drawn():
+    """A seed, from the last commit."""
+    head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, check=False).stdout
+    return int(hashlib.sha256(head).hexdigest()[:8], 16)
+
+
 @pytest.fixture(scope="module")
 def predicted():
     return Predicted(vibration(np.arange(0.0, LENGTH, STEP)), STEP, _SENSOR, MESH, MESHES)
@@ -78,8 +84,7 @@ def test_another_speed_is_named_and_hides_the_rest(predicted, speed):
 
 def test_faults_that_were_not_chosen_are_named(predicted):
     """Drawn from the last commit: shift, gain and speed."""
-    head = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, check=False).stdout
-    random = np.random.default_rng(int(hashlib.sha256(head).hexdigest()[:8], 16))
+    random = np.random.default_rng(drawn())
     for _ in range(4):
         shift, gain = random.uniform(0.002, 0.178), random.uniform(1.3, 4.0)
         found = beside(record(shift=shift, gain=gain), predicted)
@@ -87,6 +92,22 @@ def test_faults_that_were_not_chosen_are_named(predicted):
         assert found.gain == pytest.approx(gain, rel=0.03), (shift, gain)
         speed = random.choice([-1.0, 1.0]) * random.uniform(0.01, 0.4) + 1.0
         assert beside(record(speed=speed), predicted).speed == pytest.approx(speed, rel=1e-3), speed
+
+
+@pytest.mark.parametrize("speed", [0.7298, 77.0 / 78.0, 78.0 / 77.0])
+def test_side_bands_are_not_taken_for_their_neighbours(predicted, speed):
+    """At one in 77 beside these speeds most lines lie on other ones, and some are larger there."""
+    assert beside(record(speed=speed), predicted).speed == pytest.approx(speed, rel=1e-3)
+
+
+def test_speeds_of_other_vibrations_under_noise_are_told(predicted):
+    """Drawn from the last commit."""
+    random = np.random.default_rng(drawn())
+    for _ in range(6):
+        speed, noise = random.uniform(0.6, 1.4), random.choice([0.05, 0.2, 0.5])
+        shift, seed = random.uniform(0.002, 0.178), int(random.integers(100))
+        found = beside(record(shift, 1.0, speed, seed, noise), predicted).speed
+        assert found == pytest.approx(speed, rel=1e-3), (speed, noise, shift, seed)
 
 
 def test_another_vibration_is_no_gain(predicted):

@@ -5,17 +5,26 @@ is the same on the samples, so that nothing is to be told apart but lines that f
 """
 
 import numpy as np
+import scipy.linalg
 
 from herringbone.analysis.figures.spectra import hann_weight
+from herringbone.core.one_thread import one_blas_thread
 
 _LARGE = 0.1
-"""Lines that tell the speed, over the largest one."""
+"""Lines whose places are asked at every speed, over the largest one."""
+_MOST = 300
+"""Lines, the largest ones, that are taken out of a record at speeds that may be the right one."""
 _SPAN = 2.0
 """The speed is looked for between the stated one over this and times this."""
-_AS_GOOD = 0.8
-"""Of the share of the best speed: so much at the stated one, and that is taken."""
+_AS_GOOD = 0.75
+"""Speeds that have so much of the best mean logarithm, above the usual one, may be the right one.
+"""
 _PARTS = 8
-"""Candidates per width of a line."""
+"""Candidates, and places of the spectrum, per width of a line."""
+_COARSE = 4
+"""How many of these are passed over at first."""
+_COINCIDE = 1e-3
+"""Added to a line's own product, so that lines that fold onto each other are one."""
 
 
 def line_amplitudes(samples: np.ndarray, rate: float, frequencies: np.ndarray) -> np.ndarray:
@@ -32,16 +41,19 @@ def line_amplitudes(samples: np.ndarray, rate: float, frequencies: np.ndarray) -
     return 2.0 * turning @ off
 
 
+@one_blas_thread()
 def told_speed(
     samples: np.ndarray, rate: float, frequencies: np.ndarray, amplitudes: np.ndarray
 ) -> float:
     """Speed that lines tell, over the one that is stated.
 
-    It is the speed at which the places of predicted lines, moved along, have lines; the stated one
-    if that is nearly as good, but for less than the width of a line. Logarithms of amplitudes are
-    added, as resonances at other places make other lines large. With teeth that deviate, mesh
-    harmonics are not the largest lines, so that all are asked. Far from the stated speed a
-    wrong one may do better by chance: 0.7298 was told as 0.7393, one of some fifty drawn ones.
+    Right may be speeds at which the places of predicted lines, moved along, have lines. Logarithms
+    of amplitudes are added, as resonances at other places make other lines large. With teeth that
+    deviate, mesh harmonics are not the largest lines, so that all are asked.
+
+    That alone takes side bands for their neighbours: moved by one in 77, each line beside a mesh
+    harmonic of 77 turns lies where the next one was. Of these speeds it is the one whose lines,
+    fitted to the record, leave the least of it (the likeliest one under even noise).
 
     Args:
         samples: (n,).
@@ -49,22 +61,55 @@ def told_speed(
         frequencies: (k,) of predicted lines at the stated speed, also above half the rate [Hz].
         amplitudes: (k,) theirs.
     """
-    frequencies = frequencies[amplitudes >= _LARGE * amplitudes.max()]
-    width = rate / samples.size / frequencies.max()
-    count = int(2.0 * np.log(_SPAN) / width * _PARTS)
+    spectrum = _Spectrum(samples, rate)
+    large = frequencies[amplitudes >= _LARGE * amplitudes.max()]
+    taken = frequencies[np.argsort(-amplitudes, kind="stable")[:_MOST]]
+    step = rate / samples.size / large.max() / _PARTS
+    count = int(2.0 * np.log(_SPAN) / step)
     ratios = np.exp(np.linspace(-np.log(_SPAN), np.log(_SPAN), count))
-    met = _met(samples, rate, np.outer(ratios, frequencies))
-    near = np.abs(ratios - 1.0) <= 2.0 * width
-    best, own = int(np.argmax(met)), int(np.flatnonzero(near)[np.argmax(met[near])])
+    met = spectrum.met(np.outer(ratios, large))
     usual = float(np.median(met))
-    as_good = met[own] - usual >= _AS_GOOD * (met[best] - usual)
-    return float(ratios[own] if as_good else ratios[best])
+    good = np.flatnonzero(met - usual >= _AS_GOOD * (met.max() - usual))
+    places = np.unique(np.clip(good[:, None] + np.arange(-_PARTS, _PARTS + 1), 0, count - 1))
+
+    def left(place: int) -> float:
+        return spectrum.left(float(ratios[place]) * taken)
+
+    best = int(min(places[::_COARSE], key=left))
+    near = range(max(0, best - _COARSE), min(count, best + _COARSE + 1))
+    return float(ratios[min(near, key=left)])
 
 
-def _met(samples: np.ndarray, rate: float, frequencies: np.ndarray) -> np.ndarray:
-    """Mean logarithm of amplitudes, over the median, at frequencies (candidates, k)."""
-    window, length = hann_weight(samples.size), _PARTS * samples.size
-    size = np.abs(np.fft.rfft((samples - window @ samples) * window, length))
-    rest = frequencies % rate
-    places = np.rint(np.minimum(rest, rate - rest) * length / rate).astype(int)
-    return np.log1p(size / np.median(size))[places].mean(axis=1)
+class _Spectrum:
+    """Spectrum of samples (n,), under a Hann window, with `_PARTS` places per width of a line."""
+
+    def __init__(self, samples: np.ndarray, rate: float) -> None:
+        window, self._rate, self._length = hann_weight(samples.size), rate, _PARTS * samples.size
+        off = samples - window @ samples
+        self._lines = np.fft.fft(off * window, self._length)
+        self._window = np.fft.fft(window, self._length)
+        self._energy = float(window @ off**2)
+        size = np.abs(self._lines)
+        self._logarithms = np.log1p(size / np.median(size))
+
+    def _places(self, frequencies: np.ndarray) -> np.ndarray:
+        return np.rint(frequencies * (self._length / self._rate)).astype(int) % self._length
+
+    def met(self, frequencies: np.ndarray) -> np.ndarray:
+        """Mean logarithm of amplitudes, over the median, at frequencies (candidates, k)."""
+        return self._logarithms[self._places(frequencies)].mean(axis=1)
+
+    def left(self, frequencies: np.ndarray) -> float:
+        """Share of the energy that lines at frequencies (k,) leave, by least squares."""
+        own = self._places(frequencies)
+        apart, together = (
+            self._window[(own[:, None] + sign * own) % self._length] for sign in (-1, 1)
+        )
+        crossed = 0.5 * (apart - together).imag  # cosines by sines
+        matrix = np.block(
+            [[0.5 * (apart + together).real, crossed], [crossed.T, 0.5 * (apart - together).real]]
+        )
+        matrix[np.diag_indices_from(matrix)] += _COINCIDE * self._window[0].real
+        by = np.concatenate([self._lines[own].real, -self._lines[own].imag])
+        found = scipy.linalg.solve(matrix, by, assume_a="pos", overwrite_a=True)
+        return 1.0 - float(by @ found) / self._energy

@@ -1,20 +1,25 @@
 """What a search for a periodic motion has found, and the search by marching."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.steady.guess import PLACES, several
-from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
+from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy, changed
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.repeated import Repeated, repeated
+from herringbone.analysis.steady.marching.repeated import INSIDE, Repeated, repeated
+from herringbone.analysis.steady.marching.shooting import Shooting, Shot
 from herringbone.analysis.steady.resolution import first
 from herringbone.analysis.steady.structure import Structure
 
 _STEPS, _NEUTRAL = 256, 1e-3
 """Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
+_FALLS, _HALVED = 0.95, 4
+"""By what an error falls at least with four times the harmonics; how often steps are halved."""
 _SETTLED = 0.1
 """Change from one period of a march to the next that counts as none, over the tolerance."""
 
@@ -32,12 +37,17 @@ class Settled(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A motion, what is given of it, and its errors; how it has settled if by marching."""
+    """A motion, what is given of it, and its errors; what tells of the march or shot it is of."""
 
     motion: Motion
     orbit: Orbit
     errors: Accuracy
-    settled: Settled | None = None
+    by: Settled | Shot | None = None
+
+    @property
+    def shot(self) -> Shot | None:
+        """The shot that it is of."""
+        return self.by if isinstance(self.by, Shot) else None
 
     def good(self, tolerance: float) -> bool:
         """True if it is a motion, with all harmonics that a tolerance needs."""
@@ -45,6 +55,8 @@ class Found(NamedTuple):
 
     def grows(self, structure: Structure, times: int) -> bool:
         """True if small deviations grow; of many meshes that is not asked for."""
+        if self.shot:
+            return self.shot.multipliers.largest > 1.0 + _NEUTRAL
         if structure.meshes > 1:
             return False
         steps = max(_STEPS, self.orbit.places // (2 * times)) * times
@@ -72,14 +84,116 @@ def by_marching(
     march = repeated(structure, motion, still, resolution.per_mesh, _SETTLED * tolerance)
     if march is None or march.change > _SETTLED * tolerance:
         return None, march
-    motion = several(motion, march.times)
+    now, motion = march, several(motion, march.times)
+
+    def values(per_mesh: int) -> np.ndarray:
+        nonlocal now
+        if per_mesh > PLACES:
+            now = now.finer(per_mesh // PLACES)
+        return now.march.harmonics(now.times)
+
+    def stepped(halved: int) -> Found:
+        nonlocal now
+        if halved:
+            now.way.halve()
+            now = now.finer(1)
+        found = _in_harmonics(structure, motion, now.times, tolerance, values)
+        return found._replace(by=Settled(now.way.time, now.change))
+
+    return _with_steps(structure, stepped, tolerance), now
+
+
+def by_shooting(
+    structure: Structure,
+    motion: Motion,
+    times: int,
+    begin: tuple[np.ndarray, float],
+    tolerance: float,
+) -> Found | None:
+    """The motion that shooting comes to; None if it comes to none.
+
+    Args:
+        structure: the system; something holds its speed.
+        motion: what is given of one period.
+        times: periods after which it is to repeat.
+        begin: coordinates, see `period_map.Ended`, and a period [s], to begin from.
+        tolerance: error of the alternating part of each group of channels.
+    """
+    motion, meshes = several(motion, times), times * structure.meshes
+    x, period, rounds = begin[0], times * begin[1], 0
+
+    def stepped(halved: int) -> Found | None:
+        nonlocal x, period, rounds
+        shooting = Shooting(structure, motion, meshes, tolerance, 0.5**halved)
+        shot = shooting.shot(x, period, _SETTLED * tolerance)
+        if shot is None:
+            return None
+        x, period, rounds = shot.begin, shot.period, rounds + shot.rounds
+        shot = shot._replace(rounds=rounds)
+        values = partial(_values_of, shooting, shot, meshes)
+        return _in_harmonics(structure, motion, times, tolerance, values)._replace(by=shot)
+
+    return _with_steps(structure, stepped, tolerance)
+
+
+def _with_steps(
+    structure: Structure, found_with: Callable[[int], Found | None], tolerance: float
+) -> Found | None:
+    """A motion whose steps are halved until that changes it by no more than the tolerance leaves.
+
+    Laws that bend within a step make errors that harmonics do not tell: a march repeats with them.
+
+    Args:
+        structure: the system.
+        found_with: the motion with steps halved so many times, from the one before.
+        tolerance: error of the alternating part of each group of channels.
+    """
+    before = found_with(0)
+    if before is None:
+        return None
+    for halved in range(1, _HALVED + 1):
+        found = found_with(halved)
+        if found is None:
+            return None
+        changes = changed(structure, before.orbit, found.orbit)
+        errors = found.errors
+        left_out = {group: error + changes[group] for group, error in errors.left_out.items()}
+        before = found._replace(errors=errors._replace(left_out=left_out))
+        if before.good(tolerance):
+            break
+    return before
+
+
+def _values_of(shooting: Shooting, shot: Shot, meshes: int, per_mesh: int) -> np.ndarray:
+    """Coefficients of the laws' values over a period, by more places than were asked for."""
+    return shooting.march(shot, INSIDE * per_mesh * meshes).harmonics(1)
+
+
+def _in_harmonics(
+    structure: Structure,
+    motion: Motion,
+    times: int,
+    tolerance: float,
+    values_of: Callable[[int], np.ndarray],
+) -> Found:
+    """A motion that is known in time, with as many harmonics as the tolerance needs.
+
+    Args:
+        structure: the system.
+        motion: what is given of the whole of it.
+        times: periods after which it repeats.
+        tolerance: error of the alternating part of each group of channels.
+        values_of: coefficients of the laws' values, at so many places of a mesh period or more.
+    """
+    resolution, before = first(PLACES, tolerance), (np.inf, np.inf)
     while True:
-        period = resolution.all_places(structure, march.times)
-        values = march.march.harmonics(march.times)[:, : period.places // 2]
+        period = resolution.all_places(structure, times)
+        values = values_of(resolution.per_mesh)[:, : period.places // 2]
         known = np.arange(values.shape[1])
         orbit = Balance(structure.problem, period, motion).along(values, known)
         errors = accuracy(structure, period, motion, orbit)
-        if errors.worst <= tolerance or resolution.finest(period):
-            return Found(motion, orbit, errors, Settled(march.way.time, march.change)), march
+        stalls = errors.worst > _FALLS * before[0]  # then it is the march's own error
+        if errors.worst <= tolerance or resolution.finest(period) or stalls:
+            return Found(motion, orbit, errors)
         resolution = resolution.finer(errors, tolerance)
-        march = march.finer(resolution.per_mesh // PLACES)
+        before = before[1], errors.worst

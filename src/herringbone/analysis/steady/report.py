@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
-from herringbone.analysis.steady.sensitivity import Sensitivity
-from herringbone.analysis.steady.settled import SettledState
+from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.files import replacing
 from herringbone.result.tables import pieces_of, write_csv
@@ -38,7 +38,9 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
         own: dict = {"duration": state.run.outcome.time, "change": dict(state.changes)}
     else:
         own = {
+            "solver": state.solver,
             "marched": state.settled._asdict() if state.settled else None,
+            "missed": state.shot.missed if state.shot else None,
             "left_out": dict(state.errors.left_out),
             "change": dict(state.errors.change),
             "iterations": state.orbit.iterations,
@@ -56,7 +58,7 @@ def _known(value: float) -> float | None:
 
 def _are_cheap(state: SteadyState) -> bool:
     """True if multipliers are known, and take no second."""
-    return state.converged and state.meshes <= _FEW
+    return state.converged and (state.meshes <= _FEW or state.shot is not None)
 
 
 def steady_text(state: SteadyState | SettledState) -> list[str]:
@@ -88,7 +90,11 @@ def _of_run(state: SettledState) -> list[str]:
 
 def _of_balance(state: SteadyState) -> list[str]:
     """Head of what harmonic balance has found."""
-    found = "periodic" if state.converged else "NOT CONVERGED: no figure below can be trusted"
+    found = (
+        f"periodic, by {state.solver}"
+        if state.converged
+        else "NOT CONVERGED: no figure below can be trusted"
+    )
     lines = [
         f"Steady state of {state.system_name}: {found}",
         f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
@@ -102,6 +108,11 @@ def _of_balance(state: SteadyState) -> list[str]:
         lines.append(
             f"  by marching: {state.settled.time:.3g} s from equilibrium; the last period differs "
             f"from the one before by {state.settled.change:.2g}"
+        )
+    if state.shot:
+        lines.append(
+            f"  by shooting: a period misses its start by {state.shot.missed:.2g} of the "
+            f"alternating part; {state.shot.rounds} rounds of Newton"
         )
     if state.bends:
         lines.append(f"  laws bend within the period: {', '.join(state.bends)}")

@@ -1,35 +1,15 @@
 """Steady states of one system at many operating points."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from copy import copy
-from functools import cache, partial
 
 import numpy as np
 
-from herringbone.analysis.steady.bending import bending_parts
-from herringbone.analysis.steady.found import Found, by_marching, none_found
-from herringbone.analysis.steady.guess import (
-    LONG,
-    PLACES,
-    SETTLING,
-    Guess,
-    Neighbour,
-    begun,
-    begun_shortly,
-    motion_at,
-    settling,
-    several,
-    standing,
-    turns,
-)
-from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy
-from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marched import March
-from herringbone.analysis.steady.repeated import Repeated
-from herringbone.analysis.steady.resolution import first
+from herringbone.analysis.steady.guess import Guess, Neighbour, motion_at
+from herringbone.analysis.steady.remarks import NO_LOAD, check_shooting
+from herringbone.analysis.steady.search import Search
 from herringbone.analysis.steady.set_points import Point
-from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.steady.state import SHOOTING, SteadyState
 from herringbone.analysis.steady.structure import Structure
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean
 from herringbone.core import ParameterError
@@ -37,22 +17,10 @@ from herringbone.core.one_thread import one_blas_thread
 from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-3
+AUTO = "auto"
+SOLVERS = (AUTO, SHOOTING)
+"""What may be asked to solve: the cheapest way that finds a motion, or shooting alone."""
 AS_IT_IS = Point()
-_TRIED, _REPEATS = 2, 0.1
-"""Of a march: how many periods of repetition are tried; a change over the alternation that is none.
-"""
-
-
-_NO_ROTATION = (
-    "no steady rotation: what drives and what loads balance at no speed; look for a load "
-    "beyond what the drive gives"
-)
-
-
-_NOTHING = 1e-6
-"""Force or torque [N, N m] that is rounding: teeth that it holds together stand at the edge of
-contact, and whether an iteration stays there depends on the processor."""
-_NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
 
 
 class SteadySolver:
@@ -67,16 +35,26 @@ class SteadySolver:
             components of this package.
         tolerance: error of the alternating part of each group of channels.
         lean: what the model leaves out.
+        solver: one of `SOLVERS`.
 
     Raises:
-        ParameterError: the tolerance is none.
+        ParameterError: the tolerance is none, or the solver is unknown.
         StructureError: the system cannot be taken apart, or its motion does not repeat.
     """
 
-    def __init__(self, system: System, tolerance: float = TOLERANCE, *, lean: Lean = WHOLE) -> None:
+    def __init__(
+        self,
+        system: System,
+        tolerance: float = TOLERANCE,
+        *,
+        lean: Lean = WHOLE,
+        solver: str = AUTO,
+    ) -> None:
         if not 0.0 < tolerance < 1.0:
             raise ParameterError(f"tolerance = {tolerance:g}: it must lie between 0 and 1")
-        self._system, self.tolerance = system, tolerance
+        if solver not in SOLVERS:
+            raise ParameterError(f"solver = {solver}: there are {', '.join(SOLVERS)}")
+        self._system, self.tolerance, self._solver = system, tolerance, solver
         self._structure = Structure(system, lean=lean)
         self._values: Mapping[str, float | str] = {}
 
@@ -106,21 +84,27 @@ class SteadySolver:
             A state; ask it whether it is `converged`.
 
         Raises:
-            ParameterError: the system declares no such set point, or the point has no motion that
-                could repeat.
+            ParameterError: the system declares no such set point, the point has no motion that
+                could repeat, or shooting was asked for where it cannot be done.
         """
         point.check()
         near = near.neighbour if isinstance(near, SteadyState) else near
         with one_blas_thread(), np.errstate(all="ignore"):
             structure = self._at(point)
             given = motion_at(structure, point)
-            found, notes = self._found(structure, given, near, point)
-        if point.torque == 0.0 and not (found.orbit.converged and _carries(found.orbit)):
-            found, notes = none_found(found.motion, found.orbit), (*notes, _NO_LOAD)
-        motion, orbit, errors, settled = found
+            search = Search(structure, given, self.tolerance, _guesses(structure, near, point))
+            if self._solver == SHOOTING:
+                check_shooting(structure)
+                found, notes = search.shot()
+            else:
+                found, notes = search.found()
+        motion, orbit, errors, by = found
+        if point.torque == 0.0 and not (orbit.converged and errors.left_out):
+            orbit = orbit._replace(converged=False)  # rest with open teeth may be at any gap
+            notes = (*notes, NO_LOAD)
         before = near._replace(before=None) if near else None
         return SteadyState(
-            structure, point, motion, orbit, errors, self.tolerance, notes, settled, before
+            structure, point, motion, orbit, errors, self.tolerance, notes, by, before
         )
 
     def _at(self, point: Point) -> Structure:
@@ -131,129 +115,14 @@ class SteadySolver:
             self._values = values
         return self._structure
 
-    def _found(
-        self, structure: Structure, motion: Motion, near: Neighbour | None, point: Point
-    ) -> tuple[Found, tuple[str, ...]]:
-        """The motion from a neighbour or the equilibrium; else from a march; and remarks."""
-        unstable, found = None, None
-        at_rest = cache(partial(standing, structure, motion))  # a neighbour often needs none
-        for times, guess in self._guesses(structure, motion, at_rest, near, point):
-            tried = self._resolved(structure, several(motion, times), times, guess)
-            if tried is None:
-                break
-            found = tried
-            if found.good(self.tolerance):
-                if not (bending_parts(structure, found.orbit) and found.grows(structure, times)):
-                    return found, _told(times)
-                unstable = unstable or found
-            elif structure.meshes >= LONG and _searched(found):
-                break  # that took long, and is no better from elsewhere
-        still = at_rest()
-        found = found or none_found(motion, still)
-        if not turns(still):
-            return found, (_NO_ROTATION,)
-        march = settling(structure, motion, still, PLACES)
-        if march is not None:
-            for times in march.likely(_REPEATS)[:_TRIED]:
-                values = march.harmonics(times)
-                guess = Guess(values, np.arange(values.shape[1]), PLACES)
-                tried = self._resolved(structure, several(motion, times), times, guess)
-                if tried and tried.good(self.tolerance) and not tried.grows(structure, times):
-                    return tried, _told(times)
-        if structure.meshes > 1 and structure.problem.free is None:
-            return self._marched(structure, motion, still, found)
-        return unstable or found, (*_grows(unstable), _unsettled(structure, march))
 
-    def _marched(
-        self, structure: Structure, motion: Motion, still: Orbit, found: Found
-    ) -> tuple[Found, tuple[str, ...]]:
-        """The motion that a march repeats, or what was found before; and remarks."""
-        repeating, march = by_marching(structure, motion, still, self.tolerance)
-        if repeating is not None and march is not None:
-            return repeating, _told(march.times)
-        return found, (_not_repeating(march),)
+def _guesses(structure: Structure, near: Neighbour | None, point: Point) -> list[tuple[int, Guess]]:
+    """Periods of a neighbour, and what leads on from it: a line to the point, and its own motion.
 
-    @staticmethod
-    def _guesses(
-        structure: Structure,
-        motion: Motion,
-        at_rest: Callable[[], Orbit],
-        near: Neighbour | None,
-        point: Point,
-    ) -> Iterator[tuple[int, Guess]]:
-        """Periods, and where an iteration begins: at a neighbour, then at equilibrium."""
-        if near is not None and near.meshes % structure.meshes == 0:
-            times, ahead = near.meshes // structure.meshes, near.towards(point)
-            yield times, ahead
-            if ahead is not near.guess:
-                yield times, near.guess
-        if shortly := begun_shortly(structure, motion, at_rest(), PLACES):
-            yield 1, shortly
-        yield 1, begun(structure, motion, at_rest(), PLACES)
-
-    def _resolved(
-        self, structure: Structure, motion: Motion, times: int, guess: Guess
-    ) -> Found | None:
-        """A motion over some periods with as many harmonics as the tolerance needs.
-
-        None if these are more than the lines of a long period.
-        """
-        problem, resolution = structure.problem, first(guess.per_mesh, self.tolerance)
-        start, known = guess.values, guess.orders
-        while True:
-            period = resolution.period(structure, times)
-            if period is None:
-                return None
-            orbit = Balance(problem, period, motion).solve(start, known, self.tolerance)
-            if not orbit.converged:
-                return Found(motion, orbit, Accuracy({}, {}, {}, {}))
-            errors = accuracy(structure, period, motion, orbit)
-            if errors.worst <= self.tolerance or resolution.finest(period):
-                return Found(motion, orbit, errors)
-            start, known = orbit.channels[: problem.values], orbit.response.orders
-            resolution = resolution.finer(errors, self.tolerance)
-
-
-def _carries(orbit: Orbit) -> bool:
-    """True if a law carries anything at any place."""
-    return bool(np.abs(orbit.samples.f).max() > _NOTHING)
-
-
-def _searched(found: Found) -> bool:
-    """True of places of a whole period, and of a motion that was looked at as finely as can be."""
-    return found.orbit.converged or not found.orbit.resolved.bases
-
-
-def _grows(unstable: Found | None) -> tuple[str, ...]:
-    """What is said of a motion that is not stable."""
-    return ("unstable: small deviations grow, a run would leave this motion",) if unstable else ()
-
-
-def _unsettled(structure: Structure, march: March | None) -> str:
-    """Why there is no march that could be followed to a motion."""
-    if structure.meshes >= LONG:
-        return (
-            f"its period of {structure.meshes} meshes is too long for a march in which nothing "
-            "holds the speed; join a drive and a load, or set run-outs and deviations to 0"
-        )
-    if march is None:
-        return "a march from equilibrium fails, too"
-    return (
-        f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
-        f"changes by {100.0 * march.least:.2g} % from one period to later ones"
-    )
-
-
-def _not_repeating(march: Repeated | None) -> str:
-    """Why there is no march that repeats, of a period of many meshes."""
-    if march is None:
-        return "a march from equilibrium fails, too"
-    return (
-        f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
-        f"still changes by {100.0 * march.change:.2g} % from one period to later ones; teeth that "
-        "rattle may never repeat: ask for a larger torque, or run it"
-    )
-
-
-def _told(times: int) -> tuple[str, ...]:
-    return (f"subharmonic: it repeats after {times} periods",) if times > 1 else ()
+    None where its period is no whole number of those of the structure.
+    """
+    if near is None or near.meshes % structure.meshes:
+        return []
+    times, ahead = near.meshes // structure.meshes, near.towards(point)
+    every = [ahead] if ahead is near.guess else [ahead, near.guess]
+    return [(times, guess) for guess in every]

@@ -12,12 +12,15 @@ from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.marching.shooting import Shot
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core.one_thread import one_blas_thread
 
+BALANCE, SHOOTING, MARCH = "harmonic balance", "shooting", "march"
+"""What may have found a state."""
 _STEPS, _BENT_STEPS = 32, 256
 """Of a mesh period, at least, in which deviations are followed; where laws bend."""
 
@@ -34,7 +37,7 @@ class SteadyState(PeriodicMotion):
         errors: of harmonics left out, and of the last correction.
         tolerance: that was asked for.
         notes: lines that the user should read.
-        settled: how the march has settled by which it was found; None: by harmonic balance.
+        by: the march or the shot by which it was found; None: by harmonic balance.
         before: the neighbour from which it was found.
     """
 
@@ -45,7 +48,7 @@ class SteadyState(PeriodicMotion):
     errors: Accuracy
     tolerance: float
     notes: tuple[str, ...] = ()
-    settled: Settled | None = None
+    by: Settled | Shot | None = None
     before: Neighbour | None = None
 
     def noted(self, notes: Sequence[str]) -> "SteadyState":
@@ -71,6 +74,23 @@ class SteadyState(PeriodicMotion):
     def error(self) -> float:
         """What harmonics that are left out would add, of the worst group of channels."""
         return self.errors.worst
+
+    @property
+    def solver(self) -> str:
+        """What has found it: `BALANCE`, `SHOOTING` or `MARCH`."""
+        if self.by is None:
+            return BALANCE
+        return SHOOTING if isinstance(self.by, Shot) else MARCH
+
+    @property
+    def settled(self) -> Settled | None:
+        """How the march has settled by which it was found; None: by no march."""
+        return self.by if isinstance(self.by, Settled) else None
+
+    @property
+    def shot(self) -> Shot | None:
+        """The shot by which it was found; None: by none."""
+        return self.by if isinstance(self.by, Shot) else None
 
     @property
     def neighbour(self) -> Neighbour:
@@ -127,6 +147,8 @@ class SteadyState(PeriodicMotion):
 
         Takes some ten milliseconds for each mesh of the period.
         """
+        if self.shot:
+            return self.shot.multipliers
         per_mesh = _BENT_STEPS if self.bends and self.structure.meshes == 1 else _STEPS
         steps = max(per_mesh, self.orbit.resolved.per_mesh // 2) * self.meshes
         with one_blas_thread():

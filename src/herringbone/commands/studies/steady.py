@@ -12,6 +12,7 @@ from herringbone.commands.options import (
     add_replacements,
     add_scene,
     add_sensitivities,
+    add_solver,
     add_start_values,
     given_by,
     operating_point,
@@ -22,8 +23,8 @@ from herringbone.commands.output import check_writable, say, show
 from herringbone.core import ParameterError
 
 if TYPE_CHECKING:
-    from herringbone.analysis.steady.sensitivity import Sensitivity
-    from herringbone.analysis.steady.settled import SettledState
+    from herringbone.analysis.steady.of_runs.settled import SettledState
+    from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
     from herringbone.analysis.steady.state import SteadyState
 
 
@@ -40,6 +41,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="with foreign parts, which are run until they settle: duration at most, 10 s",
     )  # fmt: skip
     add_sensitivities(sub)
+    add_solver(sub)
     sub.add_argument(
         "-o", "--output", type=Path,
         help="folder for orders.csv, steady.json, steady.png, and tornado.GROUP.png",
@@ -66,6 +68,7 @@ def run(options: argparse.Namespace) -> int:
         replace_parts=replacements(options),
         tolerance=options.tolerance,
         longest=options.longest,
+        **({"solver": options.solver} if options.solver else {}),
     )
     for note in state.notes:
         say(note)
@@ -117,9 +120,9 @@ def _sensitivities(
     state: "SteadyState | SettledState", options: argparse.Namespace
 ) -> dict[str, dict[str, "Sensitivity"]]:
     """By group and parameter; none, with a line, where there are none."""
-    from herringbone.analysis.steady.assumed import Changes, assumed  # noqa: PLC0415 (numba)
-    from herringbone.analysis.steady.sensitivity import sensitivities  # noqa: PLC0415
-    from herringbone.analysis.steady.settled import UNTOLD, SettledState  # noqa: PLC0415
+    from herringbone.analysis.steady.of_runs.settled import UNTOLD, SettledState  # noqa: PLC0415
+    from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed  # noqa: PLC0415 (numba)
+    from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities  # noqa: PLC0415
 
     if options.sensitivities is None or not state.found:
         return {}

@@ -12,6 +12,7 @@ from herringbone.commands.options import (
     add_replacements,
     add_scene,
     add_sensitivities,
+    add_solver,
     add_start_values,
     assignments,
     files_of_parts,
@@ -62,6 +63,7 @@ def add_options(sub: argparse.ArgumentParser) -> None:
         help="output or pattern with levels of its own, besides the groups; may be repeated",
     )  # fmt: skip
     add_sensitivities(sub)
+    add_solver(sub)
     sub.add_argument("--workers", type=int, help="processes; as many as are worth it if not given")
     sub.add_argument("--series", action="store_true", help="keep rows over time of each point")
     sub.add_argument("--parquet", action="store_true", help="also write table.parquet")
@@ -168,25 +170,28 @@ def _evaluator(options: argparse.Namespace, wishes: "Wishes") -> "Evaluator | No
     of_runs = {n: v for n in ("step", "algorithm") if (v := getattr(options, n)) is not None}
     tolerance = {} if options.tolerance is None else {"tolerance": options.tolerance}
     asked = options.sensitivities
+    by = {} if options.solver is None else {"solver": options.solver}
     if options.transient:
-        _refuse_sensitivities(asked)
+        _refuse_of_states(options)
         return Transient(columns=columns, **of_runs, **tolerance)
-    if not (of_runs or columns or tolerance or asked is not None):
+    if not (of_runs or columns or tolerance or by or asked is not None):
         return None
     if is_foreign(options.system, options.scene, wishes):
-        _refuse_sensitivities(asked)
+        _refuse_of_states(options)
         if options.t_end is not None:
             return Transient(columns=columns, **of_runs, **tolerance)
         return Settled(columns=columns, **of_runs, **tolerance)
     if of_runs:
         raise ParameterError(f"--{next(iter(of_runs))}: of runs; add --transient")
     sensitivities = None if asked is None else tuple(asked)
-    return Steady(columns=columns, sensitivities=sensitivities, **tolerance)
+    return Steady(columns=columns, sensitivities=sensitivities, **tolerance, **by)
 
 
-def _refuse_sensitivities(asked: list[str] | None) -> None:
-    if asked is not None:
-        raise ParameterError("--sensitivities: of steady states whose equations are all known")
+def _refuse_of_states(options: argparse.Namespace) -> None:
+    """Refuse what is of steady states alone; raises ParameterError."""
+    for name in ("sensitivities", "solver"):
+        if getattr(options, name) is not None:
+            raise ParameterError(f"--{name}: of steady states whose equations are all known")
 
 
 def _summary(found: "Sweep", files: list[str], *, as_json: bool) -> str:

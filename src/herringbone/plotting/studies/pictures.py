@@ -17,7 +17,7 @@ from herringbone.analysis.figures.sensitivity import (
 )
 from herringbone.analysis.set_points import SPEED, TORQUE
 from herringbone.analysis.steady.periodic import PeriodicMotion
-from herringbone.analysis.steady.sensitivity import Sensitivity
+from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.plotting.studies.levels import Band, levels
 from herringbone.plotting.studies.maps import is_map, level_map

@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.set_points import Point
-from herringbone.analysis.steady.settled import SettledState
-from herringbone.analysis.steady.solver import AS_IT_IS, TOLERANCE, SteadySolver
+from herringbone.analysis.steady.solver import AS_IT_IS, AUTO, TOLERANCE, SteadySolver
 from herringbone.analysis.steady.state import SteadyState
+from herringbone.core import ParameterError
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import check_tolerance
 from herringbone.running.loading import load_scene, load_system
@@ -33,6 +34,7 @@ def steady(
     tolerance: float = TOLERANCE,
     near: SteadyState | None = None,
     longest: float = LONGEST,
+    solver: str = AUTO,
 ) -> SteadyState | SettledState:
     """The steady state of a system at an operating point: by harmonic balance.
 
@@ -53,6 +55,7 @@ def steady(
             included; small channels beside large ones may err more; of a run see above.
         near: a state nearby, to begin from; it decides on the branch where there are several.
         longest: duration of a run that is tried at most [s].
+        solver: "auto", the cheapest way that finds a motion, or "shooting"; see `docs/steady.md`.
 
     Returns:
         A state; ask it whether it is `converged`.
@@ -65,12 +68,14 @@ def steady(
     )
     point = Point(speed, torque)
     if is_foreign(system, scene, wishes):
+        if solver != AUTO:
+            raise ParameterError(f"solver = {solver}: foreign parts show no equations; drop it")
         point.check()
         check_tolerance(tolerance)
         return settled(system, scene, point, wishes, tolerance, longest)
     found = prepared_at(point, system, scene, wishes)
-    solver, notes = _solver_of(found, point, wishes, tolerance)
-    state = solver.solve(point, near)
+    prepared, notes = _solver_of(found, point, wishes, tolerance, solver)
+    state = prepared.solve(point, near)
     if state.converged:
         notes = (*notes, *said_by_hand(system, scene, wishes, point, state).notes)
     return state.noted(notes)
@@ -91,15 +96,17 @@ def prepared_solver(
     point: Point = AS_IT_IS,
     wishes: Wishes = NOTHING,
     tolerance: float = TOLERANCE,
+    solver: str = AUTO,
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """What solves for steady states near an operating point, and notes; see `steady`."""
-    return _solver_of(prepared_at(point, system, scene, wishes), point, wishes, tolerance)
+    found = prepared_at(point, system, scene, wishes)
+    return _solver_of(found, point, wishes, tolerance, solver)
 
 
 def _solver_of(
-    found: Prepared, point: Point, wishes: Wishes, tolerance: float
+    found: Prepared, point: Point, wishes: Wishes, tolerance: float, solver: str
 ) -> tuple[SteadySolver, tuple[str, ...]]:
     """With the model that the scene leaves, and what is to be said of it."""
-    solver = SteadySolver(found.system, tolerance, lean=lean_of(found.scene))
+    prepared = SteadySolver(found.system, tolerance, lean=lean_of(found.scene), solver=solver)
     said = lean_notes(found.scene.model, wishes.values, point.speed, point.torque)
-    return solver, (*found.notes, *said)
+    return prepared, (*found.notes, *said)

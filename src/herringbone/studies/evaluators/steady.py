@@ -9,13 +9,13 @@ import numpy as np
 
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
-from herringbone.analysis.steady.assumed import Changes, assumed
 from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.periodic import PeriodicMotion
-from herringbone.analysis.steady.sensitivity import sensitivities
+from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
+from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint
-from herringbone.analysis.steady.solver import TOLERANCE, SteadySolver
-from herringbone.analysis.steady.state import SteadyState
+from herringbone.analysis.steady.solver import AUTO, TOLERANCE, SteadySolver
+from herringbone.analysis.steady.state import BALANCE, SteadyState
 from herringbone.core import ParameterError
 from herringbone.running.loading import load_scene, load_system
 from herringbone.running.operating.commanded import commanded, with_known_values
@@ -34,18 +34,20 @@ STEADY, UNSETTLED = "steady", "not_converged"
 
 @dataclass(frozen=True)
 class Steady:
-    """Steady states by harmonic balance.
+    """Steady states where all equations are known.
 
     Attributes:
         tolerance: error of the alternating part of each group of channels.
         columns: further columns or patterns with figures of their own.
         sensitivities: of the levels of all groups, to parameters that match these patterns; to all
             dampings if there is none. None: they are not asked for.
+        solver: see `herringbone.steady`.
     """
 
     tolerance: float = TOLERANCE
     columns: tuple[str, ...] = ()
     sensitivities: tuple[str, ...] | None = None
+    solver: str = AUTO
     longest: int | None = None
     modules: tuple[str, ...] = ("herringbone.studies.evaluators.steady",)
     has_series: bool = False
@@ -97,6 +99,7 @@ class _States:
             return Evaluated(UNSETTLED, message, figures_of(found, self._asked.columns))
         bends = found.bends
         told = [f"laws bend within the period: {', '.join(bends)}"] if bends else []
+        told += [f"found by {found.solver}"] if found.solver != BALANCE else []
         figures = figures_of(found, self._asked.columns)
         if self._asked.sensitivities is not None:
             try:
@@ -150,7 +153,10 @@ class _States:
     def _prepared(self, at: dict[str, float], values: Point) -> SteadySolver:
         wishes = replace(self._wishes, values={**self._wishes.values, **values})
         where = SteadyPoint(at.get(SPEED), at.get(TORQUE))
-        return prepared_solver(self._system, self._scene, where, wishes, self._asked.tolerance)[0]
+        asked = self._asked
+        return prepared_solver(
+            self._system, self._scene, where, wishes, asked.tolerance, asked.solver
+        )[0]
 
 
 def figures_of(state: PeriodicMotion, columns: Sequence[str]) -> dict[str, Figure]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.fourier import among, squares
+from herringbone.analysis.steady.harmonic_balance.fourier import among, on, squares
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import in_parts
 from herringbone.analysis.steady.harmonic_balance.response import Rows
@@ -84,6 +84,19 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
             besides[group] = math.sqrt(lines[own].sum()) / alternating + outside
             change[group] = math.sqrt(last[own].sum()) / alternating
     return Accuracy(left_out, thinned, besides, change)
+
+
+def changed(structure: Structure, before: Orbit, after: Orbit) -> dict[str, float]:
+    """What a motion has changed by, over its alternating part, by group of channels."""
+    groups, rows = structure.groups
+    known, orders = before.response, after.response.orders
+    earlier = on(orders, known.outputs(rows, before.q, before.channels), known.orders)
+    values = after.response.outputs(rows, after.q, after.channels)
+    moved, whole = _alternating(values - earlier), _alternating(values)
+    return {
+        group: math.sqrt(moved[own].sum() / whole[own].sum()) if whole[own].any() else 0.0
+        for group, own in groups.items()
+    }
 
 
 def _alternating(coefficients: np.ndarray) -> np.ndarray:

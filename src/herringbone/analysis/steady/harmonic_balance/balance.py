@@ -169,7 +169,7 @@ class Balance:
         moved = np.zeros_like(now.channels)
         moved[:count] = step
         return Orbit(
-            now.channels, now.response, now.q, now.q - last.q, moved, now.angle, samples,
+            now.channels, now.response, now.q, now.q - last.q, moved, now.angle, samples.kept(),
             change, merit, iterations, change <= close or merit <= _ROUNDING,
             self.period,
         )  # fmt: skip
@@ -189,8 +189,8 @@ class Balance:
         moved = now.response.coordinates(step)
         residual = self._size(samples, step[:count], now.response.orders)
         return Orbit(
-            now.channels, now.response, now.q, moved, step, now.angle, samples, residual, residual,
-            1, converged=True, resolved=self.period,
+            now.channels, now.response, now.q, moved, step, now.angle, samples.kept(), residual,
+            residual, 1, converged=True, resolved=self.period,
         )  # fmt: skip
 
     def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
@@ -207,7 +207,7 @@ class Balance:
         nothing = np.zeros_like(channels)
         still = np.zeros_like(now.q)
         return Orbit(
-            channels, now.response, now.q, still, nothing, now.angle, samples, 0.0,
+            channels, now.response, now.q, still, nothing, now.angle, samples.kept(), 0.0,
             self._size(samples, off, self._every), 1, converged=False, resolved=self.period,
         ), off  # fmt: skip
 

@@ -75,6 +75,7 @@ class March(NamedTuple):
         turned: theta at the first of them, without its swing, less that at the start of a period
             [rad].
         speed, frequency: of the motion that it began from [rad/s].
+        end: (coordinates,) where it has come to, see `period_map.Ended`.
     """
 
     values: np.ndarray
@@ -82,6 +83,7 @@ class March(NamedTuple):
     turned: float
     speed: float
     frequency: float
+    end: np.ndarray
 
     def harmonics(self, periods: int) -> np.ndarray:
         """Coefficients (values, harmonics) over the last periods."""
@@ -125,6 +127,32 @@ class March(NamedTuple):
         return min(self.change(times) for times in range(1, _MOST_TIMES + 1))
 
 
+def marching(
+    structure: Structure, motion: Motion, close: float, *, lean: bool, ramp: float = 0.0
+) -> Solution:
+    """A march of the condensed core under what is given of a motion.
+
+    Args:
+        structure: the system.
+        motion: what is given.
+        close, lean: see `Solution`.
+        ramp: turns of the first pinion over which deviations come in.
+    """
+    known, constant = structure.core.condensed, motion.given[:-1, 0].real.copy()
+    held = Held(known.twin, known.equations, known.modes, constant, ramp)
+    return Solution(held, _DEGREE, close, lean=lean)
+
+
+def laws_values(run: Solution, part: Samples) -> np.ndarray:
+    """Channels (channels, times) of a march, the laws' values less mean tangents first.
+
+    Along the polynomials of its steps.
+    """
+    nodes = part.held[:, run.state.q.size :].reshape(part.times.size, -1, _DEGREE + 1)
+    shares = (part.since / part.length)[:, None] ** np.arange(_DEGREE + 1)
+    return np.einsum("tvn,tn->vt", nodes, shares @ coefficients(_DEGREE))
+
+
 class Following:
     """The condensed core on its way from a motion on, place by place of the period.
 
@@ -140,11 +168,7 @@ class Following:
         self, structure: Structure, motion: Motion, begin: Orbit, places: int, ramp: float = 0.0
     ) -> None:
         self._condensed, self._values = structure.core.condensed, structure.problem.values
-        constant = motion.given[:-1, 0].real.copy()
-        held = Held(
-            self._condensed.twin, self._condensed.equations, self._condensed.modes, constant, ramp
-        )
-        self._run = Solution(held, _DEGREE, _CLOSE, lean=True)
+        self._run = marching(structure, motion, _CLOSE, lean=True, ramp=ramp)
         own = start_of(begin)
         self._run.state.q[: own.size] = own
         self._begin, self._late, self._gone = begin, structure.late, 0
@@ -155,6 +179,10 @@ class Following:
     def time(self) -> float:
         """How long it has gone on [s]."""
         return self._gone * self._gap
+
+    def halve(self) -> None:
+        """Go on with steps of half the length."""
+        self._step *= 0.5
 
     def on(self, places: int, kept: int, inside: int = 1) -> March:
         """Go on for some places, and keep the last ones.
@@ -172,27 +200,29 @@ class Following:
         begin, end_time = (self._late + n * self._gap for n in (first, end))
         series, angles = [np.zeros((self._values, 0))], [np.zeros(0)]
         for part in self._run.piece(begin, end_time, self._step, times):
-            series.append(self._along(part))
+            series.append(laws_values(self._run, part)[: self._values])
             coarse = Samples(*(array[::inside] for array in part))
             angles.append(self._run.coordinates(coarse)[:, 2 * self._condensed.modes.rates.size :])
         self._gone = end
         return self._march(np.hstack(series), np.concatenate(angles[1:]), self.places * inside)
 
-    def _along(self, part: Samples) -> np.ndarray:
-        """Laws' values (values, times), less mean tangents, along the polynomials of steps."""
-        nodes = part.held[:, self._run.state.q.size :].reshape(part.times.size, -1, _DEGREE + 1)
-        shares = (part.since / part.length)[:, None] ** np.arange(_DEGREE + 1)
-        weights = shares @ coefficients(_DEGREE)
-        return np.einsum("tvn,tn->vt", nodes[:, : self._values], weights)
-
     def _march(self, series: np.ndarray, angles: np.ndarray, places: int) -> March:
         """What was kept; the first of it where theta, but for its swing, is as far as it is."""
         response = self._begin.response
-        turned = 0.0
-        if angles.shape[1] and response.speed:
-            grown = np.arange(len(angles)) * self._gap * response.speed
-            turned = float((angles[:, 0] - grown).mean())
-        return March(series, places, turned, response.speed, response.frequency)
+        modes = self._condensed.modes
+        turned = mean_turn(angles, self._gap * response.speed) if modes.angles.size else 0.0
+        end = self._run.state.q[: 2 * modes.rates.size + modes.angles.size].copy()
+        return March(series, places, turned, response.speed, response.frequency, end)
+
+
+def mean_turn(angles: np.ndarray, grown: float) -> float:
+    """theta [rad] at the first of equal times, without its swing.
+
+    Args:
+        angles: (times, 1) theta, over whole periods.
+        grown: by how much it grows from one to the next, in the mean.
+    """
+    return float((angles[:, 0] - grown * np.arange(len(angles))).mean())
 
 
 def marched(

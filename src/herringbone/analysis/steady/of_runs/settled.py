@@ -9,7 +9,7 @@ from typing import NoReturn
 import numpy as np
 
 from herringbone.analysis.figures.settling import changes, settling_groups
-from herringbone.analysis.steady.ending import Ending, ending_of
+from herringbone.analysis.steady.of_runs.ending import Ending, ending_of
 from herringbone.analysis.steady.outputs import Harmonics
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
 from herringbone.core import ParameterError

@@ -13,13 +13,13 @@ import numpy as np
 
 from herringbone.analysis.steady.guess import SETTLING, beginnings
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marched import Following, March
+from herringbone.analysis.steady.marching.marched import Following, March
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
 _MOST, _MOST_TIMES = 8, 3
 """Periods that are marched at most, and after which it may repeat."""
-_INSIDE = 4
+INSIDE = 4
 """Values kept for each place: laws that bend have harmonics beyond what places tell apart."""
 
 
@@ -41,7 +41,7 @@ class Repeated(NamedTuple):
     def finer(self, inside: int) -> "Repeated":
         """The same, gone on for as long as it repeats after, with more values for each place."""
         count = self.times * self.way.places
-        return self._replace(march=self.way.on(count, count, inside * _INSIDE))
+        return self._replace(march=self.way.on(count, count, inside * INSIDE))
 
 
 def repeated(
@@ -74,7 +74,7 @@ def _until_repeated(way: Following, close: float) -> Repeated:
     periods: list[March] = []
     changes = {1: np.inf}
     for _ in range(_MOST):
-        periods = [*periods[-_MOST_TIMES:], way.on(way.places, way.places, _INSIDE)]
+        periods = [*periods[-_MOST_TIMES:], way.on(way.places, way.places, INSIDE)]
         whole = periods[0]._replace(values=np.hstack([p.values for p in periods]))
         changes = {times: whole.change(times) for times in range(1, len(periods))} or changes
         if min(changes.values()) <= close:

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.assumed import STEP, Changes, Moved
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.correction import Bent, jacobian, packed, sloped
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import level_of
+from herringbone.analysis.steady.sensitivities.assumed import STEP, Changes, Moved
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
 from herringbone.core import ParameterError

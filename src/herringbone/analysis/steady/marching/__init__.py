@@ -1,0 +1,1 @@
+"""The condensed core on its march: first guesses, and motions that it repeats."""

@@ -1,0 +1,1 @@
+"""What runs with foreign parts settle to."""

@@ -1,0 +1,64 @@
+"""What is said of a search for a periodic motion."""
+
+from herringbone.analysis.steady.guess import LONG, SETTLING
+from herringbone.analysis.steady.marching.marched import March
+from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.structure import Structure
+from herringbone.core import ParameterError
+
+NO_ROTATION = (
+    "no steady rotation: what drives and what loads balance at no speed; look for a load "
+    "beyond what the drive gives"
+)
+NO_LOAD = "torque = 0 N m: nothing holds the teeth together, which drift apart; ask for a load"
+GROWS = "unstable: small deviations grow, a run would leave this motion"
+NO_SHOT = (
+    f"shooting comes to no periodic motion from marches of up to {SETTLING:g} s; teeth that rattle "
+    "may never repeat: ask for a larger torque, begin at a state nearby, or run it"
+)
+
+
+def told(times: int) -> tuple[str, ...]:
+    """Of a motion that repeats after some periods only."""
+    return (f"subharmonic: it repeats after {times} periods",) if times > 1 else ()
+
+
+def unsettled(structure: Structure, march: March | None) -> str:
+    """Why there is no march that could be followed to a motion."""
+    if structure.meshes >= LONG:
+        return (
+            f"its period of {structure.meshes} meshes is too long for a march in which nothing "
+            "holds the speed; join a drive and a load, or set run-outs and deviations to 0"
+        )
+    if march is None:
+        return "a march from equilibrium fails, too"
+    return (
+        f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
+        f"changes by {100.0 * march.least:.2g} % from one period to later ones"
+    )
+
+
+def not_repeating(march: Repeated | None) -> str:
+    """Why there is no march that repeats, of a period of many meshes."""
+    if march is None:
+        return "a march from equilibrium fails, too"
+    return (
+        f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
+        f"still changes by {100.0 * march.change:.2g} % from one period to later ones; teeth that "
+        "rattle may never repeat: ask for a larger torque, or run it"
+    )
+
+
+def check_shooting(structure: Structure) -> None:
+    """Refuse what shooting cannot do; raises ParameterError."""
+    name = structure.system.name
+    if structure.problem.free is not None:
+        raise ParameterError(
+            f"{name}: solver = shooting: nothing holds the speed, which would drift within a "
+            "period; join a drive and a load, or leave the solver to be chosen"
+        )
+    if structure.meshes >= LONG:
+        raise ParameterError(
+            f"{name}: solver = shooting: a period of {structure.meshes} meshes is too long for it "
+            f"(below {LONG}); set run-outs and deviations to 0, or leave the solver to be chosen"
+        )

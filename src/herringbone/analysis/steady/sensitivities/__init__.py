@@ -1,0 +1,1 @@
+"""What levels depend on."""

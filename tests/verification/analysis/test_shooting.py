@@ -1,0 +1,80 @@
+"""Shooting on the condensed core: the same motions as harmonic balance, and what it refuses."""
+
+import numpy as np
+import pytest
+
+import herringbone as hb
+from herringbone.analysis.steady.search import Search
+from herringbone.analysis.steady.set_points import Point
+from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.core import ParameterError
+from herringbone.running.operating.steady import prepared_solver
+from herringbone.running.prepared import Wishes
+
+GROUPS = ("bearing_force", "seat_velocity")
+STILL = {"gear_mesh.symmetry_deviation": 0.0}
+TOLERANCE = 1e-4
+POINT = Point(speed=1310.0 * np.pi / 30.0, torque=120.0)
+
+
+def solver_of(solver: str, tolerance: float = TOLERANCE) -> SteadySolver:
+    return prepared_solver(
+        "test_rig", wishes=Wishes(values=STILL), tolerance=tolerance, solver=solver
+    )[0]
+
+
+@pytest.fixture(scope="module")
+def balanced() -> hb.SteadyState:
+    return solver_of("auto", 1e-5).solve(POINT)
+
+
+@pytest.fixture(scope="module")
+def shooter() -> SteadySolver:
+    return solver_of("shooting")
+
+
+def test_it_comes_to_what_harmonic_balance_does(balanced, shooter):
+    state = shooter.solve(POINT)
+    assert (balanced.solver, state.solver) == ("harmonic balance", "shooting")
+    assert state.converged
+    assert state.shot is not None
+    assert state.shot.missed <= 0.1 * TOLERANCE
+    times = np.arange(64) / 64 * state.period
+    assert state.period == pytest.approx(balanced.period, rel=1e-9)
+    for group in GROUPS:
+        own, other = (each.signal(group, times) for each in (state, balanced))
+        whole = np.linalg.norm(other - other.mean(axis=0))
+        assert np.linalg.norm(own - other) < TOLERANCE * whole
+        assert np.linalg.norm(own - other) < 2.0 * state.errors.left_out[group] * whole
+
+
+def test_its_multipliers_are_those_of_the_linearised_motion(balanced, shooter):
+    """Both are differences: of marches by 1e-4 of a swing, and of laws along the orbit."""
+    found = shooter.solve(POINT).multipliers.values
+    expected = balanced.multipliers.values
+    for one in expected[:8]:
+        assert np.abs(found - one).min() < 1e-4
+
+
+def test_a_neighbour_leads_on(shooter):
+    """From a neighbour nothing is marched first, and the way is the same to the tolerance."""
+    near = shooter.solve(POINT._replace(speed=POINT.speed * 0.999))
+    ours, theirs = shooter.solve(POINT, near), shooter.solve(POINT)
+    for group in GROUPS:
+        assert ours.level(group) == pytest.approx(theirs.level(group), rel=TOLERANCE)
+
+
+def test_where_harmonic_balance_fails_shooting_finds_the_motion(balanced, monkeypatch):
+    monkeypatch.setattr(Search, "_resolved", lambda self, times, guess: None)
+    state = solver_of("auto").solve(POINT)
+    assert state.solver == "shooting"
+    assert state.stable
+    for group in GROUPS:
+        assert state.level(group) == pytest.approx(balanced.level(group), rel=TOLERANCE)
+
+
+def test_what_it_cannot_do_is_refused():
+    with pytest.raises(ParameterError, match=r"gearbox: solver = shooting: nothing holds the spee"):
+        hb.steady("gearbox", values=STILL, speed=100.0, solver="shooting")
+    with pytest.raises(ParameterError, match=r"solver = newton: there are auto, shooting"):
+        hb.steady("test_rig", values=STILL, solver="newton")
