@@ -12,7 +12,7 @@ from herringbone.cosim.structure.system import System, Values
 from herringbone.running.remembered_answers import start_of_known
 from herringbone.running.settling.flanks import loaded_settled_start
 from herringbone.running.settling.ramp import LOAD_RAMP_TIME, fitted_ramp
-from herringbone.running.settling.settled_start import NoSettledStartError
+from herringbone.running.settling.stranger import NoSettledStartError
 from herringbone.scenes import Scene, Start
 
 _MOVED = 0.01

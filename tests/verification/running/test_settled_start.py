@@ -102,6 +102,22 @@ def test_what_does_not_balance_speeds_up(driven):
     assert speed[0] == pytest.approx(SPEED, rel=1e-9)
 
 
+def test_foreign_at_both_ends(driven):
+    """An e-motor and another one as brake, behind the ratio of 3: both at their torque at once."""
+    files = {name: driven.parent / "c_e_drive.fmu" for name in ("motor", "brake")}
+    joined = [["motor.flange", "gearbox.pinion"], ["brake.flange", "gearbox.wheel"]]
+    system = write_system(driven.parent, "both", joined, files)
+    with (system / "system.toml").open("a", encoding="utf-8") as opened:
+        opened.write('\ngearbox = { system = "gearbox" }\n')
+    values = {"motor.torque_set": 200.0, "brake.torque_set": -600.0, "gear_mesh.der(angle)": SPEED}
+    run = hb.run(system, values=values, t_end=0.01, record_step=STEP)
+    assert sum("stepped over" in note for note in run.info.notes) == 2
+    for name, torque in (("motor", 200.0), ("brake", -600.0)):
+        found = run.data[f"{name}.flange.tau"].to_numpy()
+        # What the mesh excites: some tenths of a per cent; shafts at rest would swing by 100 %.
+        assert np.abs(found - torque).max() < 0.01 * abs(torque)
+
+
 def test_why_there_is_none(tmp_path):
     """A rotor whose angle nobody can set: the load rises instead, and a line says why."""
     folder = build_kinds(tmp_path, "fixed_step_rotor.py")

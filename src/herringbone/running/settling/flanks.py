@@ -10,11 +10,8 @@ from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.system import System
 from herringbone.running.content import contents_of_system
 from herringbone.running.pairs.carrying_flank import COAST, coasts, free_flanks
-from herringbone.running.settling.settled_start import (
-    NoSettledStartError,
-    SettledStart,
-    settled_start,
-)
+from herringbone.running.settling.settled_start import SettledStart, settled_start
+from herringbone.running.settling.stranger import NoSettledStartError
 
 _SOURCES = ("herringbone.running.settling.settled_start",)
 _LIBRARIES = "numpy", "scipy"

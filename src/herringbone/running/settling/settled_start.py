@@ -9,30 +9,20 @@ these begins where it declares. Torques that do not balance speed the drivetrain
 controller holds the speed: parts settle under this acceleration, too.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.analysis.anatomy import value_at
-from herringbone.analysis.twin.monolithic import make_instances
-from herringbone.components.in_process import InProcessPart
 from herringbone.core import HerringboneError
-from herringbone.core.part import Part
-from herringbone.cosim.fmu.file import read_fmu
-from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.approach import Approach, SteadyInput
-from herringbone.cosim.structure.network import Network, build_network
-from herringbone.cosim.structure.rates import rates
-from herringbone.cosim.structure.system import PartSpec, System, Values
-from herringbone.running.foreign.foreign_parts import found_signature, start_inputs
-from herringbone.running.loading import instances
+from herringbone.cosim.structure.network import Network
+from herringbone.cosim.structure.system import System, Values
 from herringbone.running.settling.anderson import Anderson
+from herringbone.running.settling.laid_out import laid_out
 from herringbone.running.settling.links import Links
 from herringbone.running.settling.own_motion import OwnMotion, own_motion
-from herringbone.running.settling.stranger import LONGEST, NotSettledError, Settled, Stranger
+from herringbone.running.settling.stranger import LONGEST, NoSettledStartError, Settled, Stranger
 
 _FIRST = 0.02
 """Duration that is tried first [s]."""
@@ -43,11 +33,6 @@ _SAME = 1e-4
 """Of the largest answer of its unit: what is left."""
 _PROBE = 10.0
 """Acceleration that tells inertia [rad/s^2]."""
-_KINDS = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH, Kind.SOURCE, Kind.SAMPLED}
-
-
-class NoSettledStartError(HerringboneError):
-    """There is no start in equilibrium; the message says why."""
 
 
 class SettledStart(NamedTuple):
@@ -76,11 +61,9 @@ def settled_start(system: System, known: System, step: float) -> SettledStart:
         NoSettledStartError: there is none.
     """
     try:
-        with _laid_out(system, known, step) as (network, strangers):
+        with laid_out(system, known, step) as (network, strangers):
             return _Search(known, network, strangers).found()
-    except NoSettledStartError:
-        raise
-    except (NotSettledError, HerringboneError) as error:
+    except HerringboneError as error:
         raise NoSettledStartError(str(error)) from error
 
 
@@ -95,7 +78,7 @@ class _Search:
         self._answer = np.zeros(len(self._links.has_states))
 
     def found(self) -> SettledStart:
-        """The start; raises NotSettledError, HerringboneError."""
+        """The start; raises HerringboneError."""
         links = self._links
         slopes, by_acceleration = links.slopes(), np.zeros_like(self._answer)
         motion = self._balanced(np.where(links.has_states, 0.0, self._untouched()), slopes,
@@ -119,7 +102,7 @@ class _Search:
                     motion.acceleration,
                 )
             constant = search.next(constant, answer - straight)
-        raise NotSettledError("what foreign parts answer and what own parts give do not meet")
+        raise NoSettledStartError("what foreign parts answer and what own parts give do not meet")
 
     def _balanced(
         self, constant: np.ndarray, slopes: np.ndarray, by_acceleration: np.ndarray
@@ -174,14 +157,14 @@ class _Search:
         """Twice the time, and the motion that goes with it.
 
         Raises:
-            NotSettledError: that is too long.
+            NoSettledStartError: that is too long.
         """
         before = self._way()
         if part.at_once:
-            raise NotSettledError(f"{part.name}: {found.worst} has no steady value")
+            raise NoSettledStartError(f"{part.name}: {found.worst} has no steady value")
         self._durations[part.name] *= 2.0
         if self._durations[part.name] > LONGEST:
-            raise NotSettledError(
+            raise NoSettledStartError(
                 f"{part.name}.{found.worst} still changes by {100.0 * found.change:.2g} % after "
                 f"{0.5 * self._durations[part.name]:.3g} s"
             )
@@ -197,68 +180,3 @@ class _Search:
             peaks.append(self._links.row(found))
         sizes = self._links.sizes(np.maximum(*peaks))
         return bool(np.max(peaks[0] / sizes) <= np.max(peaks[1] / sizes))
-
-
-@contextmanager
-def _laid_out(
-    system: System, known: System, step: float
-) -> Iterator[tuple[Network, list[Stranger]]]:
-    """The network of all parts, and the foreign ones as they can be tried."""
-    own = {i.name: InProcessPart(i) for i in make_instances(known)}
-    foreign = [spec for spec in system.parts if spec.foreign]
-    for spec in foreign:
-        _refuse_untriable(spec)
-    with ExitStack() as stack:
-        makes = {spec.name: stack.enter_context(instances(spec)) for spec in foreign}
-        opened = {name: make() for name, make in makes.items()}
-        try:
-            network = build_network(
-                system, [own.get(spec.name) or opened[spec.name] for spec in system.parts]
-            )
-        finally:
-            for part in opened.values():
-                start_inputs(part, [])  # which closes it; some must be initialised for that
-        strangers = [
-            _stranger(spec, network, opened[spec.name], makes[spec.name], step) for spec in foreign
-        ]
-        yield network, strangers
-
-
-def _stranger(
-    spec: PartSpec, network: Network, part: Part, make: Callable[[], Part], step: float
-) -> Stranger:
-    """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
-    signature = found_signature(spec, part, instances, step)
-    if signature.kind not in _KINDS:
-        raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps")
-    number = network.parts.index(part)
-    inputs = [c.input for c in network.inputs(number)]
-    taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
-    outputs = list(dict.fromkeys([*taken, *rates(part, taken)]))
-    begin = start_inputs(make(), inputs) if inputs else np.empty(0)
-    found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part))
-    if found.turning:
-        angle = next(iter(found.turning))
-        raise NoSettledStartError(f"{part.name}.{angle} is the angle of a shaft of its own")
-    return found
-
-
-def _units(network: Network, part: Part) -> dict[str, str]:
-    """Units of a part's variables: its own, or those of what they are connected to."""
-    parts = network.parts
-    found = {name: v.unit for name, v in part.variables.items()}
-    for c in network.connections:
-        if parts[c.source] is part:
-            found[c.output] = found[c.output] or parts[c.target].variables[c.input].unit
-        elif parts[c.target] is part:
-            found[c.input] = found[c.input] or parts[c.source].variables[c.output].unit
-    return {name: unit for name, unit in found.items() if unit}
-
-
-def _refuse_untriable(spec: PartSpec) -> None:
-    """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
-    abilities = read_fmu(Path(str(spec.fmu))).coSimulation
-    if abilities.canBeInstantiatedOnlyOncePerProcess:
-        raise NoSettledStartError(f"{spec.name} can be instantiated once only")
-    if not abilities.canHandleVariableCommunicationStepSize:
-        raise NoSettledStartError(f"{spec.name} takes steps of one length only")

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.core import HerringboneError
 from herringbone.core.part import Part
 from herringbone.cosim.signature import Kind, Signature
 from herringbone.cosim.signature.rotation import InputRule
@@ -30,8 +31,8 @@ _WATCHED = 200
 """Points of the last quarter that are looked at."""
 
 
-class NotSettledError(Exception):
-    """A part has no steady answer, or takes too long to come to it."""
+class NoSettledStartError(HerringboneError):
+    """There is no start in equilibrium: a part has no steady answer, takes too long, or more."""
 
 
 class Settled(NamedTuple):
@@ -112,7 +113,7 @@ class Stranger:
         )
 
     def settled(self, given: Approach) -> Settled:
-        """What it comes to; raises FmuError, NotSettledError."""
+        """What it comes to; raises FmuError, NoSettledStartError."""
         trial = Trial(self._make(), self.inputs, self.outputs, -given.duration, LONGEST)
         try:
             direct = self.feedthrough()
@@ -145,9 +146,9 @@ class Stranger:
         return Settled(last, change, bend, worst, peak)
 
     def _refuse_slow(self, given: Approach, seconds: float) -> None:
-        """Raise NotSettledError where steps of so many seconds make too long a trial."""
+        """Raise NoSettledStartError where steps of so many seconds make too long a trial."""
         if seconds * given.duration / given.step > _SECONDS:
-            raise NotSettledError(
+            raise NoSettledStartError(
                 f"stepping {self.name} over {given.duration:.3g} s, which parts need to settle, "
                 f"takes more than {_SECONDS:g} s"
             )
@@ -155,7 +156,7 @@ class Stranger:
     def _change(self, seen: np.ndarray, about: np.ndarray | float = 0.0) -> tuple[float, str]:
         """Largest change of a watched output, over the largest value of its unit; its name."""
         if not np.isfinite(seen).all():
-            raise NotSettledError(f"{self.name}: its outputs are not finite")
+            raise NoSettledStartError(f"{self.name}: its outputs are not finite")
         sizes = self.sizes(np.abs(seen).max(axis=0))
         changes = np.ptp(seen - about, axis=0)[self._watched] / sizes[self._watched]
         if not changes.size:

@@ -1,0 +1,86 @@
+"""Foreign parts of a system as they are tried before a run: alone, under what others give them."""
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from herringbone.analysis.twin.monolithic import make_instances
+from herringbone.components.in_process import InProcessPart
+from herringbone.core.part import Part
+from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.signature import Kind
+from herringbone.cosim.structure.network import Network, build_network
+from herringbone.cosim.structure.rates import rates
+from herringbone.cosim.structure.system import PartSpec, System
+from herringbone.running.foreign.foreign_parts import found_signature, start_inputs
+from herringbone.running.loading import instances
+from herringbone.running.settling.stranger import NoSettledStartError, Stranger
+
+_KINDS = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH, Kind.SOURCE, Kind.SAMPLED}
+
+
+@contextmanager
+def laid_out(
+    system: System, known: System, step: float
+) -> Iterator[tuple[Network, list[Stranger]]]:
+    """The network of all parts, and the foreign ones as they can be tried."""
+    own = {i.name: InProcessPart(i) for i in make_instances(known)}
+    foreign = [spec for spec in system.parts if spec.foreign]
+    for spec in foreign:
+        _refuse_untriable(spec)
+    with ExitStack() as stack:
+        makes = {spec.name: stack.enter_context(instances(spec)) for spec in foreign}
+        opened = {name: make() for name, make in makes.items()}
+        try:
+            network = build_network(
+                system, [own.get(spec.name) or opened[spec.name] for spec in system.parts]
+            )
+        finally:
+            for part in opened.values():
+                start_inputs(part, [])  # which closes it; some must be initialised for that
+        strangers = [
+            _stranger(spec, network, opened[spec.name], makes[spec.name], step) for spec in foreign
+        ]
+        yield network, strangers
+
+
+def _stranger(
+    spec: PartSpec, network: Network, part: Part, make: Callable[[], Part], step: float
+) -> Stranger:
+    """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
+    signature = found_signature(spec, part, instances, step)
+    if signature.kind not in _KINDS:
+        raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps")
+    number = network.parts.index(part)
+    inputs = [c.input for c in network.inputs(number)]
+    taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
+    outputs = list(dict.fromkeys([*taken, *rates(part, taken)]))
+    begin = start_inputs(make(), inputs) if inputs else np.empty(0)
+    found = Stranger(part, make, signature, inputs, outputs, begin, _units(network, part))
+    if found.turning:
+        angle = next(iter(found.turning))
+        raise NoSettledStartError(f"{part.name}.{angle} is the angle of a shaft of its own")
+    return found
+
+
+def _units(network: Network, part: Part) -> dict[str, str]:
+    """Units of a part's variables: its own, or those of what they are connected to."""
+    parts = network.parts
+    found = {name: v.unit for name, v in part.variables.items()}
+    for c in network.connections:
+        if parts[c.source] is part:
+            found[c.output] = found[c.output] or parts[c.target].variables[c.input].unit
+        elif parts[c.target] is part:
+            found[c.input] = found[c.input] or parts[c.source].variables[c.output].unit
+    return {name: unit for name, unit in found.items() if unit}
+
+
+def _refuse_untriable(spec: PartSpec) -> None:
+    """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
+    abilities = read_fmu(Path(str(spec.fmu))).coSimulation
+    if abilities.canBeInstantiatedOnlyOncePerProcess:
+        raise NoSettledStartError(f"{spec.name} can be instantiated once only")
+    if not abilities.canHandleVariableCommunicationStepSize:
+        raise NoSettledStartError(f"{spec.name} takes steps of one length only")
