@@ -35,11 +35,19 @@ def strangers_in_process():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def answers_of_the_session(tmp_path_factory):
+    """Tests find what others were told before."""
+    place = tmp_path_factory.getbasetemp() / "answers"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(answers, "FOLDER", str(place))
+        yield place
+
+
 @pytest.fixture(autouse=True)
-def own_answers(request, tmp_path_factory, monkeypatch):
-    """What a test is told, with whatever it has replaced, no other test and no user is told."""
-    place = tmp_path_factory.getbasetemp() / "answers" / str(id(request.node))
-    monkeypatch.setattr(answers, "FOLDER", str(place))
+def answers_of_the_test(request, answers_of_the_session, monkeypatch):
+    """What a test is told, with whatever it has replaced, no other one is told."""
+    monkeypatch.setattr(answers, "FOLDER", str(answers_of_the_session / str(id(request.node))))
 
 
 @contextmanager

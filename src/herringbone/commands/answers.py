@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from herringbone.commands.output import say
-from herringbone.core.caching.answers import Answers
 from herringbone.cosim.cell.policy import policy
 
 _NOT_ASKED = frozenset({"command", "debug", "json", "output"})
@@ -37,6 +36,8 @@ def answered(options: argparse.Namespace, find: Callable[[Tell], Told]) -> Told:
         options: of the command.
         find: finds it; what it raises is raised.
     """
+    from herringbone.core.caching.answers import Answers  # noqa: PLC0415 (looks at all sources)
+
     asked = {k: v for k, v in sorted(vars(options).items()) if k not in _NOT_ASKED}
     answers = Answers(options.command.__qualname__, repr(asked))
     if (known := answers.known()) is not None:

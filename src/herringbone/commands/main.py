@@ -16,6 +16,7 @@ from herringbone.commands import export as export_command
 from herringbone.commands import plot as plot_command
 from herringbone.commands import stability as stability_command
 from herringbone.commands import template as template_command
+from herringbone.commands.answers import Tell, Told, answered
 from herringbone.commands.checking import check as check_command
 from herringbone.commands.gear import command as gear_command
 from herringbone.commands.housing import command as housing_command
@@ -46,6 +47,7 @@ from herringbone.core import (
     HerringboneError,
     OutcomeKind,
 )
+from herringbone.core.places.files import is_folder
 from herringbone.cosim.cell.policy import Policy, foreign_fmu_policy
 
 
@@ -164,10 +166,17 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace) -> int:
+    own = options.name and is_folder(Path(options.name))  # whose scenes may come and go
+    find = partial(_listed, options)
+    show((find(say) if own else answered(options, find)).text)
+    return 0
+
+
+def _listed(options: argparse.Namespace, tell: Tell) -> Told:
     from herringbone.commands.listing import described, overview  # noqa: PLC0415
 
-    show(described(options.name) if options.name else overview())
-    return 0
+    del tell
+    return Told(described(options.name) if options.name else overview(), None)
 
 
 def _build(options: argparse.Namespace) -> int:

@@ -6,7 +6,8 @@ import zipfile
 import pytest
 
 from herringbone.core import ResourceError
-from herringbone.core.caching.answers import Answers
+from herringbone.core.caching.answers import Answers, FirstAsked
+from herringbone.core.caching.keys import _closure
 from herringbone.core.caching.remembered import content_key
 from herringbone.core.places.files import is_file, is_folder
 from herringbone.core.places.noted import noting
@@ -120,3 +121,30 @@ def test_a_file_that_was_looked_at_long_ago_is_not_read_again(file, monkeypatch)
     assert Answers("x?").known()
     monkeypatch.setattr("herringbone.core.caching.remembered.content_of", None)
     assert Answers("x?").known()
+
+
+def test_what_a_process_asks_first_is_kept_for_the_next():
+    """Numbers to the last bit; what comes later, as in a sweep, is found and not kept."""
+    calls = []
+
+    def find():
+        calls.append(1)
+        return {"x": 0.1 + 0.2}, ["line"]
+
+    for _ in range(2):
+        asked = FirstAsked("herringbone.core.declaring.units")
+        assert asked("a", find) == [{"x": 0.1 + 0.2}, ["line"]]
+        assert len(calls) == 1
+    asked = FirstAsked("herringbone.core.declaring.units")
+    for key in "abcdef":
+        asked(key, find)
+    assert len(calls) == 6
+    for key in "abcdef":
+        FirstAsked("herringbone.core.declaring.units")(key, find)
+    assert len(calls) == 8
+
+
+def test_a_kernel_s_key_is_of_what_it_imports():
+    """An edit of a command compiles nothing anew."""
+    found = _closure(["herringbone.kernels.force_law"])
+    assert {name.split(".")[1] for name in found} == {"core", "kernels"}

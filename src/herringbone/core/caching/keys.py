@@ -25,7 +25,7 @@ from pathlib import Path
 
 from herringbone.core.caching.modules import Modules, stamps_of
 from herringbone.core.caching.syntax import syntax_of
-from herringbone.core.places.paths import PACKAGE, components_folder
+from herringbone.core.places.paths import PACKAGE, components_folder, systems_folder
 
 _NAME = PACKAGE.name
 _COMPUTING = ("core", "kernels", "components", "cosim", "fmi")
@@ -188,5 +188,9 @@ def _known(imports: Iterable[str]) -> list[str]:
 
 
 _MODULES = Modules()
-_STAMPS = [*_MODULES.stamps.values(), *stamps_of(components_folder())]
+_STAMPS = [
+    *_MODULES.stamps.values(),
+    *stamps_of(components_folder()),
+    *stamps_of(systems_folder()),
+]
 """As they were when this process began: what it computes is theirs."""
