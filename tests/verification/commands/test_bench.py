@@ -27,10 +27,10 @@ BEYOND = {"gear_mesh": 330_000, "gearbox": 600_000, "test_rig": 622_000}
 slopes of an energy what systems missed it by before. Kernels that tell the motion alone take 3 to
 4 kB of systems per platform, and halve the time of their right-hand side. Bearings that may stand
 on rigid ground take 0.7 kB per platform, forces that are projected onto the modes once per step
-0.5 kB: the housing takes 0.6 of its time. The condensed core of whole systems takes 40 kB of them per
-platform, and makes them two to five times as fast: a third of it is its step, vectorised, a third
-what finds modes and makes matrices when parameters are known, the rest Runge-Kutta by a tolerance,
-beside that of a micro step, and constants."""
+0.5 kB: the housing takes 0.6 of its time. The condensed core of whole systems takes 40 kB of them
+per platform, and makes them two to five times as fast: a third of it is its step, vectorised, a
+third what finds modes and makes matrices when parameters are known, the rest Runge-Kutta by a
+tolerance, beside that of a micro step, and constants."""
 DRAWN = 4
 """Components whose FMUs are built for all platforms, and one system; all if EVERY_FMU is set."""
 
