@@ -24,7 +24,7 @@ from herringbone.analysis.hosted.places import Places, coordinates
 from herringbone.analysis.hosted.remarks import remark_source, remarks_of
 from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice, models_of
-from herringbone.analysis.twin.block_core.form import core_form, why_not
+from herringbone.analysis.twin.block_core.form import core_form, equations_of, why_not
 from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.composite import Composite
 from herringbone.analysis.twin.composite_parts import (
@@ -53,7 +53,6 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.form import Equations
 from herringbone.kernels.condensed.in_block.leaps import leaper
 from herringbone.kernels.condensed.in_block.places import work_places
 from herringbone.kernels.periodic.motion import periodic_scratch
@@ -116,7 +115,7 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         source += core_source(parts, declaration.first_table, fed)
     module = load_generated("composite", source)
     if form:
-        equations = _core_equations(places, module)
+        equations = equations_of(declaration, module, places.state_sizes, -1)
         core = partial(leaper, form, work_places(form, first), equations)
     loader = loader_of(declaration, parts.instances, module)
     component = Component(
@@ -178,23 +177,6 @@ def _can_be_condensed(boundary: Boundary, parts: Parts) -> bool:
     """True if the host gives torques alone, and the parts are linear beside their laws."""
     torques = all(f.given is Given.TORQUE for f in boundary.flanges)
     return torques and not why_not(parts)
-
-
-def _core_equations(places: Places, module: ModuleType) -> Equations:
-    """The kernels of the condensed form."""
-    d = places.declaration
-    return Equations(
-        d.name,
-        np.array([d.index[v.name] for v in d.inputs], dtype=np.int64),
-        places.state_sizes,
-        -1,
-        module.system_rhs,
-        module.core_given,
-        module.core_signals,
-        module.core_prepare,
-        module.core_laws,
-        module.core_period,
-    )
 
 
 def _step_kernel(

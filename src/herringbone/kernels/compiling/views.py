@@ -3,7 +3,6 @@
 numba's own `reshape` and `view` may fail, and what may fail needs Python.
 """
 
-from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -16,7 +15,7 @@ def _part(context, builder, kind, whole, values, shape):  # noqa: ANN001, ANN202
     """An array of a kind that begins at an element of the work space, by rows."""
     data = builder.gep(make_array(whole)(context, builder, values[0]).data, [values[1]])
     found = make_array(kind)(context, builder)
-    strides: list[ir.Value] = []
+    strides: list[object] = []
     step = context.get_constant(types.intp, _SIZE)
     for size in reversed(shape):
         strides.insert(0, step)
@@ -27,7 +26,7 @@ def _part(context, builder, kind, whole, values, shape):  # noqa: ANN001, ANN202
         shape=cgutils.pack_array(builder, shape),
         strides=cgutils.pack_array(builder, strides),
         itemsize=context.get_constant(types.intp, _SIZE),
-        meminfo=ir.Constant(ir.PointerType(ir.IntType(8)), None),
+        meminfo=context.get_constant_null(types.voidptr),
     )
     return found._getvalue()
 

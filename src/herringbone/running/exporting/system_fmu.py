@@ -41,8 +41,9 @@ def export_fmu(
     """Write a system as one native FMU, without any coupling delay inside, or its start values.
 
     A gearbox, one pair with its bearings and housing, can be made for hosts: few variables, its own
-    equilibrium at the start, inner steps by tolerance. Other systems keep all variables of their
-    parts, start where the scene does, and have fixed inner steps.
+    equilibrium at the start. Other systems keep all variables of their parts and start where the
+    scene does. Inner steps follow the host's tolerance; those of systems without condensed form,
+    which a line says, are fixed.
 
     A scene whose model a plan made leaner gives a leaner FMU: without the modes of housings that
     are left out, and with the other states of it held; its description states the certified error.

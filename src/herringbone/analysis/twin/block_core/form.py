@@ -1,14 +1,15 @@
 """The form in which a system as one component is condensed, and when it can be."""
 
 from collections.abc import Sequence
+from types import ModuleType
 
 import numpy as np
 
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients
-from herringbone.core import Laws, StructureError
-from herringbone.kernels.condensed.in_block.form import Form
+from herringbone.core import Declaration, Laws, StructureError
+from herringbone.kernels.condensed.in_block.form import Equations, Form
 
 DEGREE = 4
 
@@ -101,6 +102,32 @@ def _turning(parts: Parts) -> tuple[int, ...]:
         for first, i in zip(parts.layout.state_first, parts.instances, strict=False)
         for k, v in enumerate(i.component.declaration.states)
         if v.steady == "rotating"
+    )
+
+
+def equations_of(
+    declaration: Declaration, module: ModuleType, sizes: tuple[float, ...], kept: int
+) -> Equations:
+    """The kernels of a form, see `source`.
+
+    Args:
+        declaration: of the component.
+        module: its kernels.
+        sizes: usual ones of the states.
+        kept: see `Equations`.
+    """
+    d = declaration
+    return Equations(
+        d.name,
+        np.array(d.indices(*(v.name for v in d.inputs)), dtype=np.int64),
+        sizes,
+        kept,
+        module.system_rhs,
+        module.core_given,
+        module.core_signals,
+        module.core_prepare,
+        module.core_laws,
+        module.core_period,
     )
 
 

@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.twin.block_core.form import equations_of
 from herringbone.core import ByTolerance, Declaration, Experiment, Remark, Variable, local
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.condense import FOUND
-from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.kernels.condensed.in_block.form import Form
 from herringbone.kernels.condensed.in_block.leaps import leaper
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places
 from herringbone.kernels.stepping.adaptive import (
@@ -104,18 +105,7 @@ def step_kernel(
     d, at, micro = declaration, found.at, found.micro_step
     kept, refresh = d.first_kept, module.refresh
     sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
-    equations = Equations(
-        d.name,
-        np.array(d.indices(*(v.name for v in d.inputs)), dtype=np.int64),
-        sizes,
-        kept,
-        module.system_rhs,
-        module.core_given,
-        module.core_signals,
-        module.core_prepare,
-        module.core_laws,
-        module.core_period,
-    )
+    equations = equations_of(d, module, sizes, kept)
 
     @inner(d.name)
     def longest_inner_step(b: np.ndarray, w: np.ndarray) -> float:
