@@ -187,6 +187,23 @@ def test_sensitivities_are_differences():
     assert found.derivative == pytest.approx(expected, rel=1e-3)
 
 
+def test_sensitivities_of_long_periods_are_differences():
+    """81 meshes with run-outs; a damping of the contact, and a mass beside it."""
+    speed, values = 1300.0 * np.pi / 30.0, {"gear_mesh.symmetry_deviation": 100e-6}
+    solver = prepared_solver("test_rig", wishes=Wishes(values=values), tolerance=1e-5)[0]
+    state = solver.solve(Point(speed=speed))
+    assert state.meshes == 81
+    names = ["gear_mesh.mesh_damping_ratio", "gear_mesh.wheel.mass"]
+    for name, found in sensitivities(state, "bearing_force", names).items():
+        sides = [
+            solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}), state)
+            for e in (1e-3, -1e-3)
+        ]
+        levels = [side.level("bearing_force") for side in sides]
+        expected = (levels[0] - levels[1]) / (2e-3 * found.value)
+        assert found.derivative == pytest.approx(expected, rel=1e-3)
+
+
 def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):
     """All ratios of its modes together; against states with files of 1 % more and less."""
     state = hb.steady("test_rig", values=STILL, tolerance=1e-6)
