@@ -71,6 +71,21 @@ def test_a_march_stays_on_the_state(tolerance):
         assert error(state, group) < 2.0 * state.errors.left_out[group] + 1e-5  # the march's own
 
 
+def test_the_worst_channel_is_told():
+    """Over its own alternating part, where that of the group hides it."""
+    coarse, fine = (hb.steady("test_rig", values=STILL, tolerance=t) for t in (1e-3, 1e-6))
+    times, off = np.arange(256) / 256 * fine.period, {}
+    for column in (c for group in GROUPS for c in coarse.chosen(group)):
+        own, other = (state.signal(column, times) for state in (coarse, fine))
+        whole = np.linalg.norm(other - other.mean())
+        if whole > 1e-9 * np.linalg.norm(other):
+            off[column] = np.linalg.norm(own - own.mean() - other + other.mean()) / whole
+    name, error = coarse.worst_channel
+    assert error == pytest.approx(max(off.values()), rel=0.2)
+    assert error == pytest.approx(off[name], rel=0.2)
+    assert error > 2.0 * coarse.error
+
+
 def test_set_points_are_addressed(solver):
     state = solver.solve(Point(speed=2945.0 * np.pi / 30.0, torque=150.0))
     assert state.speed == pytest.approx(2945.0 * np.pi / 30.0, rel=1e-9)

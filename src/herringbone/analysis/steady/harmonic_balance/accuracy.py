@@ -23,6 +23,8 @@ _MOST = 0.7
 _NOTHING = 1e-12
 """Alternating part of a group, over the terms of which its means are the sum, that is none."""
 
+_NO_CHANNELS = np.zeros(0)
+
 
 class Accuracy(NamedTuple):
     """Errors over the alternating part, by group of channels.
@@ -33,12 +35,15 @@ class Accuracy(NamedTuple):
             in use.
         aside: the part of it that lines farther aside give, of a period of lines alone.
         change: of the last correction of the iteration, whose square is about what is left.
+        of_channels: (n,) as left_out, of each channel over its own alternating part, as they stand
+            in the rows of `Structure.groups`; NaN of what stands still.
     """
 
     left_out: Mapping[str, float]
     thinned: Mapping[str, float]
     aside: Mapping[str, float]
     change: Mapping[str, float]
+    of_channels: np.ndarray = _NO_CHANNELS
 
     @property
     def worst(self) -> float:
@@ -83,20 +88,24 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
             thinned[group] = math.sqrt(missed[own].sum()) / alternating
             besides[group] = math.sqrt(lines[own].sum()) / alternating + outside
             change[group] = math.sqrt(last[own].sum()) / alternating
-    return Accuracy(left_out, thinned, besides, change)
+    moving = whole > (_NOTHING * _terms(rows, slice(None), orbit)) ** 2
+    of_channels = np.sqrt(np.where(moving, every, np.nan) / np.where(moving, whole, 1.0)) + outside
+    return Accuracy(left_out, thinned, besides, change, of_channels)
 
 
-def changed(structure: Structure, before: Orbit, after: Orbit) -> dict[str, float]:
-    """What a motion has changed by, over its alternating part, by group of channels."""
+def with_change(structure: Structure, errors: Accuracy, before: Orbit, after: Orbit) -> Accuracy:
+    """Errors of a motion, and what it has changed by from an earlier one, together."""
     groups, rows = structure.groups
     known, orders = before.response, after.response.orders
     earlier = on(orders, known.outputs(rows, before.q, before.channels), known.orders)
     values = after.response.outputs(rows, after.q, after.channels)
     moved, whole = _alternating(values - earlier), _alternating(values)
-    return {
-        group: math.sqrt(moved[own].sum() / whole[own].sum()) if whole[own].any() else 0.0
-        for group, own in groups.items()
+    left_out = {
+        group: error + math.sqrt(moved[groups[group]].sum() / whole[groups[group]].sum())
+        for group, error in errors.left_out.items()
     }
+    of_channels = errors.of_channels + np.sqrt(moved / np.where(whole > 0.0, whole, np.nan))
+    return errors._replace(left_out=left_out, of_channels=of_channels)
 
 
 def _alternating(coefficients: np.ndarray) -> np.ndarray:
