@@ -32,6 +32,8 @@ from herringbone.core.one_thread import one_blas_thread
 TEETH = ((19, 67), (19, 30), (20, 85), (23, 71))
 GROUPS = ("bearing_force", "seat_velocity")
 PER_MESH, STEP, SETTLING = 128, 5e-6, 0.5
+_ALIGNED = 8
+"""Steps of the search for the place in a period at which theta is; its swings are small."""
 RATTLES = 10.0
 """Change from one period to the next, over the tolerance, from which on nothing repeats."""
 PAIR = """[gear_pair]
@@ -114,8 +116,10 @@ def turned_to(state: hb.SteadyState, run: Marched, values: np.ndarray) -> np.nda
     """Values (columns, places) of a period from when theta is that of the state's start."""
     own = run._run.state.q  # theta at the end of the last period, which begins it
     theta = float(own[2 * state.structure.core.condensed.modes.rates.size])
-    swing = float(start_of(state.orbit)[-1])
-    late = (theta - swing) / state.motion.turn % 1.0
+    angle, orders, late = state.orbit.angle, state.orbit.response.orders, 0.0
+    for _ in range(_ALIGNED):
+        swing = angle[0] + 2.0 * (angle[1:] * np.exp(2j * np.pi * late * orders[1:])).sum()
+        late = (theta - float(swing.real)) / state.motion.turn % 1.0
     places = values.shape[1]
     turning = np.exp(-2j * np.pi * late * np.arange(places // 2 + 1))
     return np.fft.irfft(np.fft.rfft(values, axis=1) * turning, places, axis=1)
