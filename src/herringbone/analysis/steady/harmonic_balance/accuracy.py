@@ -80,15 +80,16 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     powers = squares(lacking)
     every, whole, last = powers[:, 1:].sum(axis=1), _alternating(values), _alternating(moved)
     missed, lines = powers[:, apart].sum(axis=1), powers[:, aside].sum(axis=1)
+    nothing = _NOTHING * _terms(rows, orbit)
     left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
         alternating = math.sqrt(whole[own].sum())
-        if alternating > _NOTHING * _terms(rows, own, orbit).max(initial=0.0):
+        if alternating > nothing[own].max(initial=0.0):
             left_out[group] = math.sqrt(every[own].sum()) / alternating + outside
             thinned[group] = math.sqrt(missed[own].sum()) / alternating
             besides[group] = math.sqrt(lines[own].sum()) / alternating + outside
             change[group] = math.sqrt(last[own].sum()) / alternating
-    moving = whole > (_NOTHING * _terms(rows, slice(None), orbit)) ** 2
+    moving = whole > nothing**2
     of_channels = np.sqrt(np.where(moving, every, np.nan) / np.where(moving, whole, 1.0)) + outside
     return Accuracy(left_out, thinned, besides, change, of_channels)
 
@@ -113,10 +114,10 @@ def _alternating(coefficients: np.ndarray) -> np.ndarray:
     return squares(coefficients[:, 1:]).sum(axis=1)
 
 
-def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:
+def _terms(rows: Rows, orbit: Orbit) -> np.ndarray:
     """(n,) sizes of what adds up to the means of rows.
 
     A seat that nothing shakes has a mean velocity of zero, and rounding of its terms shakes it.
     """
-    found = np.abs(in_parts(rows.modal[own])) @ np.abs(orbit.q[:, 0])
-    return found + np.abs(rows.of_channels[own]) @ np.abs(orbit.channels[:, 0])
+    found = np.abs(in_parts(rows.modal)) @ np.abs(orbit.q[:, 0])
+    return found + np.abs(rows.of_channels) @ np.abs(orbit.channels[:, 0])
