@@ -110,9 +110,7 @@ def test_a_step_of_newton_is_the_same_with_families_of_low_orders(monkeypatch):
     for highest in (8, 1000):
         monkeypatch.setattr(families, "HIGHEST", highest)
         found = Families(orbit.response.orders, structure.meshes, orbit.resolved.order)
-        own = found.inverses(
-            structure.problem, orbit.response, bent(structure.problem, orbit.samples)
-        )
+        own = found.inverses(orbit.response, bent(structure.problem, orbit.samples))
         sizes.append(own.shape[-1])
         off = np.zeros_like(orbit.channels[: structure.problem.values])
         off[:, 1:] = 1.0 / orbit.response.orders[1:]

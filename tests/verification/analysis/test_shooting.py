@@ -1,5 +1,7 @@
 """Shooting on the condensed core: the same motions as harmonic balance, and what it refuses."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import herringbone as hb
 from herringbone.analysis.steady.search import Search
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.commands.main import main
 from herringbone.core import ParameterError
 from herringbone.running.operating.steady import prepared_solver
 from herringbone.running.prepared import Wishes
@@ -71,6 +74,20 @@ def test_where_harmonic_balance_fails_shooting_finds_the_motion(balanced, monkey
     assert state.stable
     for group in GROUPS:
         assert state.level(group) == pytest.approx(balanced.level(group), rel=TOLERANCE)
+
+
+def test_who_asks_is_told_what_has_found_a_state(tmp_path, capsys):
+    asked = ["--set", "gear_mesh.symmetry_deviation=0", "--solver", "shooting"]
+    assert main(["steady", "test_rig", *asked, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["solver"] == "shooting"
+    assert found["missed"] <= 1e-4
+    assert found["largest_multiplier"] < 1.0
+    folder = tmp_path / "sweep"
+    assert main(["sweep", "test_rig", *asked, "--speed", "1000,1010", "-o", str(folder)]) == 0
+    assert (folder / "table.csv").read_text().count("found by shooting") == 2
+    assert main(["sweep", "test_rig", *asked, "--speed", "1000", "--transient"]) == 2
+    assert "--solver: of steady states" in capsys.readouterr().err
 
 
 def test_what_it_cannot_do_is_refused():

@@ -71,6 +71,21 @@ def test_a_march_stays_on_the_state(tolerance):
         assert error(state, group) < 2.0 * state.errors.left_out[group] + 1e-5  # the march's own
 
 
+def test_the_worst_channel_is_told():
+    """Over its own alternating part, where that of the group hides it."""
+    coarse, fine = (hb.steady("test_rig", values=STILL, tolerance=t) for t in (1e-3, 1e-6))
+    times, off = np.arange(256) / 256 * fine.period, {}
+    for column in (c for group in GROUPS for c in coarse.chosen(group)):
+        own, other = (state.signal(column, times) for state in (coarse, fine))
+        whole = np.linalg.norm(other - other.mean())
+        if whole > 1e-9 * np.linalg.norm(other):
+            off[column] = np.linalg.norm(own - own.mean() - other + other.mean()) / whole
+    name, error = coarse.worst_channel
+    assert error == pytest.approx(max(off.values()), rel=0.2)
+    assert error == pytest.approx(off[name], rel=0.2)
+    assert error > 2.0 * coarse.error
+
+
 def test_set_points_are_addressed(solver):
     state = solver.solve(Point(speed=2945.0 * np.pi / 30.0, torque=150.0))
     assert state.speed == pytest.approx(2945.0 * np.pi / 30.0, rel=1e-9)
@@ -185,6 +200,23 @@ def test_sensitivities_are_differences():
     levels = [side.level("bearing_force") for side in sides]
     expected = (levels[0] - levels[1]) / (2e-3 * found.value)
     assert found.derivative == pytest.approx(expected, rel=1e-3)
+
+
+def test_sensitivities_of_long_periods_are_differences():
+    """81 meshes with run-outs; a damping of the contact, and a mass beside it."""
+    speed, values = 1300.0 * np.pi / 30.0, {"gear_mesh.symmetry_deviation": 100e-6}
+    solver = prepared_solver("test_rig", wishes=Wishes(values=values), tolerance=1e-5)[0]
+    state = solver.solve(Point(speed=speed))
+    assert state.meshes == 81
+    names = ["gear_mesh.mesh_damping_ratio", "gear_mesh.wheel.mass"]
+    for name, found in sensitivities(state, "bearing_force", names).items():
+        sides = [
+            solver.solve(Point(speed=speed, values={name: found.value * (1.0 + e)}), state)
+            for e in (1e-3, -1e-3)
+        ]
+        levels = [side.level("bearing_force") for side in sides]
+        expected = (levels[0] - levels[1]) / (2e-3 * found.value)
+        assert found.derivative == pytest.approx(expected, rel=1e-3)
 
 
 def test_dampings_of_a_housing_have_a_sensitivity(tmp_path):

@@ -36,7 +36,7 @@ def of_many(state: SteadyState, found: Bent) -> Inverse:
     orbit = state.orbit
     answer = orbit.response
     families = Families(answer.orders, state.meshes, orbit.resolved.order)
-    inverses = families.inverses(state.structure.problem, answer, found)
+    inverses = families.inverses(answer, found)
     gains = answer.gain(found.along, found.along_angle, found.unknown, answer.orders.size)
 
     def product(values: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.guess import PLACES, several
-from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy, changed
+from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy, with_change
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
@@ -155,10 +155,8 @@ def _with_steps(
         found = found_with(halved)
         if found is None:
             return None
-        changes = changed(structure, before.orbit, found.orbit)
-        errors = found.errors
-        left_out = {group: error + changes[group] for group, error in errors.left_out.items()}
-        before = found._replace(errors=errors._replace(left_out=left_out))
+        errors = with_change(structure, found.errors, before.orbit, found.orbit)
+        before = found._replace(errors=errors)
         if before.good(tolerance):
             break
     return before

@@ -42,6 +42,7 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
             "marched": state.settled._asdict() if state.settled else None,
             "missed": state.shot.missed if state.shot else None,
             "left_out": dict(state.errors.left_out),
+            "worst_channel": _worst(state),
             "change": dict(state.errors.change),
             "iterations": state.orbit.iterations,
             "places": state.orbit.places,
@@ -50,6 +51,12 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
             "bends": list(state.bends),
         }
     return {**known, **own, "levels": levels, "notes": list(state.notes)}
+
+
+def _worst(state: SteadyState) -> dict[str, str | float] | None:
+    """The channel that errs most; None: none moves."""
+    name, error = state.worst_channel
+    return {"name": name, "error": error} if name else None
 
 
 def _known(value: float) -> float | None:
@@ -104,6 +111,10 @@ def _of_balance(state: SteadyState) -> list[str]:
         f"{max(state.errors.change.values(), default=0.0):.2g}; {state.orbit.iterations} "
         f"iterations, {state.orbit.places} points of the period",
     ]
+    if worst := _worst(state):
+        lines.append(
+            f"  worst channel {worst['error']:.2g} of its own alternating part: {worst['name']}"
+        )
     if state.settled:
         lines.append(
             f"  by marching: {state.settled.time:.3g} s from equilibrium; the last period differs "

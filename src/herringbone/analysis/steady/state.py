@@ -1,5 +1,6 @@
 """A periodic steady state: its figures, harmonic by harmonic."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -91,6 +92,15 @@ class SteadyState(PeriodicMotion):
     def shot(self) -> Shot | None:
         """The shot by which it was found; None: by none."""
         return self.by if isinstance(self.by, Shot) else None
+
+    @property
+    def worst_channel(self) -> tuple[str, float]:
+        """The channel that errs most over its own alternating part, and by how much; "": none."""
+        errors = self.errors.of_channels
+        if not np.isfinite(errors).any():
+            return "", math.nan
+        worst = int(np.nanargmax(errors))
+        return self.structure.channels[worst], float(errors[worst])
 
     @property
     def neighbour(self) -> Neighbour:

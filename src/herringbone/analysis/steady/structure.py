@@ -23,6 +23,10 @@ from herringbone.cosim.structure.system import System
 
 _MOST = 16
 """Selections of outputs that are kept."""
+_CACHED = (
+    "groups", "channels", "signals", "indicators", "start", "ideal", "ideal_start", "_kept",
+)  # fmt: skip
+"""What a structure has of its own."""
 
 
 class Structure:
@@ -85,8 +89,8 @@ class Structure:
             StructureError: it names what is not there.
         """
         found = copy(self)
-        for name in ("groups", "signals", "indicators", "start", "ideal", "ideal_start", "_kept"):
-            found.__dict__.pop(name, None)  # cached
+        for name in _CACHED:
+            found.__dict__.pop(name, None)
         found.core = self.core.leaner(lean)
         found.problem = found._problem()
         return found
@@ -140,6 +144,12 @@ class Structure:
                 found[name] = slice(len(columns), len(columns) + len(affine))
                 columns += affine
         return found, alternating_rows(self.wanted(columns))
+
+    @cached_property
+    def channels(self) -> tuple[str, ...]:
+        """Columns that the rows of `groups` are of."""
+        every = self.core.groups().values()
+        return tuple(own[k] for own in every for k in self.wanted(own).here)
 
     @cached_property
     def signals(self) -> np.ndarray:

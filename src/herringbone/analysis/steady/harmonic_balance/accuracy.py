@@ -23,6 +23,8 @@ _MOST = 0.7
 _NOTHING = 1e-12
 """Alternating part of a group, over the terms of which its means are the sum, that is none."""
 
+_NO_CHANNELS = np.zeros(0)
+
 
 class Accuracy(NamedTuple):
     """Errors over the alternating part, by group of channels.
@@ -33,12 +35,15 @@ class Accuracy(NamedTuple):
             in use.
         aside: the part of it that lines farther aside give, of a period of lines alone.
         change: of the last correction of the iteration, whose square is about what is left.
+        of_channels: (n,) as left_out, of each channel over its own alternating part, as they stand
+            in the rows of `Structure.groups`; NaN of what stands still.
     """
 
     left_out: Mapping[str, float]
     thinned: Mapping[str, float]
     aside: Mapping[str, float]
     change: Mapping[str, float]
+    of_channels: np.ndarray = _NO_CHANNELS
 
     @property
     def worst(self) -> float:
@@ -75,28 +80,33 @@ def accuracy(structure: Structure, period: Period, motion: Motion, orbit: Orbit)
     powers = squares(lacking)
     every, whole, last = powers[:, 1:].sum(axis=1), _alternating(values), _alternating(moved)
     missed, lines = powers[:, apart].sum(axis=1), powers[:, aside].sum(axis=1)
+    nothing = _NOTHING * _terms(rows, orbit)
     left_out, thinned, besides, change = {}, {}, {}, {}
     for group, own in groups.items():
         alternating = math.sqrt(whole[own].sum())
-        if alternating > _NOTHING * _terms(rows, own, orbit).max(initial=0.0):
+        if alternating > nothing[own].max(initial=0.0):
             left_out[group] = math.sqrt(every[own].sum()) / alternating + outside
             thinned[group] = math.sqrt(missed[own].sum()) / alternating
             besides[group] = math.sqrt(lines[own].sum()) / alternating + outside
             change[group] = math.sqrt(last[own].sum()) / alternating
-    return Accuracy(left_out, thinned, besides, change)
+    moving = whole > nothing**2
+    of_channels = np.sqrt(np.where(moving, every, np.nan) / np.where(moving, whole, 1.0)) + outside
+    return Accuracy(left_out, thinned, besides, change, of_channels)
 
 
-def changed(structure: Structure, before: Orbit, after: Orbit) -> dict[str, float]:
-    """What a motion has changed by, over its alternating part, by group of channels."""
+def with_change(structure: Structure, errors: Accuracy, before: Orbit, after: Orbit) -> Accuracy:
+    """Errors of a motion, and what it has changed by from an earlier one, together."""
     groups, rows = structure.groups
     known, orders = before.response, after.response.orders
     earlier = on(orders, known.outputs(rows, before.q, before.channels), known.orders)
     values = after.response.outputs(rows, after.q, after.channels)
     moved, whole = _alternating(values - earlier), _alternating(values)
-    return {
-        group: math.sqrt(moved[own].sum() / whole[own].sum()) if whole[own].any() else 0.0
-        for group, own in groups.items()
+    left_out = {
+        group: error + math.sqrt(moved[groups[group]].sum() / whole[groups[group]].sum())
+        for group, error in errors.left_out.items()
     }
+    of_channels = errors.of_channels + np.sqrt(moved / np.where(whole > 0.0, whole, np.nan))
+    return errors._replace(left_out=left_out, of_channels=of_channels)
 
 
 def _alternating(coefficients: np.ndarray) -> np.ndarray:
@@ -104,10 +114,10 @@ def _alternating(coefficients: np.ndarray) -> np.ndarray:
     return squares(coefficients[:, 1:]).sum(axis=1)
 
 
-def _terms(rows: Rows, own: slice, orbit: Orbit) -> np.ndarray:
+def _terms(rows: Rows, orbit: Orbit) -> np.ndarray:
     """(n,) sizes of what adds up to the means of rows.
 
     A seat that nothing shakes has a mean velocity of zero, and rounding of its terms shakes it.
     """
-    found = np.abs(in_parts(rows.modal[own])) @ np.abs(orbit.q[:, 0])
-    return found + np.abs(rows.of_channels[own]) @ np.abs(orbit.channels[:, 0])
+    found = np.abs(in_parts(rows.modal)) @ np.abs(orbit.q[:, 0])
+    return found + np.abs(rows.of_channels) @ np.abs(orbit.channels[:, 0])

@@ -193,22 +193,26 @@ class Balance:
             residual, 1, converged=True, resolved=self.period,
         )  # fmt: skip
 
-    def lacking(self, channels: np.ndarray) -> tuple[Orbit, np.ndarray]:
-        """A motion of given channels, of one mesh, and what the laws give and it lacks.
+    def lacking(
+        self, channels: np.ndarray, orders: np.ndarray | None = None
+    ) -> tuple[Orbit, np.ndarray]:
+        """A motion of given channels, and what the laws give at its harmonics and it lacks.
 
         Args:
-            channels: (channels, harmonics), all harmonics that the places tell apart.
+            channels: (channels, harmonics).
+            orders: (harmonics,) of the period; all that the places tell apart if not given.
         """
+        orders = self._every if orders is None else orders
         speed = self._first_speed(channels)
-        now = self._answered(self._response(speed, self._every), channels)
+        now = self._answered(self._response(speed, orders), channels)
         samples = self.problem.laws(self._arguments(now))
-        _, laws = self._with_orders(now, samples)
+        laws = in_frequency(self._rest(samples), orders)
         off = laws - channels[: len(laws)]
         nothing = np.zeros_like(channels)
         still = np.zeros_like(now.q)
         return Orbit(
             channels, now.response, now.q, still, nothing, now.angle, samples.kept(), 0.0,
-            self._size(samples, off, self._every), 1, converged=False, resolved=self.period,
+            self._size(samples, off, orders), 1, converged=False, resolved=self.period,
         ), off  # fmt: skip
 
     def _moved(self, now: _Answered, step: np.ndarray) -> _Answered:

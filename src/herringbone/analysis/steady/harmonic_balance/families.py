@@ -10,7 +10,6 @@ import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.correction import Bent
 from herringbone.analysis.steady.harmonic_balance.fourier import in_frequency
-from herringbone.analysis.steady.harmonic_balance.problem import Problem
 from herringbone.analysis.steady.harmonic_balance.response import Response
 
 HIGHEST = 64
@@ -57,13 +56,13 @@ class Families:
         own, family, place = self._ahead
         values[:, own] = families[family, :, place].T
 
-    def inverses(self, problem: Problem, answer: Response, found: Bent) -> np.ndarray:
+    def inverses(self, answer: Response, found: Bent) -> np.ndarray:
         """(families, unknowns size, the same): inverses of the Jacobian of averaged tangents."""
         k = np.arange(-self._order, self._order + 1)
         orders = self.rests[:, None] + k[None, :] * self._meshes
         several, place = np.unique(np.abs(orders), return_inverse=True)
         gains = answer.at(several).gain(
-            problem.along, problem.along_angle, found.unknown, several.size
+            found.along, found.along_angle, found.unknown, several.size
         )[:, :, place.reshape(orders.shape)]
         gains = np.where(orders < 0, gains.conj(), gains)
         lags = np.arange(2 * self._size - 1) * self._meshes

@@ -40,7 +40,7 @@ def correct_by_families(
     if not unknown.size:
         return step
     orders, places = answer.orders, len(samples.f)
-    inverses = families.inverses(problem, answer, found)
+    inverses = families.inverses(answer, found)
     gains = answer.gain(problem.along, problem.along_angle, unknown, orders.size)
     weights = [found.bends[:, found.owner == u].T for u in range(unknown.size)]
     rows = [np.flatnonzero(found.owner == u) for u in range(unknown.size)]
@@ -74,7 +74,7 @@ def gmres(product, inverse, right: np.ndarray, close: float) -> np.ndarray:  # n
     for k in range(_MOST):
         ahead = inverse(product(basis[k]))
         for j, vector in enumerate(basis):
-            matrix[j, k] = _inner(vector, ahead)
+            matrix[j, k] = inner(vector, ahead)
             ahead -= matrix[j, k] * vector
         matrix[k + 1, k] = _norm(ahead)
         if not np.isfinite(matrix[k + 1, k]):
@@ -87,10 +87,10 @@ def gmres(product, inverse, right: np.ndarray, close: float) -> np.ndarray:  # n
     return sum(share * vector for share, vector in zip(shares, basis, strict=False))
 
 
-def _inner(a: np.ndarray, b: np.ndarray) -> float:
+def inner(a: np.ndarray, b: np.ndarray) -> float:
     """Inner product of real signals."""
     return float(2.0 * np.vdot(a, b).real - np.vdot(a[:, 0], b[:, 0]).real)
 
 
 def _norm(a: np.ndarray) -> float:
-    return float(np.sqrt(_inner(a, a)))
+    return float(np.sqrt(inner(a, a)))

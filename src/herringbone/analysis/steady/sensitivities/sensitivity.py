@@ -5,7 +5,8 @@ With the balance F(r, p) = 0, its Jacobian J and a level l(r, p),
     dl/dp = dl/dp|r - s . dF/dp|r,    J^T s = dl/dr
 
 so that each parameter costs no more than evaluations at fixed harmonics r. These are differences
-over small steps of the parameter.
+over small steps of the parameter. Of a period of many meshes the adjoint equations are solved as
+Newton's are, see `harmonic_balance.krylov`.
 """
 
 from collections.abc import Sequence
@@ -14,10 +15,16 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.correction import Bent, jacobian, packed, sloped
-from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.harmonic_balance.correction import (
+    jacobian,
+    packed,
+    sloped,
+    unpacked,
+)
+from herringbone.analysis.steady.harmonic_balance.krylov import inner
 from herringbone.analysis.steady.harmonic_balance.response import Rows
 from herringbone.analysis.steady.outputs import level_of
+from herringbone.analysis.steady.sensitivities.adjoint import adjoint_by_families
 from herringbone.analysis.steady.sensitivities.assumed import STEP, Changes, Moved
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.analysis.steady.structure import Structure, alternating_rows
@@ -46,82 +53,91 @@ def sensitivities(
     """Derivatives of a level over parameters that are not zero.
 
     Args:
-        state: a periodic motion of one mesh.
+        state: a periodic motion.
         level: column or group of channels, of outputs that are affine, see `SteadyState.level`.
         parameters: `instance.variable`, or dampings of a housing, see `assumed`.
         changes: of one caller, who asks for several levels or operating points.
 
     Raises:
-        ParameterError: the period has several meshes; a parameter is zero.
+        ParameterError: a parameter is zero, or the adjoint equations of a long period are not
+            solved.
     """
-    if state.meshes != 1:
-        raise ParameterError(
-            f"sensitivities are of a period of one mesh, this one has {state.meshes}; switch "
-            "run-outs and deviations of teeth off"
-        )
     columns, moved = state.chosen(level), changes or Changes()
     with one_blas_thread():
-        size, found, adjoint = _adjoint(state, columns)
+        found = _adjoint(state, columns)
         return {
-            name: _of(state, columns, size, found, adjoint, moved(state.structure, name))
-            for name in parameters
+            name: _of(state, columns, found, moved(state.structure, name)) for name in parameters
         }
 
 
-def _of(
-    state: SteadyState,
-    columns: Sequence[str],
-    size: float,
-    found: Bent,
-    adjoint: np.ndarray,
-    moved: Moved,
-) -> Sensitivity:
+class _Adjoint(NamedTuple):
+    """Of a level.
+
+    Attributes:
+        size: the level.
+        unknown: (unknowns,) values that it depends on.
+        values: (unknowns, harmonics) of the state's orders: the level changes by their inner
+            product with what these values lack.
+    """
+
+    size: float
+    unknown: np.ndarray
+    values: np.ndarray
+
+
+def _of(state: SteadyState, columns: Sequence[str], found: _Adjoint, moved: Moved) -> Sensitivity:
     """Of one parameter."""
     larger, smaller = (
-        _fixed(state, structure, columns, found, adjoint)
-        for structure in (moved.larger, moved.smaller)
+        _fixed(state, structure, columns, found) for structure in (moved.larger, moved.smaller)
     )
     derivative = (larger - smaller) / (2.0 * STEP * moved.value)
-    return Sensitivity(moved.value, derivative, derivative * moved.value / size)
+    return Sensitivity(moved.value, derivative, derivative * moved.value / found.size)
 
 
 def _fixed(
-    state: SteadyState,
-    structure: Structure,
-    columns: Sequence[str],
-    found: Bent,
-    adjoint: np.ndarray,
+    state: SteadyState, structure: Structure, columns: Sequence[str], found: _Adjoint
 ) -> float:
     """The level at fixed harmonics, and the adjoint's product with what they lack then."""
-    balance = Balance(structure.problem, _period(state), state.motion)
-    orbit, off = balance.lacking(state.orbit.channels)
+    orders = state.orbit.response.orders
+    balance = Balance(structure.problem, state.orbit.resolved, state.motion)
+    orbit, off = balance.lacking(state.orbit.channels, orders)
     values = orbit.response.outputs(_rows(structure, columns), orbit.q, orbit.channels)
-    return level_of(values) + float(adjoint @ packed(off[found.unknown, : _order(state) + 1]))
+    return level_of(values) + inner(found.values, off[found.unknown])
 
 
-def _adjoint(state: SteadyState, columns: Sequence[str]) -> tuple[float, Bent, np.ndarray]:
-    """The level, what is unknown, and the solution of the adjoint equations."""
+def _adjoint(state: SteadyState, columns: Sequence[str]) -> _Adjoint:
+    """The level, what it depends on, and the solution of the adjoint equations."""
     structure, orbit = state.structure, state.orbit
-    rows, response, order = _rows(structure, columns), orbit.response, _order(state)
+    rows, response = _rows(structure, columns), orbit.response
     values = response.outputs(rows, orbit.q, orbit.channels)
-    size, count = level_of(values), order + 1
+    size = level_of(values)
     found = sloped(structure.problem, orbit.samples, every=True)
-    gains = response.gain(rows.modal, rows.of_angle, found.unknown, count)
+    gains = response.gain(rows.modal, rows.of_angle, found.unknown, response.orders.size)
     gains += rows.of_channels[:, found.unknown, None]
-    conjugate = values[:, :count].conj()
-    conjugate[:, 0] = 0.0
-    slope = np.einsum("ck,cuk->uk", conjugate, gains) * 2.0 / (len(columns) * size)
-    matrix = jacobian(response, found, order)
-    return size, found, np.linalg.solve(matrix.T, packed(slope.conj()))
+    alternating = values.copy()
+    alternating[:, 0] = 0.0
+    slope = np.einsum("ck,cuk->uk", alternating, gains.conj()) / (len(columns) * size)
+    if state.meshes > 1:
+        return _Adjoint(size, found.unknown, adjoint_by_families(orbit, found, slope))
+    count = response.orders.size // 2 + 1  # whose tangents the places tell apart
+    matrix = jacobian(response, found, count - 1)
+    solved = np.linalg.solve(matrix.T, _dual(slope[:, :count]))
+    whole = np.zeros_like(slope)
+    whole[:, :count] = _of_dual(solved, count)
+    return _Adjoint(size, found.unknown, whole)
 
 
-def _order(state: SteadyState) -> int:
-    """The highest harmonic whose tangents the places tell apart."""
-    return state.orbit.response.orders.size // 2
+def _dual(values: np.ndarray) -> np.ndarray:
+    """What in real form gives by a product with `packed` values their inner product."""
+    doubled = values * 2.0
+    doubled[:, 0] = values[:, 0]
+    return packed(doubled)
 
 
-def _period(state: SteadyState) -> Period:
-    return Period(_order(state), state.orbit.places)
+def _of_dual(real: np.ndarray, count: int) -> np.ndarray:
+    found = unpacked(real, count - 1)
+    found[:, 1:] *= 0.5
+    return found
 
 
 def _rows(structure: Structure, columns: Sequence[str]) -> Rows:
