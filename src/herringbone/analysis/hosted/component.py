@@ -63,6 +63,8 @@ from herringbone.kernels.stepping.newton import newton_scratch
 _TOLERANCE = 1e-3
 LENGTHS = (1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5)
 """Of steps of the condensed core, by rung [s]."""
+_ROUGH = 5.0
+"""See `Form`: with less, communication steps would take unequal times."""
 EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_TOLERANCE)
 """Default experiment."""
 _NOT_SETTLED = (
@@ -95,7 +97,7 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     )
     first = adaptive_work(count, _inputs(boundary))
     inputs = _inputs(boundary)
-    form = core_form(parts, inputs, LENGTHS) if _can_be_condensed(boundary, parts) else None
+    form = core_form(parts, inputs, LENGTHS, _ROUGH) if _can_be_condensed(boundary, parts) else None
     work = work_places(form, first).end if form else first
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses, work)
     places = Places(boundary, parts, declaration)

@@ -16,6 +16,7 @@ from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.block_core.steps import (
     LENGTHS,
     REMARK,
+    ROUGH,
     Stepping,
     by_tolerance,
     locals_of,
@@ -126,7 +127,7 @@ def make_composite(
 def _stepping(parts: Parts) -> Stepping:
     """How a system steps that may have a condensed form."""
     inputs = len(parts.open_inputs)
-    return stepping(core_form(parts, inputs, LENGTHS), inputs, _micro_step(parts))
+    return stepping(core_form(parts, inputs, LENGTHS, ROUGH), inputs, _micro_step(parts))
 
 
 def _micro_step(parts: Parts) -> float:

@@ -32,7 +32,7 @@ def why_not(parts: Parts) -> str:
     return "" if laws else "no part has laws beside its linear equations"
 
 
-def core_form(parts: Parts, inputs: int, lengths: Sequence[float]) -> Form:
+def core_form(parts: Parts, inputs: int, lengths: Sequence[float], rough: float) -> Form:
     """The form; mean tangents are those of the parameters as they are exported.
 
     Other ones are as good for the solution, but take more iterations.
@@ -41,6 +41,7 @@ def core_form(parts: Parts, inputs: int, lengths: Sequence[float]) -> Form:
         parts: of the system.
         inputs: how many the host gives.
         lengths: of steps, falling [s].
+        rough: see `Form`.
     """
     laws = laws_of_parts(parts)
     stiff: list[int] = []
@@ -78,6 +79,7 @@ def core_form(parts: Parts, inputs: int, lengths: Sequence[float]) -> Form:
         fit=coefficients(DEGREE),
         ahead=parabola_since_end(nodes),
         lengths=tuple(lengths),
+        rough=rough,
     )
 
 

@@ -29,6 +29,8 @@ TOLERANCE, NEXT_STEP = "tolerance", "next_inner_step"
 _USUAL = 1e-3
 LENGTHS = (1e-4, 1e-3 / 15.0, 5e-5, 4e-5, 2.5e-5, 1.25e-5)
 """Of steps of the condensed core, by rung [s]."""
+ROUGH = 1.0
+"""See `Form`; the error of a rig is a third to twice the largest power."""
 _EXPERIMENT = Experiment(stop=1.0, step=1e-3, tolerance=_USUAL)
 _STABLE = 2.0
 """Of Runge-Kutta: largest eigenvalue times step; the limit is 2.8, and tangents may be steeper."""

@@ -27,6 +27,8 @@ class Form:
         ahead: (2, degree + 1): first and second power, since the end of a step, of the parabola
             through its end that fits its other values best.
         lengths: of steps, by rung, falling [s].
+        rough: highest power of the laws' values over a step, over their size and the tolerance, at
+            most.
     """
 
     states: int
@@ -45,6 +47,7 @@ class Form:
     fit: np.ndarray
     ahead: np.ndarray
     lengths: tuple[float, ...]
+    rough: float
 
     @property
     def degree(self) -> int:

@@ -19,9 +19,6 @@ _CLOSE = 10.0
 """Residual of the laws' values, over their size and the tolerance, whose correction solves a step.
 
 A correction makes it a thousand times smaller, or more."""
-_ROUGH = 1.0
-"""Highest power of the laws' values over a step, over their size and the tolerance, at most; the
-error of a rig is a third to twice the largest one."""
 _PER_PERIOD = 0.055
 """Share of a period of the laws that a step has at most, at the tolerance _USUAL; there the error
 of a gearbox is a seventh to a half of it. It falls with the fourth power of the step, or faster."""
@@ -111,7 +108,7 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
     begin_step = step_beginner(form, at, equations, set_inputs)
     iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
     bends, rough = doubts(form, at, owner)
-    lengths, rungs = np.array(form.lengths), len(form.lengths)
+    lengths, rungs, roughest = np.array(form.lengths), len(form.lengths), form.rough
     shortest = float(lengths[-1])
 
     @inner(owner)
@@ -165,7 +162,7 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
             if straight < 1.0:
                 longest = straight * length
                 continue
-            if rough(w) > _ROUGH * tolerance:
+            if rough(w) > roughest * tolerance:
                 longest = 0.5 * length
                 continue
             advance(w, place, rung)
