@@ -106,8 +106,7 @@ def test_what_does_not_balance_speeds_up(driven):
     assert speed[0] == pytest.approx(SPEED, rel=1e-9)
 
 
-@pytest.mark.parametrize("order", [1, 2])
-def test_limits_that_runs_show_from_a_turning_start(driven, order):
+def test_limit_that_runs_show_from_a_turning_start(driven):
     """Runs begin where the foreign motor was stepped to, 18 rad from where matrices are taken.
 
     With contact: not below the prediction, to the 1 % of the runs, and not above 1.15 of it.
@@ -121,7 +120,7 @@ def test_limits_that_runs_show_from_a_turning_start(driven, order):
     assert abs(values_of(system, "gear_mesh")["gearbox.gear_mesh.angle"]) < 0.1
     with opened_surrogates(system, STEP) as found:
         (limits,) = stability(
-            system, "", [Jacobi(order)], simulate=True, strangers=found.strangers, started=started
+            system, "", [Jacobi(1)], simulate=True, strangers=found.strangers, started=started
         ).limits
     assert limits.promised and limits.simulated_limit is not None
     assert 0.99 <= limits.simulated_limit / limits.limit <= 1.15
