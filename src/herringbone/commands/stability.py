@@ -81,6 +81,7 @@ def _predicted(
     from herringbone.cosim.algorithms import LI, parse_algorithm, refuse_adaptive  # noqa: PLC0415
     from herringbone.running.foreign.surrogates import (  # noqa: PLC0415
         opened_surrogates,
+        turned_back,
         under_load,
         without_missing,
     )
@@ -100,13 +101,15 @@ def _predicted(
     )
     wishes = operated(options.system, options.scene, wishes, **operating_point(options))
     trials = LI().start_step
-    structure, scene, notes = prepared(options.system, options.scene, wishes, trial_step=trials)
+    started, scene, notes = prepared(options.system, options.scene, wishes, trial_step=trials)
     for note in notes:
         tell(note)
-    structure = under_load(structure)
+    started = under_load(started)
+    structure = turned_back(started)
     bar = tqdm(unit=" matrices", disable=None)
     with bar, opened_surrogates(structure, trials) as foreign:
         structure, missing = without_missing(structure, foreign)
+        started, _ = without_missing(started, foreign)
         for line in missing:
             tell(line)
         if foreign.strangers and options.atlas:
@@ -129,7 +132,8 @@ def _predicted(
             simulate=options.simulate,
             progress=show,
             strangers=foreign.strangers,
-            remember=KnownLimits(structure, trials),
+            started=started,
+            remember=KnownLimits(started, trials),
         )
         found = replace(found, notes=(*missing, *found.notes))
         if options.atlas:

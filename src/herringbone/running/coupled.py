@@ -30,7 +30,7 @@ from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
 from herringbone.running.foreign.foreign_parts import understood
 from herringbone.running.foreign.interfaces import exchanged_outputs, unfed
-from herringbone.running.foreign.surrogates import surrogates_of, under_load
+from herringbone.running.foreign.surrogates import surrogates_of, turned_back, under_load
 from herringbone.running.fused.beside import (
     KIND,
     fused_beside,
@@ -263,9 +263,8 @@ def _stability_notes(
                 clock.parts_of_period(step)
             except HerringboneError as error:
                 return [f"whether the step is stable is not known: {error}"]
-        warning = warn_if_unstable(
-            under_load(system), algorithm, step, t_end, strangers=found.strangers
-        )
+        loaded = turned_back(under_load(system))
+        warning = warn_if_unstable(loaded, algorithm, step, t_end, strangers=found.strangers)
     return [warning] if warning else []
 
 

@@ -13,7 +13,7 @@ from herringbone.analysis.accuracy.step_ladder import charted_algorithms
 from herringbone.analysis.stability import atlas
 from herringbone.analysis.stability.amplification import Amplification
 from herringbone.analysis.stability.linear_parts import linear_network
-from herringbone.analysis.stability.steps.perturbed_run import perturbation_growth
+from herringbone.analysis.stability.steps.perturbed_run import _rate, perturbation_growth
 from herringbone.analysis.stability.steps.simulated_limit import (
     first_unstable,
     nonlinear_limit,
@@ -88,6 +88,25 @@ def test_rounding_of_the_shafts_angles_is_no_growth():
         soft, lambda: linear_network(soft)[1], algorithm, step, steps=1500, at_rest=True
     )
     assert growth < 0.0
+
+
+@pytest.mark.parametrize(
+    ("rate", "beat", "rises"),
+    [(0.0, 0.0, False), (0.0, 0.4, False), (2.5, 0.0, True), (4.0, 0.2, True)],
+)
+def test_what_beats_on_a_shift_that_grows_as_time_is_no_growth(rate, beat, rises):
+    """After a kick that dies out; two close harmonics of the mesh, at all phases of their beat.
+
+    Rate over the whole run. By the ratio of two windows alone the beat is a growth.
+    """
+    t = np.linspace(0.0, 1.0, 4000)
+    phases = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+    found = []
+    for phase in phases:
+        shift = 0.1 * t * (1.0 + beat * np.sin(2.0 * np.pi * 3.0 * t + phase))
+        size = np.exp(-100.0 * t) + shift * np.exp(rate * t)
+        found.append(_rate((size * np.sin(1000.0 * t))[:, None], power=1))
+    assert [rate > 0.0 for rate in found] == [rises] * len(phases)
 
 
 @pytest.mark.parametrize("centre", [1.03, 1.1, 1.15])

@@ -83,6 +83,7 @@ def stability(
     simulate: bool = False,
     progress: Progress | None = None,
     strangers: Strangers = NO_STRANGERS,
+    started: System | None = None,
     remember: Remember = lambda algorithm, simulated, find: find(),
 ) -> Stability:
     """Stable steps, bonds and a recommended algorithm and step.
@@ -95,6 +96,7 @@ def stability(
         simulate: also find the limits of the non-linear system, by runs.
         progress: called after every matrix.
         strangers: what stands for foreign parts.
+        started: the system as runs start, if that is not at the same angles.
         remember: knows limits that were found before.
 
     Raises:
@@ -108,10 +110,11 @@ def stability(
     highest = highest_frequency(network, members)
     limits, chosen, notes = [], [], []
     what = f"predicting the stable steps of {system.name}"
+    runs = (started or system) if simulate else None
     for algorithm in algorithms or default_algorithms():
         try:
             with activity(f"{what} with {algorithm}", shown=progress is not None):
-                find = partial(_found, system, algorithm, simulate, progress, strangers)
+                find = partial(_found, system, algorithm, runs, progress, strangers)
                 limits.append(remember(algorithm, simulate, find))
             chosen.append(algorithm)
         except ParameterError as error:
@@ -155,15 +158,16 @@ def _on_a_grid(limits: Sequence[StepLimits], strangers: Strangers) -> list[str]:
 def _found(
     system: System,
     algorithm: Algorithm,
-    simulate: bool,
+    runs: System | None,
     progress: Progress | None,
     strangers: Strangers,
 ) -> StepLimits:
+    """Limits of a system's linear parts, and those of runs if it is given as these start."""
     limit = step_limits(system, algorithm, progress, strangers)
-    if not simulate:
+    if runs is None:
         return limit
     grid = common_steps(clocks_of(strangers), limit.largest) if limit.steps else ()
-    seen = nonlinear_limit(system, algorithm, limit.limit, limit.unstable_bands, strangers, grid)
+    seen = nonlinear_limit(runs, algorithm, limit.limit, limit.unstable_bands, strangers, grid)
     return replace(limit, simulated_limit=seen)
 
 

@@ -121,12 +121,13 @@ def under_load(system: System) -> System:
     """The system with its own parts in steady rotation under load, as they are after a ramp.
 
     What foreign parts would feed is taken as zero; but gears that only these load have 200 N m at
-    the pinion, so that their meshes are closed. As it is where there is no such rotation.
+    the pinion, so that their meshes are closed. As it is where there is no such rotation, or where
+    it is in equilibrium with foreign parts, too.
     """
     if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
         return system
-    if any(part.approach for part in system.parts):
-        return _turned_back(system)  # in equilibrium with all of them
+    if _is_brought(system):
+        return system
     steady = system.with_values(dict.fromkeys(ramp_times(system), 0.0))
     known = known_parts(steady)
     own = loaded(known, _TORQUE)
@@ -143,8 +144,14 @@ def under_load(system: System) -> System:
         return system
 
 
-def _turned_back(system: System) -> System:
-    """The system with its shafts turned back to angles near 0, where differences are exact."""
+def turned_back(system: System) -> System:
+    """The system with its shafts turned back to angles near 0, where differences are exact.
+
+    For matrices alone: in a run, foreign parts that are brought to the start would stand at angles
+    that own shafts have left. As it is where none are brought.
+    """
+    if not _is_brought(system):
+        return system
     twin = Twin(known_parts(system))
     x = twin.state
     rates = twin.rhs(0.0, x)
@@ -154,6 +161,11 @@ def _turned_back(system: System) -> System:
     time = x[turning[0]] / rates[turning[0]]
     names = names_of_states(twin)
     return system.with_values({names[i]: float(x[i] - time * rates[i]) for i in turning})
+
+
+def _is_brought(system: System) -> bool:
+    """True if it starts in equilibrium with foreign parts, which are stepped before."""
+    return any(part.approach for part in system.parts)
 
 
 def _add(

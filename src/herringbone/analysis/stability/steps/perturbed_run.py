@@ -7,7 +7,10 @@ largest Lyapunov exponent of the coupled run (G. Benettin et al., Meccanica 15, 
 
 Slow motions, which every step resolves, are taken out by the second difference in time. What is
 left of them: a kick turns shafts a little faster, so that meshing forces come earlier, by an angle
-that grows linearly in time. Only what grows faster than that counts as growth.
+that grows linearly in time. Only what grows faster than that counts as growth. Harmonics of the
+mesh that lie close together, some of them as communication points alias them, beat on top of that,
+and forces change with the speed of a drivetrain whose torques do not balance: a growth that not all
+of the end shows counts for nothing.
 """
 
 import math
@@ -32,6 +35,8 @@ what has risen by this factor was growing, even if separating teeth have since h
 _ROUNDING = 1e-4
 """Of what was there at first: the least that rounding of the shafts' angles does not cover."""
 _WINDOWS, _FIRST = 10, 20
+_AROUND, _ABOVE = 3, 1.05
+"""Each of so many windows at the end is so many times above all of as many before the middle."""
 
 MakeParts = Callable[[], Sequence[Instance | Part]]
 """Makes the parts of a run, at their start values: components as instances, foreign parts."""
@@ -58,7 +63,7 @@ def perturbation_growth(
             forces are constant, so that one run is enough.
 
     Returns:
-        Positive in an unstable coupling; infinite if a run ends early.
+        Positive in an unstable coupling, 0 at most in a stable one; infinite if a run ends early.
     """
     kicked = _forces(system, _kicked(make()), algorithm, step, steps)
     if not np.isfinite(kicked).all():
@@ -118,7 +123,16 @@ def _rate(difference: np.ndarray, power: int) -> float:
     middle = (last + 1) // 2 if last > 1 else 0
     allowed = ((last + 0.5) / (middle + 0.5)) ** power
     rate = math.log(sizes[last] / (allowed * sizes[middle])) / ((last - middle) * length)
+    if power and not _rises(sizes[: last + 1], middle, power):
+        rate = min(rate, 0.0)
     peak = int(np.argmax(sizes))
     if rate <= 0.0 and sizes[peak] > GROWN * start:
         return math.log(sizes[peak] / start) / ((peak + 1) * length)
     return rate
+
+
+def _rises(sizes: np.ndarray, middle: int, power: int) -> bool:
+    """True if all windows at the end are above all before the middle, over a power of time."""
+    over = sizes / (np.arange(len(sizes)) + 0.5) ** power
+    before = over[max(middle + 1 - _AROUND, 0) : middle + 1]
+    return bool(over[-_AROUND:].min() > _ABOVE * before.max())

@@ -60,7 +60,7 @@ def nonlinear_limit(
 def run_steps(near: float) -> int:
     """Macro steps of a run that is to tell of steps near a given one [s].
 
-    Growth is seen from about 1.4 / steps, 0.01 to 0.14 % per step: the smaller the step, the more
+    Growth is seen from about 1.8 / steps, 0.014 to 0.18 % per step: the smaller the step, the more
     slowly an unstable motion grows from step to step, and the cheaper is one.
     """
     return int(min(max(_DURATION / near, _FEWEST), _MOST))
