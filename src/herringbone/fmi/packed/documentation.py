@@ -5,12 +5,15 @@ import json
 import math
 from collections.abc import Iterable
 from importlib.metadata import distribution
+from typing import TYPE_CHECKING
 
 from herringbone.core import Component, Variable
 from herringbone.core.declaring.units import quantity
 from herringbone.core.declaring.variable import Variability
 from herringbone.fmi import interface
-from herringbone.fmi.native.platforms import Platform
+
+if TYPE_CHECKING:
+    from herringbone.fmi.native.platforms import Platform
 
 FLANGE_MODELS = "extra/herringbone/flange_models.json"
 """Place in an FMU of its linear equations as its flanges feel them, by flange."""
@@ -45,7 +48,7 @@ _STEPS = (
 )
 
 
-def documentation(component: Component, platforms: Iterable[Platform]) -> bytes:
+def documentation(component: Component, platforms: Iterable["Platform"]) -> bytes:
     """The page."""
     declaration = component.declaration
     binaries = "".join(
