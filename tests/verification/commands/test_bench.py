@@ -22,12 +22,12 @@ pytestmark = needs_compiler
 FORCES = ["shaft.pinion_left.f_y", "shaft.wheel_right.f_z"]
 LARGEST = 300_000
 """Bytes of an FMU with all platforms, its resources aside: the limit that the project sets."""
-BEYOND = {"gear_mesh": 330_000, "gearbox": 600_000, "test_rig": 622_000}
+BEYOND = {"gear_mesh": 330_000, "gearbox": 630_000, "test_rig": 656_000}
 """What misses it, by 6 %, and twice: the law of single teeth takes 14 kB per platform, and the
 slopes of an energy what systems missed it by before. Kernels that tell the motion alone take 3 to
 4 kB of systems per platform, and halve the time of their right-hand side. Bearings that may stand
 on rigid ground take 0.7 kB per platform, forces that are projected onto the modes once per step
-0.5 kB: the housing takes 0.6 of its time. The condensed core of whole systems takes 40 kB of them
+0.5 kB: the housing takes 0.6 of its time. The condensed core of whole systems takes 46 kB of them
 per platform, and makes them two to five times as fast: a third of it is its step, vectorised, a
 third what finds modes and makes matrices when parameters are known, the rest Runge-Kutta by a
 tolerance, beside that of a micro step, and constants."""
