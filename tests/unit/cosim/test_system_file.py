@@ -112,6 +112,13 @@ def test_nested_system_is_flattened(tmp_path):
     assert system.channels == {"force": ("box.bearing.*.f_y",)}
 
 
+def test_a_nested_system_is_not_taken_from_the_working_folder(tmp_path, monkeypatch):
+    write(tmp_path, INNER, "inner")
+    outer = write(tmp_path, '[parts.box]\nsystem = "inner"', "outer")
+    monkeypatch.chdir(tmp_path)
+    refused(f"there is no system '{outer / 'inner'}': give one of", outer)
+
+
 def test_unknown_port_of_a_nested_system(tmp_path):
     write(tmp_path, INNER, "inner")
     text = 'connections = [["box.wheel", "a.b"]]\n[parts.box]\nsystem = "../inner"'

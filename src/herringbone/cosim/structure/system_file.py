@@ -182,9 +182,11 @@ def part_files(data: Mapping[str, Any], key: str, file: Path) -> dict[str, Path]
     return {path: (file.parent / name).absolute() for path, name in found.items()}
 
 
-def _nested_reference(reference: str, folder: Path) -> str | Path:
-    inside = folder / reference
-    return inside if is_file(inside / FILE_NAME) else reference
+def _nested_reference(reference: str, folder: Path) -> Path:
+    """Beside the system that names it, or a shipped one; never in the working folder."""
+    inside, shipped = folder / reference, systems_folder() / reference
+    beside = is_file(inside / FILE_NAME) or not is_file(shipped / FILE_NAME)
+    return inside if beside else shipped
 
 
 def _assemble(
