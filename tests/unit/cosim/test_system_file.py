@@ -116,7 +116,7 @@ def test_a_nested_system_is_not_taken_from_the_working_folder(tmp_path, monkeypa
     write(tmp_path, INNER, "inner")
     outer = write(tmp_path, '[parts.box]\nsystem = "inner"', "outer")
     monkeypatch.chdir(tmp_path)
-    refused(f"there is no system '{outer / 'inner'}': give one of", outer)
+    refused(f"{outer / 'system.toml'}: there is no system 'inner': give one of", outer)
 
 
 def test_unknown_port_of_a_nested_system(tmp_path):

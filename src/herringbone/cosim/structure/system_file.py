@@ -60,21 +60,27 @@ def is_value(value: object, *, arrays: bool = False) -> bool:
     return isinstance(value, float | int | str)
 
 
-def find_system(reference: str | Path) -> Path:
+def find_system(reference: str | Path, outer: Path | None = None) -> Path:
     """Folder of a system, by the name of a shipped one, by its path, or by that of its file.
+
+    Args:
+        reference: name or path.
+        outer: folder of the system that names it: paths start there, not in the working folder.
 
     Raises:
         StructureError: there is no such system.
     """
     path = Path(reference)
     own = path.parent if path.name == FILE_NAME else path
-    for folder in (systems_folder() / reference, own):
+    shipped = systems_folder() / reference
+    for folder in (outer / own, shipped) if outer else (shipped, own):
         if is_file(folder / FILE_NAME):
             return folder
-    shipped = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))
+    known = sorted(f.parent.name for f in systems_folder().glob(f"*/{FILE_NAME}"))
+    named_in = f"{outer / FILE_NAME}: " if outer else ""
     raise StructureError(
-        f"there is no system {shown(str(reference), _LONGEST_PATH)}: "
-        f"{meant(str(reference), shipped)}give one of {', '.join(shipped)}, "
+        f"{named_in}there is no system {shown(str(reference), _LONGEST_PATH)}: "
+        f"{meant(str(reference), known)}give one of {', '.join(known)}, "
         f"a folder with {FILE_NAME}, or an .ssp file"
     )
 
@@ -91,7 +97,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
     Raises:
         StructureError: not found, not readable, unknown key, or systems that contain each other.
     """
-    folder = find_system(reference).resolve()
+    folder = find_system(reference, *_outer[-1:]).resolve()
     if folder in _outer:
         raise StructureError(f"system '{reference}' contains itself")
     file = folder / FILE_NAME
@@ -119,7 +125,7 @@ def read_system(reference: str | Path, _outer: tuple[Path, ...] = ()) -> System:
         if spec:
             parts.append(spec)
         else:
-            inner = read_system(_nested_reference(table["system"], folder), (*_outer, folder))
+            inner = read_system(table["system"], (*_outer, folder))
             nested[name] = inner.with_values(_set(table, folder)).nested_as(name)
     return _assemble(data, file, parts, nested)
 
@@ -180,13 +186,6 @@ def part_files(data: Mapping[str, Any], key: str, file: Path) -> dict[str, Path]
     for path, name in found.items():
         _check_type(name, str, f"{key} of {path}" if path else key, file)
     return {path: (file.parent / name).absolute() for path, name in found.items()}
-
-
-def _nested_reference(reference: str, folder: Path) -> Path:
-    """Beside the system that names it, or a shipped one; never in the working folder."""
-    inside, shipped = folder / reference, systems_folder() / reference
-    beside = is_file(inside / FILE_NAME) or not is_file(shipped / FILE_NAME)
-    return inside if beside else shipped
 
 
 def _assemble(
