@@ -10,11 +10,12 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.kernels.compiling.jit import inner
+from herringbone.kernels.compiling.jit import inner, kernel, outside
 from herringbone.kernels.signals import STRIDE, all_finite, evaluate, monomial, store_node
 
 Rhs = Callable[[np.ndarray, float, np.ndarray], None]
 Out = Callable[[np.ndarray, float], None]
+Piece = Callable[[np.ndarray], int]
 
 NOT_FINITE = 1
 """Status of a step whose states (an element's or source's outputs) are NaN or infinite."""
@@ -22,6 +23,8 @@ TOO_LONG = 2
 """Status of a step that was refused because it is longer than the component's `longest_step`."""
 MOST_MICRO_STEPS = 1e6
 """Most micro steps of one call: seconds of work, after which a master wants to hear something."""
+FINER = 8
+"""Parts of a micro step in which a law bends: there its order is lost."""
 
 
 def body_work(state_count: int, input_count: int) -> int:
@@ -87,19 +90,75 @@ def input_kernels(declaration: Declaration, at: int) -> tuple[Callable, Callable
     return expand_inputs, set_inputs, restore_inputs
 
 
+@kernel
+def one_piece(b: np.ndarray) -> int:
+    """The pieces that laws without bends are on."""
+    return 0
+
+
+def _runge_kutta(
+    rhs: Rhs, piece: Piece, declaration: Declaration, set_inputs: Callable
+) -> Callable[[np.ndarray, np.ndarray, float, float, int, float, float, int], bool]:
+    """Compile one step of classical Runge-Kutta (order 4).
+
+    Returns:
+        advance(b, w, t, h, degree, middle, end, on) -> bool: block, work space, which begins with
+        the derivatives at the start, and has the states there behind them afterwards, start and
+        length [s], interface degree, where middle and end lie in the macro step, the piece that the
+        laws are on at the start; False if they leave it.
+    """
+    n = declaration.state_count
+    x0, slope = n, 2 * n
+
+    @inner(declaration.name)
+    def advance(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int, middle: float, end: float,
+        on: int,
+    ) -> bool:  # fmt: skip
+        dx = w[:n]
+        for i in range(n):
+            w[x0 + i] = b[i]
+            w[slope + i] = dx[i]
+            b[i] = w[x0 + i] + 0.5 * h * dx[i]
+        set_inputs(b, w, degree, middle)
+        rhs(b, t + 0.5 * h, dx)
+        for i in range(n):
+            w[slope + i] += 2.0 * dx[i]
+            b[i] = w[x0 + i] + 0.5 * h * dx[i]
+        rhs(b, t + 0.5 * h, dx)
+        stays = piece(b) == on
+        for i in range(n):
+            w[slope + i] += 2.0 * dx[i]
+            b[i] = w[x0 + i] + h * dx[i]
+        set_inputs(b, w, degree, end)
+        rhs(b, t + h, dx)
+        for i in range(n):
+            b[i] = w[x0 + i] + h / 6.0 * (w[slope + i] + dx[i])
+        return stays and piece(b) == on
+
+    return advance
+
+
 def body_stepper(
-    rhs: Rhs, out: Out, declaration: Declaration, slopes: int | None = None
+    rhs: Rhs,
+    out: Out,
+    declaration: Declaration,
+    slopes: int | None = None,
+    piece: Piece = one_piece,
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body: classical Runge-Kutta (order 4) with equal micro steps.
 
-    Inputs are polynomials over the macro step; outputs are written at every live node. The block's
-    inputs are afterwards what the caller had set.
+    A micro step in which a law bends is taken again, in FINER parts. Inputs are polynomials over
+    the macro step; outputs are written at every live node. The block's inputs are afterwards what
+    the caller had set.
 
     Args:
         rhs, out: kernels.
         declaration: of the body.
         slopes: where `out` leaves the derivatives of all states in the block, which the next micro
             step begins with; None: nowhere.
+        piece: kernel (b) -> int after `rhs` and `out`: on which of their smooth pieces the laws
+            are.
 
     Returns:
         step(b, w, t, h, micro_step, degree) -> int: block, work space (`body_work` long), start
@@ -108,10 +167,23 @@ def body_stepper(
     """
     n = declaration.state_count
     first_output, outputs = declaration.first_output, len(declaration.node_outputs)
-    x0, slope, at = n, 2 * n, 3 * n
     known, left = slopes is not None, slopes or 0
+    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, 3 * n)
+    advance = _runge_kutta(rhs, piece, declaration, set_inputs)
 
-    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
+    @outside(declaration.name)
+    def again(
+        b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int, k: int, total: int
+    ) -> None:
+        """Take the k-th micro step again."""
+        for i in range(n):
+            b[i] = w[n + i]
+        for part in range(FINER):
+            c = (k + part / FINER) / total
+            set_inputs(b, w, degree, c)
+            rhs(b, t + h * part / FINER, w[:n])
+            middle, end = (k + (part + 0.5) / FINER) / total, (k + (part + 1) / FINER) / total
+            advance(b, w, t + h * part / FINER, h / FINER, degree, middle, end, 0)
 
     @inner(declaration.name)
     def step(
@@ -124,33 +196,19 @@ def body_stepper(
         count = max(1, math.ceil(h / (intervals * micro_step) - 1e-9))
         total = intervals * count
         hs = h / total
-        dx = w[:n]
+        dx, on = w[:n], -1
         for k in range(total):
             ts = t + k * hs
-            for i in range(n):
-                w[x0 + i] = b[i]
             set_inputs(b, w, degree, k / total)
             if known and k > 0 and k % count == 0:
                 for i in range(n):
                     dx[i] = b[left + i]
             else:
                 rhs(b, ts, dx)
-            for i in range(n):
-                w[slope + i] = dx[i]
-                b[i] = w[x0 + i] + 0.5 * hs * dx[i]
-            set_inputs(b, w, degree, (k + 0.5) / total)
-            rhs(b, ts + 0.5 * hs, dx)
-            for i in range(n):
-                w[slope + i] += 2.0 * dx[i]
-                b[i] = w[x0 + i] + 0.5 * hs * dx[i]
-            rhs(b, ts + 0.5 * hs, dx)
-            for i in range(n):
-                w[slope + i] += 2.0 * dx[i]
-                b[i] = w[x0 + i] + hs * dx[i]
-            set_inputs(b, w, degree, (k + 1) / total)
-            rhs(b, ts + hs, dx)
-            for i in range(n):
-                b[i] = w[x0 + i] + hs / 6.0 * (w[slope + i] + dx[i])
+            on = piece(b) if on < 0 else on
+            if not advance(b, w, ts, hs, degree, (k + 0.5) / total, (k + 1) / total, on):
+                again(b, w, ts, hs, degree, k, total)
+                on = -1
             if (k + 1) % count == 0:
                 out(b, t + (k + 1) * hs)
                 store_node(b, first_output, outputs, (k + 1) // count)

@@ -39,7 +39,8 @@ def test_step_follows_the_order(algorithm, at_rule, order, tolerance):
     assert found.step**order == pytest.approx(at_rule**order * tolerance / 1e-3, rel=1e-12)
     assert found.expected_error == pytest.approx(tolerance, rel=1e-12)
     floor = separation_floor(min(found.step, CHARTED_MICRO_STEP))
-    assert found.separation_error == pytest.approx(max(tolerance, floor), rel=1e-12)
+    bent = 1e-3 * (found.step / at_rule) ** 3  # forces bend between nodes
+    assert found.separation_error == pytest.approx(max(tolerance, bent, floor), rel=1e-12)
     assert found.bounded_by == "accuracy"
 
 
@@ -70,8 +71,10 @@ def test_no_promise_below_the_error_of_micro_steps(tolerance):
     """A smaller macro step would be in vain."""
     found = recommend([(CUBIC, math.inf)], FREQUENCY, tolerance)
     assert found.expected_error == pytest.approx(CONTACT_ERROR, rel=1e-12)
-    assert (found.separation_error, found.bounded_by) == (SEPARATION_ERROR, "micro steps")
+    assert found.bounded_by == "micro steps"
     assert found.step**4 == pytest.approx(LI_STEP**4 * CONTACT_ERROR / 1e-3, rel=1e-12)
+    bent = 1e-3 * (CONTACT_ERROR / 1e-3) ** 0.75
+    assert found.separation_error == pytest.approx(max(bent, SEPARATION_ERROR), rel=1e-12)
 
 
 def test_no_promise_below_the_floor_with_a_stable_step_either():
@@ -81,9 +84,12 @@ def test_no_promise_below_the_floor_with_a_stable_step_either():
 
 
 def test_floors_follow_the_micro_step():
-    """Classical Runge-Kutta in contact, a kink inside a micro step where teeth separate."""
+    """Classical Runge-Kutta in contact, a kink inside a micro step where teeth separate.
+
+    Measured: 1.4e-6, 6.6e-6, 7.5e-5 with 2.5, 5 and 10 us (`tests/campaigns/inner_steps.py`).
+    """
     assert contact_floor(5e-6) == pytest.approx(16.0 * CONTACT_ERROR, rel=1e-12)
-    assert separation_floor(5e-6) == pytest.approx(4.0 * SEPARATION_ERROR, rel=1e-12)
+    assert separation_floor(5e-6) == pytest.approx(8.0 * SEPARATION_ERROR, rel=1e-12)
     assert contact_floor(1e-9) == separation_floor(1e-9) == SMALLEST_TOLERANCE
     found = recommend([(CUBIC, math.inf)], FREQUENCY, 1e-7, micro_step=5e-6)
     assert found.expected_error == pytest.approx(contact_floor(5e-6), rel=1e-12)

@@ -74,10 +74,14 @@ def test_charts_keep_what_is_expected(algorithm, tolerance):
 def test_floor_is_where_smaller_steps_change_nothing():
     """li of degree 4 at 10 and 20 us: its nodes lie 2.5 and 5 us apart, the micro steps are equal.
 
-    The floor is the larger one, rounded.
+    The floor is the larger one, rounded. Where teeth separate it is irregular: it goes with the
+    places in the micro steps at which they part and meet.
     """
-    for scene, floor in (("loaded", CONTACT_ERROR), ("separation", SEPARATION_ERROR)):
+    for scene, floor, apart in (
+        ("loaded", CONTACT_ERROR, 0.05),
+        ("separation", SEPARATION_ERROR, PROMISE - 1.0),
+    ):
         step, error = charted(scene, "li:degree=4,iterations=1")
         seen = [np.exp(error[np.argmin(np.abs(step - np.log(h)))]) for h in (10e-6, 20e-6)]
-        assert seen[0] == pytest.approx(seen[1], rel=0.05)
+        assert max(seen) == pytest.approx(min(seen), rel=apart)
         assert floor == pytest.approx(max(seen), rel=0.05)

@@ -137,7 +137,8 @@ def coupling_row(result: Result, bond_frequency: float) -> BudgetRow:
         how = f"no rule for this algorithm and system; {measures} measures"
         return BudgetRow("coupling", _FORCE, None, Known.UNKNOWN, how)
     step = result.info.communication_step * bond_frequency / rule
-    value = rule_error(algorithm, step)
+    gears = result.parts_with(Role.GEAR_PAIR)
+    value = rule_error(algorithm, step, apart=any(_separates(result, gear) for gear in gears))
     return BudgetRow("coupling", _FORCE, value, Known.ESTIMATED, f"{SOURCE}; --reference measures")
 
 

@@ -8,7 +8,7 @@ from herringbone.components.gear_mesh import layout as at
 from herringbone.components.gear_mesh.excitation import error, impact, turn_errors, wheel
 from herringbone.components.gear_mesh.toothed_mesh import OPEN, deviating
 from herringbone.kernels import force_law
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import kernel, rare
 from herringbone.kernels.elementary import cosine, sine, sine_and_cosine
 
 
@@ -120,7 +120,7 @@ def _mesh(
 def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
     """eps_z [m], normal forces and pushes [N] of both meshes, left before right, after `derive`.
 
-    Writes depths, tangents, and the torques of what is moved by a rotation.
+    Writes them, depths, tangents, and the torques of what is moved by a rotation.
     """
     for i in range(4):
         b[at.TORQUE + i] = b[at.HELD + 2 + i]
@@ -129,9 +129,37 @@ def meshes(b: np.ndarray) -> tuple[float, float, float, float, float]:
     right, right_rate, right_phase = approach(b, 1, eps, eps_rate)
     normal_left, push_left = _mesh(b, 0, left, left_rate, left_phase)
     normal_right, push_right = _mesh(b, 1, right, right_rate, right_phase)
+    b[at.NORMAL], b[at.NORMAL + 1] = normal_left, normal_right
     if b[at.F_A] != 0.0:
         thrust = 0.5 * b[at.TAN] * (push_left - push_right)
         for half in range(2):
             b[at.TORQUE + half] -= thrust * per_pinion
             b[at.TORQUE + 2 + half] -= thrust * per_wheel
     return eps, normal_left, normal_right, push_left, push_right
+
+
+@rare
+def _piece(b: np.ndarray, depths: int, whole: float) -> int:
+    """See `piece`; not 0."""
+    found = 1
+    for side in range(2):
+        force = b[at.NORMAL + side]
+        found = 3 * found + (1 if force > 0.0 else 0) + (2 if force < 0.0 else 0)
+        for flank in range(2):
+            depth = b[depths + 2 * side + flank]
+            found = 3 * found + (1 if depth > 0.0 else 0) + (1 if depth > whole else 0)
+    return found
+
+
+@kernel
+def piece(b: np.ndarray) -> int:
+    """On which smooth piece of its law each mesh is, after `meshes`; 0 if both drive.
+
+    The force bends where teeth meet and part, where damping would pull, and where it is whole.
+    """
+    depths = at.DEPTH if b[at.DEVIATIONS] == 0.0 else at.PRESSED
+    whole = b[at.TRANSITION] if b[at.GATE] != 0.0 else 0.0
+    least, forces = min(b[depths], b[depths + 2]), min(b[at.NORMAL], b[at.NORMAL + 1])
+    if forces > 0.0 and least > whole and max(b[depths + 1], b[depths + 3]) <= 0.0:
+        return 0
+    return _piece(b, depths, whole)

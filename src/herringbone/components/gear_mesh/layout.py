@@ -30,7 +30,7 @@ _HELD = 6
 _RATIOS = 2
 _TABLES = 2 * force_law.TABLE_SIZE + transmission_error.TABLE_SIZE + _PAIR + _HELD
 _TEETH = 2 * tooth_pair_law.TABLE_SIZE + tooth_deviations.TABLE_SIZE + _PAIR + _RATIOS
-_RESULTS = 16
+_RESULTS = 18
 
 DECLARATION = Declaration(
     "gear_mesh",
@@ -162,5 +162,7 @@ TORQUE = _results + 8
 """By body: torque [N m] of what moves the flanks by a rotation."""
 TANGENT = _results + 12
 """In the order of the depths: tangent stiffness [N/m] of flanks that press."""
+NORMAL = _results + 16
+"""By side: normal force [N]."""
 
 TWO_PI = 2.0 * math.pi

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from herringbone.components.gear_mesh import layout as at
-from herringbone.components.gear_mesh.contact import derive, meshes
+from herringbone.components.gear_mesh.contact import derive, meshes, piece
 from herringbone.components.gear_mesh.excitation import wheel
 from herringbone.components.gear_mesh.ramp import ramp, ramp_speed, turn_ramp
 from herringbone.kernels import force_law, steppers
@@ -199,7 +199,7 @@ def indicators(b: np.ndarray, t: float, z: np.ndarray) -> None:
         z[2 * side], z[2 * side + 1] = b[at.DEPTH + 2 * side], -b[at.DEPTH + 2 * side + 1]
 
 
-_advance = steppers.body_stepper(_rates, _results, at.DECLARATION, at.SCRATCH)
+_advance = steppers.body_stepper(_rates, _results, at.DECLARATION, at.SCRATCH, piece)
 
 
 @kernel

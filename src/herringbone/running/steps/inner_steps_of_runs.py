@@ -1,9 +1,9 @@
 """Inner steps of own parts in runs with ever shorter macro steps, of which one meets a tolerance.
 
-Teeth that touch or part, and limits of a controller, are kinks at a time inside of an inner step:
-its error falls with the second power there (see `stability.recommendation`), that of the coupling
-with the fourth. So inner steps fall with the square of the macro step, and runs tell by one power
-what both err.
+Limits of a controller are kinks at a time inside of an inner step: its error falls with the second
+power there (where teeth touch or part with the third, see `stability.recommendation`), that of the
+coupling with the fourth. So inner steps fall with the square of the macro step, and runs tell by
+one power what both err.
 """
 
 from collections.abc import Mapping
