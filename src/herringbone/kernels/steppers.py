@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.kernels.compiling.jit import inner, kernel, outside
+from herringbone.kernels.compiling.jit import inner, kernel
 from herringbone.kernels.signals import STRIDE, all_finite, evaluate, monomial, store_node
 
 Rhs = Callable[[np.ndarray, float, np.ndarray], None]
@@ -98,24 +98,29 @@ def one_piece(b: np.ndarray) -> int:
 
 def _runge_kutta(
     rhs: Rhs, piece: Piece, declaration: Declaration, set_inputs: Callable
-) -> Callable[[np.ndarray, np.ndarray, float, float, int, float, float, int], bool]:
+) -> Callable[[np.ndarray, np.ndarray, float, float, int, float, float, float, int, bool], int]:
     """Compile one step of classical Runge-Kutta (order 4).
 
     Returns:
-        advance(b, w, t, h, degree, middle, end, on) -> bool: block, work space, which begins with
-        the derivatives at the start, and has the states there behind them afterwards, start and
-        length [s], interface degree, where middle and end lie in the macro step, the piece that the
-        laws are on at the start; False if they leave it.
+        advance(b, w, t, h, degree, begin, middle, end, on, known) -> int: block, work space, which
+        has the states at the start behind the derivatives afterwards, start and length [s],
+        interface degree, where begin, middle and end lie in the macro step, the piece that the laws
+        are on at the start (-1: not known yet), whether the work space begins with the derivatives
+        there; the piece, or -1 if the laws leave it.
     """
     n = declaration.state_count
     x0, slope = n, 2 * n
 
     @inner(declaration.name)
     def advance(
-        b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int, middle: float, end: float,
-        on: int,
-    ) -> bool:  # fmt: skip
+        b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int, begin: float, middle: float,
+        end: float, on: int, known: bool,
+    ) -> int:  # fmt: skip
         dx = w[:n]
+        set_inputs(b, w, degree, begin)
+        if not known:
+            rhs(b, t, dx)
+        on = piece(b) if on < 0 else on
         for i in range(n):
             w[x0 + i] = b[i]
             w[slope + i] = dx[i]
@@ -134,7 +139,7 @@ def _runge_kutta(
         rhs(b, t + h, dx)
         for i in range(n):
             b[i] = w[x0 + i] + h / 6.0 * (w[slope + i] + dx[i])
-        return stays and piece(b) == on
+        return on if stays and piece(b) == on else -1
 
     return advance
 
@@ -171,20 +176,6 @@ def body_stepper(
     expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, 3 * n)
     advance = _runge_kutta(rhs, piece, declaration, set_inputs)
 
-    @outside(declaration.name)
-    def again(
-        b: np.ndarray, w: np.ndarray, t: float, h: float, degree: int, k: int, total: int
-    ) -> None:
-        """Take the k-th micro step again."""
-        for i in range(n):
-            b[i] = w[n + i]
-        for part in range(FINER):
-            c = (k + part / FINER) / total
-            set_inputs(b, w, degree, c)
-            rhs(b, t + h * part / FINER, w[:n])
-            middle, end = (k + (part + 0.5) / FINER) / total, (k + (part + 1) / FINER) / total
-            advance(b, w, t + h * part / FINER, h / FINER, degree, middle, end, 0)
-
     @inner(declaration.name)
     def step(
         b: np.ndarray, w: np.ndarray, t: float, h: float, micro_step: float, degree: int
@@ -197,21 +188,29 @@ def body_stepper(
         total = intervals * count
         hs = h / total
         dx, on = w[:n], -1
-        for k in range(total):
-            ts = t + k * hs
-            set_inputs(b, w, degree, k / total)
-            if known and k > 0 and k % count == 0:
+        k, part, parts = 0, 0, 1
+        while k < total:
+            found = known and parts == 1 and k > 0 and k % count == 0
+            if found:
                 for i in range(n):
                     dx[i] = b[left + i]
-            else:
-                rhs(b, ts, dx)
-            on = piece(b) if on < 0 else on
-            if not advance(b, w, ts, hs, degree, (k + 0.5) / total, (k + 1) / total, on):
-                again(b, w, ts, hs, degree, k, total)
+            begin, middle = (k + part / parts) / total, (k + (part + 0.5) / parts) / total
+            end = (k + (part + 1) / parts) / total
+            ts = t + k * hs + hs * part / parts
+            on = advance(b, w, ts, hs / parts, degree, begin, middle, end, on, found)
+            if on < 0 and parts == 1:  # again
+                for i in range(n):
+                    b[i] = w[n + i]
+                parts = FINER
+                continue
+            part += 1
+            if parts > 1:
                 on = -1
-            if (k + 1) % count == 0:
-                out(b, t + (k + 1) * hs)
-                store_node(b, first_output, outputs, (k + 1) // count)
+            if part == parts:
+                k, part, parts = k + 1, 0, 1
+                if k % count == 0:
+                    out(b, t + k * hs)
+                    store_node(b, first_output, outputs, k // count)
         restore_inputs(b, w, degree)
         return 0 if all_finite(b, 0, n) else NOT_FINITE
 

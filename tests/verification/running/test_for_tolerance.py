@@ -62,7 +62,8 @@ def test_teeth_that_will_part_get_shorter_ones(rig):
     """Of a start without load; the kick of `separation` asks for less."""
     runup = prepared("test_rig", "runup", Wishes()).system
     assert with_inner_steps(runup, 1e-4).longest == pytest.approx(separation_step(0.5e-4))
-    assert with_inner_steps(rig.system, 1e-5, 4, kicked=True).longest == separation_step(1.5e-5)
+    kicked = with_inner_steps(rig.system, 1e-5, 4, kicked=True)
+    assert kicked.longest == pytest.approx(separation_step(1.5e-5))
 
 
 def test_algorithm_and_shares(rig):
@@ -110,7 +111,7 @@ def test_a_step_is_divided_so_that_runs_have_points_in_common(monkeypatch, wante
 def test_inner_steps_of_runs_fall_with_the_square_of_the_macro_step(rig):
     """From a third of it on, so that kinks inside of them (second power) err as the coupling does.
 
-    Not below 1e-7 by the rule: 2.5 us (1e-7 / 1.3e-6)^(1/3).
+    Not below 1e-7 by the rule: 2.5 us (1e-7 / 1.4e-6)^(1/3).
     """
     stable = dict.fromkeys(stable_inner_steps(rig.system), 1.0)
 
@@ -120,7 +121,7 @@ def test_inner_steps_of_runs_fall_with_the_square_of_the_macro_step(rig):
     assert [at(step) for step in (2e-4, 1e-4, 5e-5)] == pytest.approx(
         [2e-4 / 3.0, 5e-5 / 3.0, 1.25e-5 / 3.0], rel=1e-12
     )
-    assert at(4e-6) == pytest.approx(1.063e-6, rel=1e-3)
+    assert at(4e-6) == pytest.approx(1.037e-6, rel=1e-3)
     assert at(3e-7) == pytest.approx(1e-7, rel=1e-12)
     close = dict.fromkeys(stable, 1e-5)
     assert inner(with_inner_steps_of(rig.system, 2e-4, 2e-4, 1e-6, close), GEAR) == 1e-5
