@@ -6,11 +6,11 @@ in tests/; the seed is the last commit's. Each draw is a pair of `TEETH` of a cl
 the test rig at a drawn speed and torque, a third of them so small that teeth may separate. A line
 for each: what was found, by which solver, in how much CPU time; and by how much a march of finer
 steps differs from it, over the alternating part of the worst group of channels: one that goes on
-from the state for two periods ("stays"), and one from equilibrium that has gone on for
-0.5 s and a period, over the next one ("comes"). The first has to stay within the tolerance.
-The second tells whether there is another motion. Where the state says that teeth rattle and never
-repeat, the march must not repeat, either: two marches beside each other part as the state says, by
-a rate per mesh, and levels over its periods are the same, both within `DOUBTS`.
+from the state for two periods ("stays"), and one from equilibrium that has gone on for 0.5 s, and
+until it repeats ("comes"). The first has to stay within the tolerance. The second tells whether
+there is another motion. Where the state says that teeth rattle and never repeat, the march must not
+repeat, either: two marches beside each other part as the state says, by a rate per mesh, and levels
+over its periods are the same, both within `DOUBTS`.
 """
 
 import sys
@@ -37,6 +37,8 @@ GROUPS = ("bearing_force", "seat_velocity")
 PER_MESH, STEP, SETTLING = 128, 5e-6, 0.5
 _ALIGNED = 8
 """Steps of the search for the place in a period at which theta is; its swings are small."""
+SETTLED, LONGEST = 0.3, 8
+"""Change from period to period, over the tolerance, that is none; further periods at most."""
 DOUBTS = 4.0
 """Standard errors that rates and levels of motions that never repeat may differ by."""
 APART, TURNED, MESHES, BLOCKS = 1e-6, 16, 512, 8
@@ -157,7 +159,7 @@ def levels(state: hb.SteadyState, values: np.ndarray) -> list[float]:
 
 
 def settled_march(state: hb.SteadyState) -> tuple[Marched, np.ndarray, np.ndarray]:
-    """A march from equilibrium that has settled, and its last two periods.
+    """A march from equilibrium that has settled, if it does, and its last two periods.
 
     Raises:
         HerringboneError: no march from equilibrium goes on.
@@ -169,13 +171,22 @@ def settled_march(state: hb.SteadyState) -> tuple[Marched, np.ndarray, np.ndarra
     failed = HerringboneError("no march from equilibrium")
     for begin, ramp in starts:
         run = Marched(state, start_of(begin), ramp)
-        settling = SETTLING / state.period
         try:
-            before = run.on(np.ceil(settling) + ramp / abs(structure.turns_of_pinion))
-            return run, before, run.on(1.0)
+            run.on(np.ceil(SETTLING / state.period) + ramp / abs(structure.turns_of_pinion))
+            return run, *last_periods(state, run)
         except HerringboneError as error:
             failed = error
     raise failed
+
+
+def last_periods(state: hb.SteadyState, run: Marched) -> tuple[np.ndarray, np.ndarray]:
+    """Two periods, after so many that they are the same, if they are to be."""
+    before, after = run.on(1.0), run.on(1.0)
+    for _ in range(LONGEST if state.converged else 0):
+        if differs(state, after, before) <= SETTLED * state.tolerance:
+            break
+        before, after = after, run.on(1.0)
+    return before, after
 
 
 def never_repeats(state: hb.SteadyState) -> tuple[str, bool]:
