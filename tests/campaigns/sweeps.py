@@ -1,8 +1,9 @@
 """Sweeps on many cores, killed, and long: `python -m campaigns.sweeps efficiency|kills|memory`.
 
 efficiency [POINTS [T_END]]: transient points in this process, in two processes, and on a local Dask
-cluster as docs/sweeps.md has it, if that is installed; the same bits, and serial CPU time over that
-of all processes. The share of wall time is that of an idle machine only.
+cluster as docs/sweeps.md has it, if that is installed, whose workers are started anew, or forked;
+the same bits, and serial CPU time over that of all processes. The share of wall time is that of an
+idle machine only.
 kills [COUNT [SEED]]: kill -9 of a worker or of the parent at random moments, then the same command
 again: the same table, bit for bit.
 memory [POINTS]: a cheap study of so many points; memory of the process over its course.
@@ -36,11 +37,12 @@ def main():
     wanted = dict(speed=speeds, torque=[100.0, 200.0], t_end=t_end, evaluator=Transient(),
                   output=folder)
     begin = time.perf_counter()
-    if how == "dask":
+    if how.startswith("dask"):
         import dask
         from dask.distributed import Client, LocalCluster
         dask.config.set({  # see docs/sweeps.md
             "distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s",
+            "distributed.worker.multiprocessing-method": how.partition("-")[2] or "spawn",
         })
         with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
             with Client(cluster) as client:
@@ -98,7 +100,7 @@ def efficiency(folder: Path, points: int = 400, t_end: float = 0.2) -> int:
     script = folder / "run.py"
     script.write_text(_RUN)
     found = {}
-    ways = ("1", "2", "dask") if find_spec("dask") else ("1", "2")
+    ways = ("1", "2", "dask", "dask-fork") if find_spec("dask") else ("1", "2")
     CDLL(None).prctl(_SUBREAPER, 1, 0, 0, 0)  # processes whose parents end are waited for here
     for how in ways:
         place, before = folder / how, _cpu_of_children()
@@ -114,7 +116,7 @@ def efficiency(folder: Path, points: int = 400, t_end: float = 0.2) -> int:
         wall, cpu = json.loads(done.stdout.splitlines()[-1]), _cpu_of_children() - before
         found[how] = (place / "table.csv").read_bytes(), wall, cpu
         same = found[how][0] == found["1"][0]
-        line = f"{how:5} {wall:8.1f} s wall {cpu:8.1f} s CPU, efficiency "
+        line = f"{how:9} {wall:8.1f} s wall {cpu:8.1f} s CPU, efficiency "
         line += f"{found['1'][2] / cpu:.3f} of CPU, {found['1'][1] / (2.0 * wall):.3f} of wall"
         sys.stdout.write(f"{line}; {'same bits' if same else 'OTHER BITS'}\n")
         sys.stdout.flush()

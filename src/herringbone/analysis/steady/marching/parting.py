@@ -18,6 +18,8 @@ from herringbone.analysis.steady.structure import Structure
 
 _APART, _LONGEST = 1e-5, 20e-6
 """Distance over the swing of the coordinates; base step [s]."""
+_PLACES = 16
+"""Of a mesh, at which swings are looked at."""
 _AHEAD, _FEWEST = 16, 1024
 """Meshes over which swings are looked at, and first distances turn; meshes that tell, at least."""
 _STANDS = 1e-9
@@ -66,12 +68,10 @@ def parting(
         CoreStopped: a march fails.
     """
     way = PeriodMap(structure, motion, _LONGEST)
-    x, ends = begin, [begin]
-    for _ in range(_AHEAD):
-        x = way.end(x, mesh).x
-        ends.append(x)
-    weights = _weights(np.array(ends)[:, :-1])
-    apart = ends[-1] - ends[-2]
+    places = _PLACES * _AHEAD
+    swung = way.along(begin, _AHEAD * mesh, places).x
+    weights = _weights(swung[:, :-1])
+    x, apart = begin, swung[_PLACES // 2] - swung[0]
     apart[-1] = 0.0
     apart *= _APART / _size(apart, weights)
     logs = []
@@ -86,10 +86,10 @@ def parting(
     return Parting(float(means.mean()), float(means.std(ddof=1) / math.sqrt(_BLOCKS)))
 
 
-def _weights(ends: np.ndarray) -> np.ndarray:
-    """(2 modes,) one over how far coordinates (times, 2 modes) go; 0 of those that stand."""
-    size = np.abs(ends).max(axis=0)
-    every = np.hypot(*np.split(np.ptp(ends, axis=0), 2)), np.hypot(*np.split(size, 2))
+def _weights(swung: np.ndarray) -> np.ndarray:
+    """(2 modes,) one over how far coordinates (places, 2 modes) go; 0 of those that stand."""
+    parts = (np.split(each, 2) for each in (np.ptp(swung, axis=0), np.abs(swung).max(axis=0)))
+    every = (np.hypot(*each) for each in parts)
     swing, size = (np.tile(each, 2) for each in every)
     return np.where(swing > _STANDS * size, 1.0 / np.maximum(swing, np.finfo(float).tiny), 0.0)
 
