@@ -6,14 +6,17 @@ in tests/; the seed is the last commit's. Each draw is a pair of `TEETH` of a cl
 the test rig at a drawn speed and torque, a third of them so small that teeth may separate. A line
 for each: what was found, by which solver, in how much CPU time; and by how much a march of finer
 steps differs from it, over the alternating part of the worst group of channels: one that goes on
-from the state for two periods ("stays"), and one from equilibrium that has settled for as long as
-the state says or 0.5 s, over its last period ("comes"). The first has to stay within the tolerance.
-The second tells whether there is another motion; where none was found it must not repeat, either.
+from the state for two periods ("stays"), and one from equilibrium that has gone on for 0.5 s, and
+until it repeats ("comes"). The first has to stay within the tolerance. The second tells whether
+there is another motion. Where the state says that teeth rattle and never repeat, the march must not
+repeat, either: two marches beside each other part as the state says, by a rate per mesh, and levels
+over its periods are the same, both within `DOUBTS`.
 """
 
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -34,8 +37,13 @@ GROUPS = ("bearing_force", "seat_velocity")
 PER_MESH, STEP, SETTLING = 128, 5e-6, 0.5
 _ALIGNED = 8
 """Steps of the search for the place in a period at which theta is; its swings are small."""
-RATTLES = 10.0
-"""Change from one period to the next, over the tolerance, from which on nothing repeats."""
+SETTLED, LONGEST = 0.3, 8
+"""Change from period to period, over the tolerance, that is none; further periods at most."""
+DOUBTS = 4.0
+"""Standard errors that rates and levels of motions that never repeat may differ by."""
+APART, TURNED, MESHES, BLOCKS = 1e-6, 16, 512, 8
+"""Distance of marches beside each other, over the coordinates' size; meshes until it grows with the
+largest rate; further ones; parts of these whose means tell how far it is known."""
 PAIR = """[gear_pair]
 number_of_teeth = [{0}, {1}]
 normal_module = "4 mm"
@@ -58,7 +66,7 @@ seed = {5}
 
 
 class Marched:
-    """A march of short steps under what is given of a state.
+    """A march of short steps under what is given of a state; `run` is where it stands.
 
     Args:
         state: at whose operating point it is.
@@ -71,8 +79,8 @@ class Marched:
         signals = state.motion.given[:-1, 0].real.copy()
         known = core.condensed
         held = Held(core.twin, known.equations, known.modes, signals, ramp)
-        self._run = Solution(held, steps.degree, steps.close)
-        self._run.state.q[: begin.size] = begin
+        self.run = Solution(held, steps.degree, steps.close)
+        self.run.state.q[: begin.size] = begin
         self._columns = [c for group in GROUPS for c in state.chosen(group)]
         self._outputs = core.outputs(self._columns, steps, inside=False)
         self._places = PER_MESH * state.meshes
@@ -86,8 +94,8 @@ class Marched:
         begin, self._gone = self._gone * self._gap, end
         with one_blas_thread():
             parts = [
-                self._outputs.values(self._run, part)
-                for part in self._run.piece(begin, end * self._gap, step, times)
+                self._outputs.values(self.run, part)
+                for part in self.run.piece(begin, end * self._gap, step, times)
             ]
         return np.concatenate(parts).T
 
@@ -114,7 +122,7 @@ def expected_of(state: hb.SteadyState) -> np.ndarray:
 
 def turned_to(state: hb.SteadyState, run: Marched, values: np.ndarray) -> np.ndarray:
     """Values (columns, places) of a period from when theta is that of the state's start."""
-    own = run._run.state.q  # theta at the end of the last period, which begins it
+    own = run.run.state.q  # theta at the end of the last period, which begins it
     theta = float(own[2 * state.structure.core.condensed.modes.rates.size])
     angle, orders, late = state.orbit.angle, state.orbit.response.orders, 0.0
     for _ in range(_ALIGNED):
@@ -125,8 +133,33 @@ def turned_to(state: hb.SteadyState, run: Marched, values: np.ndarray) -> np.nda
     return np.fft.irfft(np.fft.rfft(values, axis=1) * turning, places, axis=1)
 
 
-def comes(state: hb.SteadyState) -> tuple[float, float]:
-    """By how much what a march from equilibrium comes to differs, and changes in a period.
+def parting(state: hb.SteadyState, run: Marched) -> tuple[float, float]:
+    """Rate per mesh at which a march beside another one parts from it, and its standard error."""
+    other = Marched(state, np.zeros(0))
+    own, beside = run.run.state.q, other.run.state.q
+    sizes = np.maximum(np.abs(own), 1e-9 * np.abs(own).max())
+    sizes[2 * state.structure.core.condensed.modes.rates.size :] = np.inf  # being late is nothing
+    beside[:] = own * (1.0 + APART * (own != 0.0))
+    beside[np.isinf(sizes)] = own[np.isinf(sizes)]
+    logs, mesh = [], 1.0 / state.meshes
+    for _ in range(TURNED + MESHES):
+        run.on(mesh)
+        other.on(mesh)
+        grown = float(np.sqrt(np.mean(((beside - own) / sizes) ** 2))) / APART
+        logs.append(np.log(grown))
+        beside[:] = own + (beside - own) / grown
+    means = np.array([part.mean() for part in np.array_split(logs[TURNED:], BLOCKS)])
+    return float(means.mean()), float(means.std(ddof=1) / np.sqrt(BLOCKS))
+
+
+def levels(state: hb.SteadyState, values: np.ndarray) -> list[float]:
+    """Of the groups, of their columns over a period."""
+    counts = np.cumsum([len(state.chosen(group)) for group in GROUPS])[:-1]
+    return [float(np.sqrt(own.var(axis=1).mean())) for own in np.split(values, counts)]
+
+
+def settled_march(state: hb.SteadyState) -> tuple[Marched, np.ndarray, np.ndarray]:
+    """A march from equilibrium that has settled, if it does, and its last two periods.
 
     Raises:
         HerringboneError: no march from equilibrium goes on.
@@ -138,18 +171,50 @@ def comes(state: hb.SteadyState) -> tuple[float, float]:
     failed = HerringboneError("no march from equilibrium")
     for begin, ramp in starts:
         run = Marched(state, start_of(begin), ramp)
-        settling = max(SETTLING, state.settled.time if state.settled else 0.0) / state.period
         try:
-            before = run.on(np.ceil(settling) + ramp / abs(structure.turns_of_pinion))
-            after = run.on(1.0)
+            run.on(np.ceil(SETTLING / state.period) + ramp / abs(structure.turns_of_pinion))
+            return run, *last_periods(state, run)
         except HerringboneError as error:
             failed = error
-            continue
-        changes = differs(state, after, before)
-        if not state.converged:
-            return np.nan, changes
-        return differs(state, turned_to(state, run, after), expected_of(state)), changes
     raise failed
+
+
+def last_periods(state: hb.SteadyState, run: Marched) -> tuple[np.ndarray, np.ndarray]:
+    """Two periods, after so many that they are the same, if they are to be."""
+    before, after = run.on(1.0), run.on(1.0)
+    for _ in range(LONGEST if state.converged else 0):
+        if differs(state, after, before) <= SETTLED * state.tolerance:
+            break
+        before, after = after, run.on(1.0)
+    return before, after
+
+
+def never_repeats(state: hb.SteadyState) -> tuple[str, bool]:
+    """A line on a state that says so, and whether a march says the same."""
+    run, before, after = settled_march(state)
+    changes, own = differs(state, after, before), state.irregular
+    said = f"from equilibrium it changes by {changes:.1e} per period"
+    if own is None:
+        return f"NOT FOUND, {state.notes[0]}; {said}", False
+    rate, doubt = parting(state, run)
+    far = abs(rate - own.parting.rate) / np.hypot(doubt, own.parting.doubt)
+    now = zip(*(levels(state, values) for values in (before, after)), strict=True)
+    off = [standard_errors(own.levels[g], list(each)) for g, each in zip(GROUPS, now, strict=True)]
+    return (
+        f"never repeats, parts by {own.parting.rate:.4f} +- {own.parting.doubt:.4f} a mesh, march "
+        f"{rate:.4f} +- {doubt:.4f} ({far:.1f} standard errors), levels differ by {max(off):.1f}; "
+        f"{said}"
+    ), rate > -2.0 * doubt and max(far, *off) <= DOUBTS
+
+
+def standard_errors(one: Sequence[float], other: Sequence[float]) -> float:
+    """Of the difference of two means, over all that both samples scatter."""
+    count = len(one) + len(other)
+    squares = (len(each) * np.var(each) for each in (one, other))
+    scatter = np.sqrt(sum(squares) / (count - 2))
+    return float(
+        abs(np.mean(one) - np.mean(other)) / (scatter * np.sqrt(1 / len(one) + 1 / len(other)))
+    )
 
 
 def draw(random: np.random.Generator, folder: Path, tolerance: float) -> tuple[str, bool]:
@@ -166,27 +231,36 @@ def draw(random: np.random.Generator, folder: Path, tolerance: float) -> tuple[s
         f"{teeth[0]}/{teeth[1]} {helix:.1f} deg class {grade} seed {seed} zeta {damping:.3f} "
         f"{speed:.1f} r/min {torque:.1f} N m:"
     )
-    begin = time.process_time()
     try:
-        state = hb.steady(
-            "test_rig", gear=gear, speed=speed * np.pi / 30.0, torque=torque, tolerance=tolerance
-        )
+        told, good = judged(gear, speed, torque, tolerance)
     except HerringboneError as error:
-        return f"{said} {error}", False
+        told, good = str(error), False
+    return f"{said} {told}", good
+
+
+def judged(gear: Path, speed: float, torque: float, tolerance: float) -> tuple[str, bool]:
+    """What is to be told of a point [r/min, N m], and whether it is as it should be.
+
+    Raises:
+        HerringboneError: there is no state, or no march goes on.
+    """
+    begin = time.process_time()
+    state = hb.steady(
+        "test_rig", gear=gear, speed=speed * np.pi / 30.0, torque=torque, tolerance=tolerance
+    )
     took = time.process_time() - begin
-    off, changes = comes(state)
     if not state.converged:
-        rattles = changes > RATTLES * tolerance
-        known = f"; from equilibrium it changes by {changes:.1e} per period"
-        said += f" {'RATTLES' if rattles else 'NOT FOUND'}, {took:.1f} s, {state.notes[0]}{known}"
-        return said, rattles
+        told, good = never_repeats(state)
+        return f"{took:.1f} s, {told}", good
+    run, before, after = settled_march(state)
+    changes = differs(state, after, before)
+    off = differs(state, turned_to(state, run, after), expected_of(state))
     begun = Marched(state, start_of(state.orbit)).on(2.0)
     stays = differs(state, begun, expected_of(state))
     bends = "bends" if state.bends else "loaded"
     return (
-        f"{said} {state.solver}, {state.meshes} meshes, {bends}, {took:.1f} s, "
-        f"error {state.error:.1e}, stays {stays:.1e}, comes {off:.1e} "
-        f"(changes by {changes:.1e} per period)"
+        f"{state.solver}, {state.meshes} meshes, {bends}, {took:.1f} s, error {state.error:.1e}, "
+        f"stays {stays:.1e}, comes {off:.1e} (changes by {changes:.1e} per period)"
     ), stays <= tolerance
 
 

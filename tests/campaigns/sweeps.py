@@ -1,8 +1,9 @@
 """Sweeps on many cores, killed, and long: `python -m campaigns.sweeps efficiency|kills|memory`.
 
 efficiency [POINTS [T_END]]: transient points in this process, in two processes, and on a local Dask
-cluster as docs/sweeps.md has it, if that is installed; the same bits, and serial CPU time over that
-of all processes. The share of wall time is that of an idle machine only.
+cluster as docs/sweeps.md has it, if that is installed, whose workers are started anew, or forked;
+the same bits, and serial CPU time over that of all processes. The share of wall time is that of an
+idle machine only.
 kills [COUNT [SEED]]: kill -9 of a worker or of the parent at random moments, then the same command
 again: the same table, bit for bit.
 memory [POINTS]: a cheap study of so many points; memory of the process over its course.
@@ -11,17 +12,19 @@ memory [POINTS]: a cheap study of so many points; memory of the process over its
 import json
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 from contextlib import suppress
+from ctypes import CDLL
 from importlib.util import find_spec
 from pathlib import Path
 
 _RUN = """
-import json, math, resource, sys, time
+import json, sys, time
 from pathlib import Path
 import numpy as np
 import herringbone as hb
@@ -34,20 +37,19 @@ def main():
     wanted = dict(speed=speeds, torque=[100.0, 200.0], t_end=t_end, evaluator=Transient(),
                   output=folder)
     begin = time.perf_counter()
-    if how == "dask":
+    if how.startswith("dask"):
         import dask
         from dask.distributed import Client, LocalCluster
         dask.config.set({  # see docs/sweeps.md
             "distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s",
+            "distributed.worker.multiprocessing-method": how.partition("-")[2] or "spawn",
         })
         with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
             with Client(cluster) as client:
                 hb.sweep("test_rig", executor=client.get_executor(), **wanted)
     else:
         hb.sweep("test_rig", workers=int(how), **wanted)
-    wall = time.perf_counter() - begin
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    print(json.dumps([wall, sum(each.ru_utime + each.ru_stime for each in used)]))
+    print(json.dumps(time.perf_counter() - begin))
 
 if __name__ == "__main__":
     main()
@@ -61,6 +63,8 @@ import herringbone as hb
 hb.sweep("gearbox", speed=[10.0 * k for k in range(1, 41)], torque=[1.0 * k for k in range(1, 13)],
          workers=2, evaluator=Cheap(longest=8, seconds=0.004), output=Path(sys.argv[1]))
 """
+_SUBREAPER = 36
+"""PR_SET_CHILD_SUBREAPER of Linux."""
 _LONG = """
 import resource, sys
 from pathlib import Path
@@ -91,28 +95,38 @@ def _started(script: str, *arguments: object) -> subprocess.Popen:
     )
 
 
-def efficiency(folder: Path, points: int = 400, t_end: float = 0.02) -> int:
+def efficiency(folder: Path, points: int = 400, t_end: float = 0.2) -> int:
     """See above; number of tables with other bits."""
     script = folder / "run.py"
     script.write_text(_RUN)
     found = {}
-    ways = ("1", "2", "dask") if find_spec("dask") else ("1", "2")
+    ways = ("1", "2", "dask", "dask-fork") if find_spec("dask") else ("1", "2")
+    CDLL(None).prctl(_SUBREAPER, 1, 0, 0, 0)  # processes whose parents end are waited for here
     for how in ways:
-        place = folder / how
+        place, before = folder / how, _cpu_of_children()
         done = subprocess.run(
             [sys.executable, script, how, place, str(points), str(t_end)],
             capture_output=True,
             text=True,
             check=True,
         )
-        wall, cpu = json.loads(done.stdout.splitlines()[-1])
+        with suppress(ChildProcessError):
+            while True:
+                os.wait()
+        wall, cpu = json.loads(done.stdout.splitlines()[-1]), _cpu_of_children() - before
         found[how] = (place / "table.csv").read_bytes(), wall, cpu
         same = found[how][0] == found["1"][0]
-        line = f"{how:5} {wall:8.1f} s wall {cpu:8.1f} s CPU, efficiency "
+        line = f"{how:9} {wall:8.1f} s wall {cpu:8.1f} s CPU, efficiency "
         line += f"{found['1'][2] / cpu:.3f} of CPU, {found['1'][1] / (2.0 * wall):.3f} of wall"
         sys.stdout.write(f"{line}; {'same bits' if same else 'OTHER BITS'}\n")
         sys.stdout.flush()
     return sum(table != found["1"][0] for table, _, _ in found.values())
+
+
+def _cpu_of_children() -> float:
+    """CPU time of all processes that have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def kills(folder: Path, count: int = 50, seed: int = 1) -> int:

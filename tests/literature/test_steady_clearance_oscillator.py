@@ -15,7 +15,9 @@ import pytest
 from support.clearance import NOTHING, PERIOD, contact_lost, driven, fold, oscillator
 
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.continuation import Branch
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
+from herringbone.core import ParameterError
 
 
 @pytest.mark.parametrize(("zeta", "ratio"), [(0.05, 0.3), (0.03, 0.15)])
@@ -37,6 +39,19 @@ def test_branch_folds_where_a_multiplier_is_one():
     # Beside a fold multipliers change with the root of the distance: harmonics left out count.
     assert fine[1][0].real == pytest.approx(1.0, abs=0.02)
     assert abs(fine[1][1]) < 1.0
+
+
+def test_a_branch_of_several_periods_folds_there_too():
+    """All harmonics of a period of two are unknown; a multiplier over both is its square."""
+    (at, one), (found, both) = (fold(0.05, 0.3, 0.04, 0.84, times=times) for times in (1, 2))
+    assert found == pytest.approx(at, abs=1e-6)
+    assert both[0].real == pytest.approx(one[0].real ** 2, abs=1e-2)
+
+
+def test_too_long_a_branch_is_refused():
+    period = PERIOD._replace(meshes=200)
+    with pytest.raises(ParameterError, match="a period of 200 meshes with 16001 unknowns"):
+        Branch(oscillator(0.05), period, driven(0.3), 1.0)
 
 
 def test_an_up_sweep_jumps_at_the_fold():

@@ -57,8 +57,11 @@ def oscillator(zeta: float, depth: float = 0.0, *, clamped: bool = False) -> Pro
     )
 
 
-def driven(ratio: float):
-    return lambda w: Motion(np.array([[1.0, 0.5 * ratio]], dtype=complex), frequency=w)
+def driven(ratio: float, times: int = 1):
+    """What drives it, over so many periods of that."""
+    given = np.zeros((1, times + 1), dtype=complex)
+    given[0, 0], given[0, times] = 1.0, 0.5 * ratio
+    return lambda w: Motion(given, frequency=w / times)
 
 
 def contact_lost(zeta: float, ratio: float) -> list[float]:
@@ -67,24 +70,28 @@ def contact_lost(zeta: float, ratio: float) -> list[float]:
     return [math.sqrt(b + s * math.sqrt(b * b - 1.0 + ratio**2)) for s in (-1, 1)]
 
 
-def started(problem: Problem, ratio: float, w: float) -> tuple[Branch, BranchPoint]:
-    motion = driven(ratio)
-    orbit = Balance(problem, PERIOD, motion(w)).solve(NOTHING, np.zeros(1, dtype=int), 1e-10)
-    branch = Branch(problem, PERIOD, motion, 1.0)
+def started(problem: Problem, ratio: float, w: float, times: int = 1) -> tuple[Branch, BranchPoint]:
+    period, motion = (
+        PERIOD._replace(places=times * PERIOD.places, meshes=times),
+        driven(ratio, times),
+    )
+    whole = period._replace(order=times * PERIOD.order, meshes=1)
+    orbit = Balance(problem, whole, motion(w)).solve(NOTHING, np.zeros(1, dtype=int), 1e-10)
+    branch = Branch(problem, period, motion, 1.0)
     return branch, branch.start(orbit, w, 1.0)
 
 
 def fold(
-    zeta: float, ratio: float, depth: float, w: float, *, clamped: bool = False
+    zeta: float, ratio: float, depth: float, w: float, *, clamped: bool = False, times: int = 1
 ) -> tuple[float, np.ndarray]:
-    """The first fold of the branch from below, and the multipliers there."""
+    """The first fold of the branch from below, over some periods, and the multipliers there."""
     problem = oscillator(zeta, depth, clamped=clamped)
     with threadpool_limits(limits=1, user_api="blas"):
-        branch, before = started(problem, ratio, w)
+        branch, before = started(problem, ratio, w, times)
         for point in branch.points(before, 0.005, 0.03, 1e-8):
             if point.fold:
                 break
             before = point
         found = branch.fold(before, point, 1e-11)
-        own = driven(ratio)(found.parameter)
-        return found.parameter, multipliers(problem, own, found.orbit, 1024).values
+        own = driven(ratio, times)(found.parameter)
+        return found.parameter, multipliers(problem, own, found.orbit, 1024 * times).values

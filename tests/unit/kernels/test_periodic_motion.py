@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 
 from herringbone.kernels.compiling.jit import kernel
 from herringbone.kernels.periodic.complex_solve import complex_solve
-from herringbone.kernels.periodic.motion import periodic_motion, periodic_scratch
+from herringbone.kernels.periodic.motion import periodic_motion
+from herringbone.kernels.periodic.places import Body, periodic_scratch
 from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED
 
 OMEGA, ZETA, FORCE = 1000.0, 0.05, 4.0
@@ -36,8 +37,8 @@ def swing(b: np.ndarray, t: float, dx: np.ndarray) -> None:
 @cache
 def search_of(rates, name):
     """The search for periodic motion under some rates, compiled once."""
-    sizes = (1e-6, 1e-6)
-    return periodic_motion(rates, ((0, 2), (1, 3)), sizes, (1,), 1, STATES, FIRST, name)
+    body = Body.of(((0, 2), (1, 3)), (1e-6, 1e-6), (1,), 1, STATES)
+    return periodic_motion(rates, body, FIRST, name)
 
 
 def start(depth, slow, w):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.steady.marching.parting import parting
 from herringbone.analysis.steady.search import Search
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
@@ -59,6 +60,17 @@ def test_its_multipliers_are_those_of_the_linearised_motion(balanced, shooter):
         assert np.abs(found - one).min() < 1e-4
 
 
+def test_marches_beside_it_part_by_its_largest_multiplier(balanced, shooter):
+    """The largest Lyapunov exponent of a periodic motion is the logarithm of that, per period."""
+    state = shooter.solve(POINT)
+    found = parting(state.structure, state.motion, state.shot.begin, state.period, 1)
+    expected = np.log(balanced.multipliers.largest)
+    assert expected < 0.0
+    assert found.rate == pytest.approx(expected, abs=1e-3)  # norms of a pair swing: log 2 of 1024
+    assert found.meets
+    assert not found.parts
+
+
 def test_a_neighbour_leads_on(shooter):
     """From a neighbour nothing is marched first, and the way is the same to the tolerance."""
     near = shooter.solve(POINT._replace(speed=POINT.speed * 0.999))
@@ -93,5 +105,8 @@ def test_who_asks_is_told_what_has_found_a_state(tmp_path, capsys):
 def test_what_it_cannot_do_is_refused():
     with pytest.raises(ParameterError, match=r"gearbox: solver = shooting: nothing holds the spee"):
         hb.steady("gearbox", values=STILL, speed=100.0, solver="shooting")
+    without = r"solver = shooting: torque = 0 N m: .* ask for a load, or leave the solver"
+    with pytest.raises(ParameterError, match=without):
+        hb.steady("test_rig", values=STILL, torque=0.0, solver="shooting")
     with pytest.raises(ParameterError, match=r"solver = newton: there are auto, shooting"):
         hb.steady("test_rig", values=STILL, solver="newton")

@@ -8,8 +8,10 @@ last quarter of 20 ms, and by 0.2 % of 0.5 s.
 import numpy as np
 
 from herringbone.analysis.accuracy.apart import groups_of
+from herringbone.analysis.asked import signal
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.spectra import hann_weight
+from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
 
 _MUCH = 0.05
@@ -17,6 +19,7 @@ _FEWEST_ROWS = 80
 _FEWEST_PERIODS = 8.0
 _ROUNDING = 1e-9
 _WITHOUT_UNIT = {"", "1"}
+_R_MIN = 30.0 / np.pi
 _GROWN = 4.0
 """Growth in a quarter over the rms of what is beside it, above which an output turns: that of a
 vibration of its own, which does not grow, is at most 3 where the quarter has a period or more."""
@@ -28,12 +31,17 @@ def unsettled(result: Result) -> list[str]:
     """A line on the group that changes most, if it changes by more than 5 %.
 
     Compared are alternating part (its rms changes) and mean (its shift over that rms) of each group
-    of channels. Empty where too little was recorded to say so, or the speed is not steady, which is
-    said elsewhere.
+    of channels. Where the speed is not steady, the line tells between which values it varies. Empty
+    where too little was recorded to say so.
 
     Args:
         result: of a run, records equidistant.
     """
+    if moving := moving_speed(result):
+        return [
+            f"not settled: {moving}, and levels are those of all these speeds; use a longer "
+            "--t-end, or look at orders over speed (herringbone plot)"
+        ]
     found = changes(result)
     if not found:
         return []
@@ -46,6 +54,20 @@ def unsettled(result: Result) -> list[str]:
         f"not settled: {name.replace('_', ' ')} changes by {shown} % of its "
         "alternating part from the third to the last quarter of the run; use a longer --t-end"
     ]
+
+
+def moving_speed(result: Result) -> str:
+    """How a speed varies that is not steady; "": it is, or too little was recorded to say so."""
+    speed = signal(result, Role.GEAR_PAIR, Quantity.SPEED, "pinion")
+    if speed is None or not result.outcome.completed or speed.size < _FEWEST_ROWS:
+        return ""
+    if steady_part(result).steady:
+        return ""
+    later = speed[speed.size // 2 :] * _R_MIN
+    return (
+        f"the pinion's speed varies from {later.min():.5g} to {later.max():.5g} r/min in the "
+        "second half of the run"
+    )
 
 
 def changes(result: Result, *, smooth: bool = False) -> dict[str, float] | None:

@@ -55,7 +55,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.leaps import leaper
 from herringbone.kernels.condensed.in_block.places import work_places
-from herringbone.kernels.periodic.motion import periodic_scratch
+from herringbone.kernels.periodic.places import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
 from herringbone.kernels.stepping.adaptive import LONGEST_STEP, adaptive_stepper, adaptive_work
 from herringbone.kernels.stepping.newton import newton_scratch

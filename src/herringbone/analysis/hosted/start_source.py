@@ -17,6 +17,7 @@ from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
 _KERNELS = """
 
 from herringbone.kernels.periodic.motion import periodic_motion
+from herringbone.kernels.periodic.places import Body
 from herringbone.kernels.stepping.adaptive import LARGEST
 from herringbone.kernels.stepping.newton import NOT_FOUND, SETTLED, newton_solver
 from herringbone.kernels.spectral_radius import spectral_radius
@@ -89,9 +90,8 @@ def on_flank(b: np.ndarray, t: float, flank: float) -> int:
     return NOT_FOUND
 
 
-vibrate = periodic_motion(
-    system_rhs, COORDINATES, COORDINATE_SIZES, {turning!r}, {free}, {states}, {scratch}, "{owner}"
-)
+body = Body.of(COORDINATES, COORDINATE_SIZES, {turning!r}, {free}, {states})
+vibrate = periodic_motion(system_rhs, body, {scratch}, "{owner}")
 
 
 @kernel

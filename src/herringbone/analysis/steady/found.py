@@ -11,6 +11,7 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accu
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.repeated import INSIDE, Repeated, repeated
 from herringbone.analysis.steady.marching.shooting import Shooting, Shot
 from herringbone.analysis.steady.resolution import first
@@ -37,12 +38,15 @@ class Settled(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A motion, what is given of it, and its errors; what tells of the march or shot it is of."""
+    """A motion, what is given of it, and its errors; what tells of the march or shot it is of.
+
+    Without a motion, what tells that there is none.
+    """
 
     motion: Motion
     orbit: Orbit
     errors: Accuracy
-    by: Settled | Shot | None = None
+    by: Settled | Shot | Irregular | None = None
 
     @property
     def shot(self) -> Shot | None:

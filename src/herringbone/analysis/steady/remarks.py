@@ -1,8 +1,10 @@
 """What is said of a search for a periodic motion."""
 
 from herringbone.analysis.steady.guess import LONG, SETTLING
+from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.marched import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
 
@@ -44,14 +46,38 @@ def not_repeating(march: Repeated | None) -> str:
         return "a march from equilibrium fails, too"
     return (
         f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
-        f"still changes by {100.0 * march.change:.2g} % from one period to later ones; teeth that "
-        "rattle may never repeat: ask for a larger torque, or run it"
+        f"still changes by {100.0 * march.change:.2g} % from one period to later ones, though "
+        "motions beside it come together; ask for a larger torque, or run it"
     )
 
 
-def check_shooting(structure: Structure) -> None:
+def never_repeats(found: Irregular) -> str:
+    """Why there is no periodic motion, and what there is."""
+    percent, doubt = (100.0 * part for part in found.parting)
+    why = (
+        "so that it never repeats"
+        if found.parting.parts
+        else "so that they hardly part, and do not come together either"
+    )
+    levels = "; ".join(
+        f"{group.replace('_', ' ')} {min(own):.3g} to {max(own):.3g} rms"
+        for group, own in found.levels.items()
+    )
+    return (
+        f"irregular: teeth rattle; after {found.time:.3g} s from equilibrium a march still changes "
+        f"by {100.0 * found.change:.2g} % from one period to later ones, and motions beside it "
+        f"part by {percent:.2g} % a mesh (+- {doubt:.1g} %), {why}; levels over its last periods: "
+        f"{levels}; ask for a larger torque or finer teeth, or run it"
+    )
+
+
+def check_shooting(structure: Structure, point: Point) -> None:
     """Refuse what shooting cannot do; raises ParameterError."""
     name = structure.system.name
+    if point.torque == 0.0:
+        raise ParameterError(
+            f"{name}: solver = shooting: {NO_LOAD}, or leave the solver to be chosen"
+        )
     if structure.problem.free is not None:
         raise ParameterError(
             f"{name}: solver = shooting: nothing holds the speed, which would drift within a "

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
@@ -40,6 +41,7 @@ def steady_summary(state: SteadyState | SettledState) -> dict:
         own = {
             "solver": state.solver,
             "marched": state.settled._asdict() if state.settled else None,
+            "irregular": _irregular(state.irregular),
             "missed": state.shot.missed if state.shot else None,
             "left_out": dict(state.errors.left_out),
             "worst_channel": _worst(state),
@@ -57,6 +59,13 @@ def _worst(state: SteadyState) -> dict[str, str | float] | None:
     """The channel that errs most; None: none moves."""
     name, error = state.worst_channel
     return {"name": name, "error": error} if name else None
+
+
+def _irregular(found: Irregular | None) -> dict | None:
+    """What a march tells that never repeats."""
+    if found is None:
+        return None
+    return {**found._asdict(), "parting": found.parting._asdict(), "levels": dict(found.levels)}
 
 
 def _known(value: float) -> float | None:
@@ -106,11 +115,15 @@ def _of_balance(state: SteadyState) -> list[str]:
         f"Steady state of {state.system_name}: {found}",
         f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
         f"({state.period:.6g} s)",
-        f"  harmonics left out {state.errors.worst:.2g} of the alternating part (asked "
-        f"{state.tolerance:g}), last correction "
-        f"{max(state.errors.change.values(), default=0.0):.2g}; {state.orbit.iterations} "
-        f"iterations, {state.orbit.places} points of the period",
+        f"  error {state.errors.worst:.2g} of the alternating part (asked {state.tolerance:g}), "
+        f"with {state.orbit.places} points of the period",
     ]
+    if state.by is None:
+        last = max(state.errors.change.values(), default=0.0)
+        lines.append(
+            f"  iterations {state.orbit.iterations}: the last one still moved it by {last:.2g} of "
+            f"the alternating part, another one would by about {last * last:.1g}"
+        )
     if worst := _worst(state):
         lines.append(
             f"  worst channel {worst['error']:.2g} of its own alternating part: {worst['name']}"

@@ -28,11 +28,13 @@ from herringbone.analysis.steady.guess import (
 from herringbone.analysis.steady.harmonic_balance.accuracy import accuracy
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.irregular import irregular
 from herringbone.analysis.steady.marching.marched import Following, March, start_of
 from herringbone.analysis.steady.remarks import (
     GROWS,
     NO_ROTATION,
     NO_SHOT,
+    never_repeats,
     not_repeating,
     told,
     unsettled,
@@ -179,7 +181,10 @@ class Search:
         repeating, march = by_marching(self._structure, self._motion, self._still, self._tolerance)
         if repeating is not None and march is not None:
             return repeating, told(march.times)
-        return found, (not_repeating(march),)
+        never = irregular(self._structure, self._motion, march) if march else None
+        if march is None or never is None:
+            return found, (not_repeating(march),)
+        return none_found(self._motion, self._still)._replace(by=never), (never_repeats(never),)
 
     def _guesses(self) -> Iterator[tuple[int, Guess]]:
         """Periods, and where harmonic balance begins: at a neighbour, then at equilibrium."""

@@ -94,7 +94,7 @@ class SteadySolver:
             given = motion_at(structure, point)
             search = Search(structure, given, self.tolerance, _guesses(structure, near, point))
             if self._solver == SHOOTING:
-                check_shooting(structure)
+                check_shooting(structure, point)
                 found, notes = search.shot()
             else:
                 found, notes = search.found()

@@ -13,6 +13,7 @@ from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.shooting import Shot
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
@@ -38,7 +39,8 @@ class SteadyState(PeriodicMotion):
         errors: of harmonics left out, and of the last correction.
         tolerance: that was asked for.
         notes: lines that the user should read.
-        by: the march or the shot by which it was found; None: by harmonic balance.
+        by: the march or the shot by which it was found, None: by harmonic balance; or what tells
+            that there is none that could be found.
         before: the neighbour from which it was found.
     """
 
@@ -49,7 +51,7 @@ class SteadyState(PeriodicMotion):
     errors: Accuracy
     tolerance: float
     notes: tuple[str, ...] = ()
-    by: Settled | Shot | None = None
+    by: Settled | Shot | Irregular | None = None
     before: Neighbour | None = None
 
     def noted(self, notes: Sequence[str]) -> "SteadyState":
@@ -87,6 +89,11 @@ class SteadyState(PeriodicMotion):
     def settled(self) -> Settled | None:
         """How the march has settled by which it was found; None: by no march."""
         return self.by if isinstance(self.by, Settled) else None
+
+    @property
+    def irregular(self) -> Irregular | None:
+        """What a march tells that never repeats, with its levels; None: there is no such one."""
+        return self.by if isinstance(self.by, Irregular) else None
 
     @property
     def shot(self) -> Shot | None:

@@ -1,13 +1,13 @@
 """What inertia and damping add to the answer of a body to what returns with the turns of gears."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.periodic.complex_solve import complex_solve
 from herringbone.kernels.periodic.harmonics import SAMPLES
+from herringbone.kernels.periodic.places import Body, Places
 from herringbone.kernels.periodic.turns import INSTANTS, fit_turns, instant, turns_scratch
 
 PHASES = 8
@@ -15,40 +15,20 @@ PHASES = 8
 _TURN = 6.283185307179586
 
 
-class MotionPlaces(NamedTuple):
-    """Places of what `motion` works on, in the block; `end`: of `turns_scratch`."""
-
-    c: int
-    re: int
-    im: int
-    motion: int
-    g: int
-    mean: int
-    drift: int
-    x: int
-    y: int
-    order: int
-    found: int
-    end: int
-
-
 def answer_to_turns(
     turned: Callable,
     accelerate: Callable,
     follow: Callable,
     vibrate: Callable,
-    xs: tuple[int, ...],
-    vs: tuple[int, ...],
-    free: int,
-    at: MotionPlaces,
+    body: Body,
+    at: Places,
     owner: str,
 ) -> Callable[[np.ndarray, float, tuple[float, float]], int]:
     """Compile answer(b, period, turns) -> int, when the motion of a mesh period is found.
 
     Args:
-        turned, accelerate, follow, vibrate: kernels of `motion`.
-        xs, vs: places of coordinates and rates among the states.
-        free: the coordinate whose mean is free; -1: none. It is not moved.
+        turned, accelerate, follow, vibrate: kernels, see `sampled` and `linear_answer`.
+        body: whose motion it is; its free coordinate is not moved.
         at: places.
         owner: name of the component, for messages.
 
@@ -56,6 +36,7 @@ def answer_to_turns(
         The kernel; it returns for how many gears there is, from `at.end` on, what is added at time
         0 to coordinates (m,) and rates (m,).
     """
+    xs, vs, free = body.xs, body.vs, body.free
     m, scratch = len(xs), turns_scratch(len(xs))
 
     @inner(owner)

@@ -6,6 +6,7 @@ are the harmonics of the stiff values and the parameter together; beside the bal
     t . (u - u_0) = ds
 
 with the unit tangent t of the branch in scaled unknowns u, so that a fold is a point like others.
+All harmonics of a period of many meshes, as run-outs make it, are unknown at once.
 """
 
 from collections.abc import Callable, Iterator
@@ -22,12 +23,14 @@ from herringbone.analysis.steady.harmonic_balance.correction import (
 )
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit, Period
 from herringbone.analysis.steady.harmonic_balance.problem import Problem
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, ParameterError
 
 _ITERATIONS, _EASY = 12, 4
 _GROWTH, _SHRINK = 1.5, 0.5
 _DIFFERENCE = 1e-6
 """Of the parameter, over its scale."""
+_MOST = 6000
+"""Unknowns: their matrix has 300 MB, and a step takes some ten seconds."""
 
 
 class BranchLostError(HerringboneError):
@@ -52,14 +55,17 @@ class BranchPoint:
 
 
 class Branch:
-    """Periodic motions over a parameter; of a period of one mesh.
+    """Periodic motions over a parameter.
 
     Args:
         problem: linear part and laws.
-        period: how the period is resolved.
+        period: how the period is resolved, at all places.
         motion: what is given, by the parameter.
         scale: size of the parameter that matters.
         close: residual of the balance, in unknowns over their size, at which a point is found.
+
+    Raises:
+        ParameterError: the period has too many unknowns, or lines alone.
     """
 
     def __init__(
@@ -70,7 +76,8 @@ class Branch:
         scale: float,
         close: float = 1e-9,
     ) -> None:
-        self._problem, self._period, self._motion = problem, period, motion
+        self._problem, self._motion = problem, motion
+        self._period = _at_once(period, problem.stiff.size)
         self._scale, self._close = scale, close
         self._size = 1.0
 
@@ -78,10 +85,12 @@ class Branch:
         """The first point, at a motion that is known.
 
         Args:
-            orbit: found at the parameter.
+            orbit: found at the parameter, with whatever harmonics.
             parameter: its value.
             direction: 1 upwards, -1 downwards.
         """
+        balance = Balance(self._problem, self._period, self._motion(parameter))
+        orbit = balance.along(orbit.channels[: self._problem.values], orbit.response.orders)
         self._size = float(np.sqrt(np.mean(orbit.samples.f[:, self._problem.stiff] ** 2)))
         tangent = self._tangent(orbit, parameter, None)
         return BranchPoint(parameter, orbit, tangent * np.copysign(1.0, tangent[-1] * direction))
@@ -194,3 +203,17 @@ class Branch:
         matrix = self._bordered(orbit, parameter, off, along)
         found = np.linalg.solve(matrix, np.append(np.zeros(count), 1.0))
         return found / np.linalg.norm(found)
+
+
+def _at_once(period: Period, stiff: int) -> Period:
+    """A period of many meshes, as if it were one of many harmonics."""
+    order = period.order * period.meshes
+    unknowns = stiff * (2 * order + 1)
+    if period.bases or unknowns > _MOST:
+        what = "lines alone" if period.bases else f"{unknowns} unknowns (at most {_MOST})"
+        raise ParameterError(
+            f"branch: a period of {period.meshes} meshes with {what} cannot be followed over "
+            "folds; take fewer places of a mesh, set run-outs and deviations to 0, or follow it "
+            "from point to point (sweep --solver shooting)"
+        )
+    return Period(order, period.places)

@@ -4,7 +4,8 @@ Where deviations of single teeth fill the spectrum of a period of many meshes, N
 thousands of unknowns, and tangents that differ from mesh to mesh. The core has forgotten within
 such a period where it began, as everything in it is damped: one period after the other is shooting
 by successive substitution (K. Lust et al., SIAM J. Sci. Comput. 19, 1998, 1188-1209, without a
-subspace for Newton), whose error falls by what a deviation is multiplied by in a period.
+subspace for Newton), whose error falls by what a deviation is multiplied by in a period. Where
+deviations grow, as of teeth that rattle, it never repeats; see `parting`.
 """
 
 from typing import NamedTuple
@@ -14,11 +15,14 @@ import numpy as np
 from herringbone.analysis.steady.guess import SETTLING, beginnings
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.marched import Following, March
+from herringbone.analysis.steady.marching.parting import Parting, parting
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
 _MOST, _MOST_TIMES = 8, 3
 """Periods that are marched at most, and after which it may repeat."""
+_FARTHER = 24
+"""Further ones, where motions beside it do not part."""
 INSIDE = 4
 """Values kept for each place: laws that bend have harmonics beyond what places tell apart."""
 
@@ -31,12 +35,14 @@ class Repeated(NamedTuple):
         march: its last periods.
         times: periods after which it repeats.
         change: from the last of these to the one before, over the alternating part.
+        parting: how motions beside it part, where it has not repeated for long.
     """
 
     way: Following
     march: March
     times: int
     change: float
+    parting: Parting | None = None
 
     def finer(self, inside: int) -> "Repeated":
         """The same, gone on for as long as it repeats after, with more values for each place."""
@@ -64,18 +70,26 @@ def repeated(
         turned = ramp / abs(structure.turns_of_pinion)
         try:
             way.on(int(np.ceil((turned + SETTLING / begin.period) * way.places)), 1)
-            return _until_repeated(way, close)
+            found = _until_repeated(way, close, _MOST)
+            if found.change <= close:
+                return found
+            mesh = begin.period / structure.meshes
+            apart = parting(structure, motion, found.march.end, mesh, structure.meshes)
+            if not apart.parts:
+                found = _until_repeated(way, close, _FARTHER)
         except HerringboneError:
             continue
+        return found._replace(parting=apart)
     return None
 
 
-def _until_repeated(way: Following, close: float) -> Repeated:
+def _until_repeated(way: Following, close: float, most: int) -> Repeated:
     periods: list[March] = []
     changes = {1: np.inf}
-    for _ in range(_MOST):
+    for _ in range(most):
         periods = [*periods[-_MOST_TIMES:], way.on(way.places, way.places, INSIDE)]
-        whole = periods[0]._replace(values=np.hstack([p.values for p in periods]))
+        values = np.hstack([p.values for p in periods])
+        whole = periods[0]._replace(values=values, end=periods[-1].end)
         changes = {times: whole.change(times) for times in range(1, len(periods))} or changes
         if min(changes.values()) <= close:
             break

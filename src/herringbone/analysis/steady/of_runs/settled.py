@@ -8,7 +8,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from herringbone.analysis.figures.settling import changes, settling_groups
+from herringbone.analysis.figures.settling import changes, moving_speed, settling_groups
 from herringbone.analysis.steady.of_runs.ending import Ending, ending_of
 from herringbone.analysis.steady.outputs import Harmonics
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
@@ -76,7 +76,8 @@ class SettledState(PeriodicMotion):
         if not outcome.completed:
             return [f"unsettled: the run is {outcome.kind.value}: {outcome.message}"]
         if not self.changes:
-            return [f"unsettled: the speed is not steady after {outcome.time:g} s"]
+            moving = moving_speed(self._even) or "too little was recorded"
+            return [f"unsettled after {outcome.time:g} s: {moving}"]
         if self.converged:
             return []
         group, change = max(self.changes.items(), key=lambda item: item[1])
