@@ -170,7 +170,14 @@ def test_an_archive_that_would_fill_the_disk(tmp_path):
 @pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_entries_that_stand_twice(tmp_path):
     file = packed(tmp_path / "x.fmu", [("a", b"1"), ("a", b"2")])
-    assert "entry 'a' stands twice" in refusal(opened(file))
+    assert "entry 'a' stands twice, with other content" in refusal(opened(file))
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_entries_that_stand_twice_alike(tmp_path):
+    """As an FMU of the Modelica Association has them: `extra` was packed twice."""
+    file = packed(tmp_path / "x.fmu", [("a", b"1"), ("b", b"2"), ("a", b"1")])
+    opened(file)()
 
 
 def test_unusual_compression(tmp_path):

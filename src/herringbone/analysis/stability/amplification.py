@@ -20,6 +20,7 @@ from functools import partial
 import numpy as np
 
 from herringbone.analysis.stability.coordinates import Coordinates
+from herringbone.analysis.stability.followers import Followers
 from herringbone.analysis.stability.given_derivatives import check_orders, rated_outputs
 from herringbone.analysis.stability.growth import GROWTH, RIGID, Growth, growth_of
 from herringbone.analysis.stability.steps.linear_part import CHANGE, OTHER_CHANGE
@@ -101,6 +102,8 @@ class Amplification:
         self._seen = [array.ravel()[:count] for array, count in zip(arrays, seen, strict=True)]
         self._used_by: dict[frozenset[tuple[bool, ...]], np.ndarray] = {}
         self._used = np.empty(0, int)
+        self._states = self._coordinates.z_changes.size
+        self._followers = Followers(0, np.empty(0))
         standing = [part for part in self._parts if isinstance(part, StandIn)]
         self._clocks = [part.clock for part in standing if part.clock]
         # Many macro steps in one call: of parts that are what their values and last steps are.
@@ -130,6 +133,7 @@ class Amplification:
         steps = len(self._ticking(step))
         if self._clocks:
             return growth_of(matrix, steps * step, self._noise).per_step(steps)
+        matrix = self._shorter(matrix)
         found = growth_of(matrix, step, self._noise)
         turned = 2.0 * np.pi * found.frequency * step
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
@@ -144,8 +148,14 @@ class Amplification:
         What they miss makes a motion grow in time whatever the step, growth by held values goes
         with a power of the step.
         """
-        half = growth_of(self.matrix(_HALF * step), _HALF * step, self._noise)
+        matrix = self._shorter(self.matrix(_HALF * step))
+        half = growth_of(matrix, _HALF * step, self._noise)
         return half.radius - 1.0 < _FALLS * (found.radius - 1.0)
+
+    def _shorter(self, matrix: np.ndarray) -> np.ndarray:
+        """The matrix without what follows from states, which has the eigenvalue 0."""
+        with one_blas_thread():
+            return self._followers.left_out(matrix)
 
     def matrix(self, step: float) -> np.ndarray:
         """Amplification matrix (n, n) at a macro step [s], without entries that affect nothing.
@@ -162,7 +172,10 @@ class Amplification:
                 everything = np.arange(self._z_changes.size)
                 sizes = [np.abs(self._of(which, step, everything)) for which in kinds]
                 self._used_by[kinds] = _coupled(np.sum(sizes, axis=0))
-            self._used = self._used_by[kinds]
+            if self._used_by[kinds] is not self._used:
+                self._used = self._used_by[kinds]
+                sizes = self._z_changes[self._used]
+                self._followers = Followers(int(np.sum(self._used < self._states)), sizes)
             by_kind = {which: self._of(which, step, self._used) for which in kinds}
             found = by_kind[ticking[0]]
             for which in ticking[1:]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import lu_factor, lu_solve
 from scipy.linalg.lapack import dgebal
 
 from herringbone.core.one_thread import one_blas_thread
@@ -16,9 +17,13 @@ _SPLIT, _EVENLY = 5e-4, 0.05
 """Errors of what stands for foreign parts split a double eigenvalue evenly, by so much at most: its
 mean stays where it was, while what the coupling adds moves both, or one of them.
 """
+NEAR_MIRROR = 1.1
+"""Steps longer by so much at most bring a motion of `Growth.near_mirror` to half the rate."""
 _SLOW = 0.3
 """Eigenvalues this close to 1 belong to motions that a macro step resolves well."""
 _SAMPLES, _MARGIN = 2, 3.0
+_ASIDE, _ROUNDS = 1e-9, 3
+"""Share by which a known eigenvalue is missed, so that a matrix can be solved; rounds of that."""
 _EXACT = 1e-8
 """A double eigenvalue that errors of 1e-16 and more have split is further from 1."""
 
@@ -35,6 +40,8 @@ class Growth:
         mirror_radius: the same of motions at half the rate of communication points: there a motion
             meets its own mirror image, and one of the two grows at the expense of the other.
         fast_change: of the motion of `fast_radius` in a step, distance of its eigenvalue from 1.
+        near_mirror: the same as `radius` of motions that come to half the rate of communication
+            points in a step that is longer by a tenth or less; infinite: not known.
     """
 
     radius: float
@@ -42,6 +49,7 @@ class Growth:
     fast_radius: float
     mirror_radius: float = 0.0
     fast_change: float = np.inf
+    near_mirror: float = np.inf
 
     def per_step(self, steps: int) -> "Growth":
         """The same for one macro step, of the growth in so many."""
@@ -51,6 +59,7 @@ class Growth:
             radius=self.radius**root,
             fast_radius=self.fast_radius**root,
             mirror_radius=self.mirror_radius**root,
+            near_mirror=np.inf,
         )
 
     def was_slow(self, share: float) -> bool:
@@ -75,6 +84,8 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
         if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
+        if _is_sure(matrix, _eigenvalue(found, step), noise):
+            return found
         eigenvalues, known = _with_errors(matrix, noise)
     moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise)
     return _fastest(eigenvalues[moving], step)
@@ -91,10 +102,33 @@ def _free(eigenvalues: np.ndarray, noise: float) -> np.ndarray:
     return found
 
 
+def _eigenvalue(found: Growth, step: float) -> complex:
+    """That of the fastest motion, of the two the one that turns forward."""
+    return complex(found.radius * np.exp(2j * np.pi * found.frequency * step))
+
+
 def _is_far(found: Growth, step: float) -> bool:
     """True if the fastest motion's eigenvalue is not close to 1."""
-    turned = np.exp(2j * np.pi * found.frequency * step)
-    return bool(abs(found.radius * turned - 1.0) > _SLOW)
+    return abs(_eigenvalue(found, step) - 1.0) > _SLOW
+
+
+def _is_sure(matrix: np.ndarray, value: complex, noise: float) -> bool:
+    """True if an eigenvalue's condition alone tells that errors do not move it from 1.
+
+    With right and left vectors v, w of length 1 an error of size e moves it by e / |w v| at most,
+    to first order; a margin is left for what is of higher order. Double ones have w v = 0.
+    """
+    scaled = dgebal(matrix, scale=1)[0]
+    shifted = scaled - value * (1.0 + _ASIDE) * np.eye(len(scaled))
+    factors = lu_factor(shifted, check_finite=False)
+    right = left = np.random.default_rng(0).standard_normal(len(scaled)).astype(complex)
+    for _ in range(_ROUNDS):
+        right = lu_solve(factors, right, check_finite=False)
+        left = lu_solve(factors, left, trans=2, check_finite=False)
+        right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
+    missed = np.linalg.norm(scaled @ right - value * right)
+    error = max(noise * np.linalg.norm(scaled), float(missed))
+    return bool(_MARGIN * error < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 
 def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
@@ -114,6 +148,7 @@ def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
         float(sizes[fast]) if is_fast else 0.0,
         mirror,
         float(changes[fast]) if is_fast else np.inf,
+        float(sizes[angles >= np.pi / NEAR_MIRROR].max(initial=0.0)),
     )
 
 

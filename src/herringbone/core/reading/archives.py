@@ -94,9 +94,11 @@ def _problem(entries: list[zipfile.ZipInfo], packed: int) -> str | None:
     unpacked = sum(entry.file_size for entry in entries)
     if unpacked > min(_LARGEST, max(_ALWAYS, _RATIO * packed)):
         return f"its {packed} bytes would become {unpacked / MEBIBYTE:.0f} MiB"
-    files = [entry.filename for entry in entries if not entry.is_dir()]
-    if len(set(files)) < len(files):
-        return f"entry {shown(next(f for f in files if files.count(f) > 1))} stands twice"
+    found: dict[str, tuple[int, int]] = {}
+    for entry in entries:
+        content = entry.file_size, entry.CRC
+        if not entry.is_dir() and found.setdefault(entry.filename, content) != content:
+            return f"entry {shown(entry.filename)} stands twice, with other content"
     return next((text for entry in entries if (text := _problem_of(entry))), None)
 
 

@@ -54,12 +54,14 @@ def read_fmu(file: str | Path) -> ModelDescription:
         raise FmuError(
             f"{file}: {_DESCRIPTION} cannot be read: {error or type(error).__name__}"
         ) from error
+    clocks = [v.name for v in model.modelVariables if v.type == "Clock"]
     if model.coSimulation is None:
         kinds = {"model exchange": model.modelExchange,
                  "scheduled execution": model.scheduledExecution}  # fmt: skip
         offered = " and ".join(kind for kind, found in kinds.items() if found) or "nothing"
-        raise FmuError(f"{file} is for {offered} only; co-simulation is needed")
-    if clocks := [v.name for v in model.modelVariables if v.type == "Clock"]:
+        ticking = f", and has Clock variables: {', '.join(clocks)}" if clocks else ""
+        raise FmuError(f"{file} is for {offered} only; co-simulation is needed{ticking}")
+    if clocks:
         raise FmuError(f"{file} has Clock variables, which are not supported: {', '.join(clocks)}")
     library = f"{model.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
     platform = fmpy.platform_tuple if is_fmi3(model) else fmpy.platform

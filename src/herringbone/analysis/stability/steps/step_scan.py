@@ -1,9 +1,11 @@
 """Unstable bands of a macro step, by a scan of the spectral radius.
 
 Stability is not monotone in the step, so that a bisection alone would jump over bands. A coarse
-scan finds an unstable step; a fine one goes from a quarter of it to twice of it, or until nothing
-has been stable for long. Close to the first unstable step, where a run is most likely to be asked
-for, bands and the gaps between them are searched at the resolution of the crossings. These are
+scan finds an unstable step; a fine one goes from a quarter of it to twice of it, in longer steps
+where motions grow clearly, or until nothing has been stable for long. Close to the first unstable
+step, where a run is most likely to be asked for, steps follow each other as closely as motions that
+come to half the rate of communication points ask for (below): so a band in which one of them meets
+its mirror image, or another one's, is seen however narrow it is, down to 0.5 %. Edges of bands are
 refined by bisection.
 
 Narrow bands open where two motions meet on the unit circle, above all where a motion at half the
@@ -29,8 +31,11 @@ SMALLEST_STEP, LARGEST_STEP = 1e-6, 2e-3
 COARSE, _FINE = 1.25, 1.025
 """Factors between steps of the scans."""
 _BELOW, _ABOVE = 0.25, 2.0
+_GROWING, _FINER_NO_MORE = 1.001, 1.05
+"""Growth beyond which a scan looks for stable steps above a band, and its factor there."""
 _CLEARLY, _FOR_LONG = 1.2, 1.3
-_RESOLUTION = 1.005
+_RESOLUTION, _EDGE = 1.005, 1.0025
+"""Smallest factor between steps around a limit, and that between the sides of a band's edge."""
 _CLOSELY = 1.05
 _NEAR = 0.93
 _CLOSE_TO_ONE = {"fast_radius": 0.97, "mirror_radius": 0.9}
@@ -79,9 +84,12 @@ def first_unstable_near(growth: GrowthOf, limit: float) -> float:
     low = _NEAR * limit
     while low > SMALLEST_STEP and _grows(safe_growth(growth, low)):
         low *= _NEAR
-    closely = _find_unstable(growth, low, _RESOLUTION, limit / _NEAR)
-    if closely is not None:
-        return closely
+    samples = _along(growth, low, limit / _NEAR)
+    if _grows(samples[0][1]):
+        return low
+    for (before, _), (step, value) in pairwise(samples):
+        if _grows(value):
+            return _crossing(growth, before, step)
     high = _find_unstable(growth, limit / _NEAR, _FINE)
     return np.inf if high is None else _crossing(growth, high / _FINE, high)
 
@@ -132,15 +140,29 @@ def _samples(growth: GrowthOf, first: float, end: float) -> list[tuple[float, Gr
         since = min(since, step) if _grows(value) else np.inf
         if value.radius > _CLEARLY and step > _FOR_LONG * since:
             break
-        step *= _FINE
+        step *= _FINER_NO_MORE if value.radius > _GROWING else _FINE
     return found
 
 
 def _closely(growth: GrowthOf, first: float) -> list[tuple[float, Growth]]:
     """Growth around the first unstable step, at the resolution of the crossings."""
-    half = int(np.log(_CLOSELY) / np.log(_RESOLUTION))
-    steps = first * _RESOLUTION ** np.arange(-half, half + 1.0)
-    return _with_maxima(growth, [(float(step), safe_growth(growth, float(step))) for step in steps])
+    return _along(growth, first / _CLOSELY, first * _CLOSELY)
+
+
+def _along(growth: GrowthOf, low: float, high: float) -> list[tuple[float, Growth]]:
+    """Growth at steps so close together that no motion meets its mirror image between them."""
+    found = [(low, safe_growth(growth, low))]
+    while found[-1][0] < high:
+        step, value = found[-1]
+        step = min(step * _apart(value), high)
+        found.append((step, safe_growth(growth, step)))
+    return _with_maxima(growth, found)
+
+
+def _apart(value: Growth) -> float:
+    """Factor to the next step: half of that over which two motions stay together."""
+    decay = max(0.0, 1.0 - value.near_mirror)
+    return float(np.clip(1.0 + decay / np.pi, _RESOLUTION, _FINE))
 
 
 def _step(sample: tuple[float, Growth]) -> float:
@@ -185,7 +207,7 @@ def _tries(growth: GrowthOf, low: float, high: float, radius: str) -> list[tuple
 def _crossing(growth: GrowthOf, low: float, high: float) -> float:
     """Step between two of which one is stable, by bisection; the stable side of the bracket."""
     low_bad = _grows(safe_growth(growth, low))
-    while high > _RESOLUTION * low:
+    while high > _EDGE * low:
         middle = float(np.sqrt(low * high))
         if _grows(safe_growth(growth, middle)) == low_bad:
             low = middle
