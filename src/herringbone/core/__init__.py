@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from herringbone.core.declaring.component import Beyond, Component, Kernels
     from herringbone.core.declaring.declaration import Declaration
-    from herringbone.core.declaring.hosting import ByTolerance, Experiment, Hosting, Remark, RunsOn
+    from herringbone.core.declaring.hosting import (
+        Asked,
+        ByTolerance,
+        Experiment,
+        Hosting,
+        Remark,
+        RunsOn,
+    )
     from herringbone.core.declaring.laws import Laws, common_period
     from herringbone.core.declaring.variable import (
         Column,
@@ -38,6 +45,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "EXIT_CODES",
+    "Asked",
     "Beyond",
     "ByTolerance",
     "Column",
@@ -77,6 +85,7 @@ _WHERE = {
     "Component": "herringbone.core.declaring.component",
     "Kernels": "herringbone.core.declaring.component",
     "Declaration": "herringbone.core.declaring.declaration",
+    "Asked": "herringbone.core.declaring.hosting",
     "ByTolerance": "herringbone.core.declaring.hosting",
     "Experiment": "herringbone.core.declaring.hosting",
     "Hosting": "herringbone.core.declaring.hosting",

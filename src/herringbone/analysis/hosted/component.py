@@ -53,7 +53,7 @@ from herringbone.core.declaring.hosting import Given, Wanted
 from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system import System
 from herringbone.kernels.compiling.jit import inner
-from herringbone.kernels.condensed.in_block.leaps import leaper
+from herringbone.kernels.condensed.in_block.leaps import leaper, readier
 from herringbone.kernels.condensed.in_block.places import work_places
 from herringbone.kernels.periodic.places import periodic_scratch
 from herringbone.kernels.spectral_radius import radius_scratch
@@ -118,7 +118,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     module = load_generated("composite", source)
     if form:
         equations = equations_of(declaration, module, places.state_sizes, -1)
-        core = partial(leaper, form, work_places(form, first), equations)
+        at = work_places(form, first)
+        core = partial(leaper, form, at, equations, readier(form, at, equations))
     loader = loader_of(declaration, parts.instances, module)
     component = Component(
         declaration,

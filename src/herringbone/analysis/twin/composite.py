@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
-from herringbone.analysis.twin.block_core.form import core_form, why_not
+from herringbone.analysis.twin.block_core.form import core_form, shown_of, why_not
 from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.block_core.steps import (
     LENGTHS,
@@ -38,7 +38,7 @@ from herringbone.analysis.twin.composite_parts import (
 from herringbone.analysis.twin.composite_source import BlockMap, OwnLines, composite_source
 from herringbone.analysis.twin.condensed.lean import names_of_states
 from herringbone.analysis.twin.source import twin_source
-from herringbone.core import Component, Declaration, Instance, Kernels, Variable, parameter
+from herringbone.core import Asked, Component, Declaration, Instance, Kernels, Variable, parameter
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.declaring.variable import Causality
@@ -102,13 +102,14 @@ def make_composite(
     )
     if steps:
         fed = tuple(to for _, to in places.inputs)
-        source += core_source(parts, declaration.first_table, fed, held=held)
+        source += core_source(parts, declaration.first_table, fed, held=held, shown=True)
         source += REMARK.format(status=steps.at.status)
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
+    step, asked = _step_kernel(declaration, module, steps)
     component = Component(
         declaration,
-        Kernels(_step_kernel(declaration, module, steps), module.system_rhs, module.system_out),
+        Kernels(step, module.system_rhs, module.system_out),
         f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations."
         + (f"\n\n{_DEAR}: {without_core}." if without_core else ""),
         load=loader,
@@ -119,6 +120,7 @@ def make_composite(
         nominals=nominals_of(declaration, parts),
         longest_step=(longest_step if steps else steppers.longest_step)(declaration, MICRO_STEP),
         by_tolerance=by_tolerance(module) if steps else None,
+        asked=asked,
     )
     note = f"{_DEAR}: {without_core}" if without_core else ""
     return Composite(component, dict(resources_of(instances)), note)
@@ -127,7 +129,8 @@ def make_composite(
 def _stepping(parts: Parts) -> Stepping:
     """How a system steps that may have a condensed form."""
     inputs = len(parts.open_inputs)
-    return stepping(core_form(parts, inputs, LENGTHS, ROUGH), inputs, _micro_step(parts))
+    form = core_form(parts, inputs, LENGTHS, ROUGH, shown_of(parts))
+    return stepping(form, inputs, _micro_step(parts))
 
 
 def _micro_step(parts: Parts) -> float:
@@ -207,12 +210,14 @@ def _block_map(
         declaration.first_table,
         declaration.state_count,
         pairs(declaration.inputs),
-        pairs(declaration.outputs),
+        tuple(sorted(pairs(declaration.outputs))),
         pairs(declaration.parameters),
     )
 
 
-def _step_kernel(declaration: Declaration, module: ModuleType, steps: Stepping | None) -> Callable:
+def _step_kernel(
+    declaration: Declaration, module: ModuleType, steps: Stepping | None
+) -> tuple[Callable, Asked | None]:
     if steps:
         return step_kernel(declaration, module, steps, MICRO_STEP)
     advance = steppers.body_stepper(module.system_rhs, module.system_out, declaration)
@@ -224,4 +229,4 @@ def _step_kernel(declaration: Declaration, module: ModuleType, steps: Stepping |
         refresh(b)
         return advance(b, w, t, h, b[micro_step], int(b[degree]))
 
-    return step
+    return step, None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.core.declaring.hosting import ByTolerance, Hosting
+from herringbone.core.declaring.hosting import Asked, ByTolerance, Hosting
 from herringbone.core.declaring.pair_values import PairValues
 from herringbone.core.declaring.roles import Quantity
 from herringbone.core.places.paths import component_folder
@@ -109,6 +109,7 @@ class Component:
             if none do. None: it has no such outputs.
         hosting: what it asks of its native FMU besides; None: nothing.
         by_tolerance: how inner steps follow a tolerance; None: they do not.
+        asked: how its native FMU makes outputs when it is asked for them; None: in each step.
         curve: degree of the polynomials of time that the outputs of a source are between
             breakpoints, at most 2; None: they are not, or it is no source.
         laws: its scalar laws, apart from the linear rest; None: the component is linear, or what it
@@ -137,6 +138,7 @@ class Component:
     commanded: Commanded | None = None
     hosting: Hosting | None = None
     by_tolerance: ByTolerance | None = None
+    asked: Asked | None = None
     curve: int | None = None
     laws: "Laws | None" = None
     beyond: Beyond | None = None

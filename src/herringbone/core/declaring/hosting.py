@@ -97,6 +97,23 @@ class ByTolerance:
 
 
 @dataclass(frozen=True)
+class Asked:
+    """How a native FMU makes its outputs when its host asks for them.
+
+    Attributes:
+        advance: kernel as `Kernels.step` that may leave states and outputs stale.
+        answer: kernel answer(b, w, t, references, count) that writes those which are stale, at so
+            many places in the block; all if no place is given.
+        stale: place in the block that tells which are: 0 none, 1 those that were not asked for so
+            far, 2 all.
+    """
+
+    advance: Callable[["np.ndarray", "np.ndarray", float, float], int]
+    answer: Callable[["np.ndarray", "np.ndarray", float, "np.ndarray", int], None]
+    stale: int
+
+
+@dataclass(frozen=True)
 class Hosting:
     """What a component asks of the wrapper, besides kernels and declaration.
 

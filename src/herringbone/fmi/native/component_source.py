@@ -28,6 +28,7 @@ int32_t hb_settle(double *b, double t);
 int32_t hb_remark(double *b, double *w, int32_t which, double *report);
 void hb_tangent(double *b, double t, double *d, double *dx);
 void hb_indicators(double *b, double t, double *z);
+void hb_answer(double *b, double *w, double t, const uint32_t *references, int64_t count);
 """
 
 
@@ -129,6 +130,8 @@ def _entries(
         "indicators_count": component.indicator_count,
         "indicators": "hb_indicators" if component.indicators else "NULL",
         "tangent": "hb_tangent",
+        "answer": "hb_answer" if component.asked else "NULL",
+        "stale": component.asked.stale if component.asked else 0,
     }
 
 

@@ -29,17 +29,20 @@ _PLAIN = 1
 fails. Small code alone does not tell, as it keeps functions apart."""
 _PASSES = 2
 """The second one drops what the first one has shown to be unreachable."""
-_FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators"}
+_FAST = {"hb_step", "hb_rhs", "hb_out", "hb_indicators", "hb_answer"}
 """Entry points that a simulation calls all the time; what they call is made for speed."""
 _ANY_NAME = "k"  # LLVM appends a number
 _OF_THIS_PROCESS = "numba.dynamic.globals"
 _UNKNOWN_SIZE = 2**40  # bounds are not checked, but views are cut at the end
 _REALS = types.CPointer(types.float64)
 _COUNTS = types.CPointer(types.int64)
+_REFERENCES = types.CPointer(types.uint32)
 _TIME = types.float64
 
 
-def entry_points(of: Component) -> dict[str, CFunction]:
+def entry_points(  # noqa: PLR0915 (all have one form)
+    of: Component,
+) -> dict[str, CFunction]:
     """The kernels of a component behind their C signatures, by symbol.
 
     The optional ones, `start`, `load` and `indicators`, only if the component has them.
@@ -92,7 +95,13 @@ def entry_points(of: Component) -> dict[str, CFunction]:
             )
         )
 
+    def answer(b, w, t, references, count):  # noqa: ANN001, ANN202
+        places = carray(references, (_UNKNOWN_SIZE,))
+        kernels_answer(carray(b, (block,)), carray(w, (work,)), t, places, count)
+
     kernels_step, kernels_rhs, kernels_out = kernels
+    if of.asked is not None:
+        kernels_step, kernels_answer = of.asked.advance, of.asked.answer
     kernels_start = of.start
     kernels_indicators: Any = of.indicators  # not used if it is None
     kernels_longest_step = of.longest_step
@@ -119,6 +128,9 @@ def entry_points(of: Component) -> dict[str, CFunction]:
     if of.by_tolerance is not None:
         kernels_remark = of.by_tolerance.remark
         found["hb_remark"] = (types.int32(_REALS, _REALS, types.int32, _REALS), remark)
+    if of.asked is not None:
+        signature = types.void(_REALS, _REALS, _TIME, _REFERENCES, types.int64)
+        found["hb_answer"] = (signature, answer)
     if of.indicators is not None:
         found["hb_indicators"] = (types.void(_REALS, _TIME, _REALS), indicators)
     return {symbol: c_code(signature, function) for symbol, (signature, function) in found.items()}

@@ -22,6 +22,7 @@ import numpy as np
 from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.variable import Variable
 from herringbone.kernels.compiling.jit import inner, kernel
+from herringbone.kernels.condensed.in_block.shown import ANEW, AT_ONCE, LATER
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
 
@@ -80,8 +81,8 @@ def idle(b: np.ndarray, w: np.ndarray, t: float) -> None:
 
 
 @kernel
-def nothing(b: np.ndarray) -> None:
-    """What it does when others have changed its states."""
+def nothing(b: np.ndarray, w: np.ndarray) -> None:
+    """What it does when its states are to be changed."""
 
 
 def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
@@ -90,8 +91,10 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     declaration: Declaration,
     next_step: str,
     longest_step: Callable[[np.ndarray, np.ndarray], float],
-    core: Callable[[Callable], tuple[Callable, Callable, Callable]] | None = None,
+    core: Callable[[Callable], tuple[Callable, Callable, Callable, Callable]] | None = None,
     shortest: float = np.inf,
+    *,
+    later: bool = False,
 ) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
     """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
 
@@ -102,6 +105,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         longest_step: kernel (b, w): no inner step is longer [s].
         core: makes, of the kernel that sets inputs, those that leap ahead: `in_block.leaps`.
         shortest: length of its steps that ends where it stops [s].
+        later: outputs of a leap are made when they are asked for, where inputs have no nodes.
 
     Returns:
         step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
@@ -207,7 +211,13 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                     return TOO_SMALL
         return 0
 
-    leap, ready, forget = core(set_inputs) if core else (stay, idle, nothing)
+    @inner(declaration.name)
+    def show(b: np.ndarray, w: np.ndarray, t: float, how: int) -> bool:
+        out(b, t)
+        return True
+
+    leap, ready, forget, show = core(set_inputs) if core else (stay, idle, nothing, show)
+    kept, kept_count = declaration.first_kept, declaration.kept
 
     @inner(declaration.name)
     def interval(
@@ -222,7 +232,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                 w[known] = 0.0
             done = min(end, reached + shortest)
             if reached < done:
-                forget(b)
+                forget(b, w)
                 status = explicit(b, w, t, h, reached, done, tolerance, degree)
                 if status != 0:
                     return status
@@ -238,6 +248,9 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0
+        how = AT_ONCE if h > 0.0 else ANEW
+        if later and degree == 0 and h > 0.0:
+            how = LATER
         w[known] = 0.0
         for node in range(1, intervals + 1):
             end = h if node == intervals else h * node / intervals
@@ -245,10 +258,10 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                 status = interval(b, w, t, h, begin, end, tolerance, degree)
             begin = end
             set_inputs(b, w, degree, node / intervals)
-            out(b, t + end)
-            store_node(b, first_output, outputs, node)
+            if show(b, w, t + end, how):
+                store_node(b, first_output, outputs, node)
         restore_inputs(b, w, degree)
-        if status == 0 and not all_finite(b, 0, n):
+        if status == 0 and not (all_finite(b, 0, n) and all_finite(b, kept, kept_count)):
             status = NOT_FINITE
         return status
 

@@ -8,10 +8,12 @@ import numpy as np
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.analysis.twin.condensed.equations import laws_of
 from herringbone.analysis.twin.condensed.rungs import LOBATTO, coefficients
-from herringbone.core import Declaration, Laws, StructureError
-from herringbone.kernels.condensed.in_block.form import Equations, Form
+from herringbone.core import Declaration, Instance, Laws, StructureError
+from herringbone.kernels.condensed.in_block.form import Equations, Form, Shown
+from herringbone.kernels.signals import STRIDE
 
 DEGREE = 4
+_NOTHING = Shown()
 
 
 def laws_of_parts(parts: Parts) -> dict[int, Laws]:
@@ -32,7 +34,9 @@ def why_not(parts: Parts) -> str:
     return "" if laws else "no part has laws beside its linear equations"
 
 
-def core_form(parts: Parts, inputs: int, lengths: Sequence[float], rough: float) -> Form:
+def core_form(
+    parts: Parts, inputs: int, lengths: Sequence[float], rough: float, shown: Shown = _NOTHING
+) -> Form:
     """The form; mean tangents are those of the parameters as they are exported.
 
     Other ones are as good for the solution, but take more iterations.
@@ -42,6 +46,7 @@ def core_form(parts: Parts, inputs: int, lengths: Sequence[float], rough: float)
         inputs: how many the host gives.
         lengths: of steps, falling [s].
         rough: see `Form`.
+        shown: see `Form`.
     """
     laws = laws_of_parts(parts)
     stiff: list[int] = []
@@ -80,6 +85,7 @@ def core_form(parts: Parts, inputs: int, lengths: Sequence[float], rough: float)
         ahead=parabola_since_end(nodes),
         lengths=tuple(lengths),
         rough=rough,
+        shown=shown,
     )
 
 
@@ -125,11 +131,67 @@ def equations_of(
         sizes,
         kept,
         module.system_rhs,
+        module.system_out,
         module.core_given,
         module.core_signals,
         module.core_prepare,
         module.core_laws,
         module.core_period,
+        module.core_show,
+    )
+
+
+def outputs_of(parts: Parts) -> list[tuple[int, str]]:
+    """All outputs, part and name, in the order of the block: those with nodes first."""
+    found = [(p, v) for p, i in enumerate(parts.instances) for v in i.component.declaration.outputs]
+    return [(p, v.name) for nodes in (True, False) for p, v in found if v.nodes == nodes]
+
+
+def makers(parts: Parts) -> list[int]:
+    """Parts that make outputs alone which are not affine, in the order in which they can."""
+    network = parts.network
+    own = {*laws_of_parts(parts), *pure_sources(parts)}
+    own |= {p for p, i in enumerate(parts.instances) if not _is_affine(i)}
+    return [p for p in (*network.sources, *network.bodies, *network.elements) if p in own]
+
+
+def _is_affine(instance: Instance) -> bool:
+    """False if a part has outputs that are not affine in its states and inputs, as a power."""
+    d = instance.component.declaration
+    given = [*range(d.state_count), *(d.index[v.name] for v in d.inputs)]
+    outputs = [d.index[v.name] for v in d.outputs]
+    chance = np.random.default_rng(_SEED)
+    a, b = chance.normal(size=(2, len(given)))
+    found = []
+    for share in (0.0, 1.0, 0.3):
+        block = instance.block.copy()
+        block[given] += share * a + (1.0 - share) * b
+        instance.component.kernels.out(block, 0.0)
+        found.append(block[outputs])
+    mean = 0.7 * found[0] + 0.3 * found[1]
+    size = np.abs(found[0]) + np.abs(found[1])
+    return bool(np.all(np.abs(found[2] - mean) <= _SAME * size))
+
+
+_SAME, _SEED = 1e-9, 17
+"""Of two values: a difference below is rounding. Any seed does."""
+
+
+def shown_of(parts: Parts) -> Shown:
+    """The outputs of a system whose block begins with its parts' states and open inputs."""
+    rows = outputs_of(parts)
+    able, layout, sources = makers(parts), parts.layout, pure_sources(parts)
+    number = {p: k for k, p in enumerate(able)}
+    signals = set(signals_of(parts))
+    return Shown(
+        first=layout.state_first[-1] + STRIDE * len(parts.open_inputs),
+        with_nodes=sum(len(i.component.declaration.node_outputs) for i in parts.instances),
+        part=tuple(number.get(p, -1) for p, _ in rows),
+        timed=tuple(k for k, row in enumerate(rows) if row[0] in sources and row not in signals),
+        states=tuple((layout.state_first[p], layout.state_first[p + 1]) for p in able),
+        feeding=tuple(
+            tuple(rows.index((c.source, c.output)) for c in parts.network.inputs(p)) for p in able
+        ),
     )
 
 

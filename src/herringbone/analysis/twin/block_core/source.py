@@ -1,21 +1,30 @@
 """Source of the kernels by which a system as one component is condensed, see `in_block.form`.
 
-core_given(b, x, u, dx, z): rates and the laws' arguments, where the laws' values, the sources'
-signals, then the inputs, are given in u
+core_given(b, x, u, dx, z): rates, behind them outputs, and the laws' arguments, where the laws'
+values, the sources' signals, then the inputs, are given in u
 core_signals(b, t, to): of the sources
 core_prepare(b): before the laws
 core_laws(b, t, z, f, k, e): of all parts, one behind the other
 core_period(b): shortest of the meshes [s]
+core_show(b, u, t, need, bent): outputs that are not affine, see `in_block.form.Equations`
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from herringbone.analysis.twin.block_core.form import laws_of_parts, pure_sources, signals_of
+from herringbone.analysis.twin.block_core.form import (
+    laws_of_parts,
+    makers,
+    outputs_of,
+    pure_sources,
+    shown_of,
+    signals_of,
+)
 from herringbone.analysis.twin.composite_parts import Parts
 from herringbone.analysis.twin.condensed.lean import names_of_states
 from herringbone.core.declaring.roles import GEARS, Quantity
+from herringbone.kernels.condensed.in_block.places import output_places
 
 _LAWS = """
 {name}_gather = COMPONENTS["{name}"].laws.gather
@@ -28,7 +37,7 @@ _KERNELS = """
 def core_given(b: np.ndarray, x: np.ndarray, u: np.ndarray, dx: np.ndarray, z: np.ndarray) -> None:
     blocks = b[{first}:]
     scatter(blocks, x)
-{given}{motions}{rates}{gather}{held}    return
+{given}{motions}{rates}{gather}{held}{outputs}    return
 
 
 @kernel
@@ -56,6 +65,14 @@ def core_period(b: np.ndarray) -> float:
     blocks = b[{first}:]
     period = np.inf
 {periods}    return period
+
+
+@rare
+def core_show(
+    b: np.ndarray, u: np.ndarray, t: float, need: np.ndarray, bent: np.ndarray
+) -> None:
+    blocks = b[{first}:]
+{show}    return
 """
 
 
@@ -144,6 +161,58 @@ class _Writer:
             if p not in sources and self.parts.instances[p].component.declaration.state_count
         )
 
+    def outputs(self) -> str:
+        """All outputs, when the rates and what elements give are known."""
+        network = self.parts.network
+        others = {*pure_sources(self.parts), *self.laws}
+        lines = [
+            self.feed(p) + self.evaluation(p, rates=False)
+            for p in (*network.sources, *network.bodies)
+            if p not in others
+        ]
+        count, first = len(outputs_of(self.parts)), self.parts.layout.state_first[-1]
+        lines.append(f"    for i in range({count}):\n")
+        lines.append(f"        dx[{first} + i] = blocks[SHOWN_FROM[i]]\n")
+        return "".join(lines)
+
+    def show(self, inputs: Mapping[int, int]) -> str:
+        """Outputs of each part that makes some alone, from states and other outputs.
+
+        Args:
+            inputs: places in `u`, by place in the blocks of the parts of what they feed.
+        """
+        layout, shown = self.parts.layout, shown_of(self.parts)
+        rows, places = outputs_of(self.parts), output_places(shown)
+        index = {row: k for k, row in enumerate(rows)}
+        lines = []
+        for number, p in enumerate(makers(self.parts)):
+            first, end = layout.block_first[p], layout.block_first[p + 1]
+            lines += [
+                f"    if need[{number}] != 0.0:\n",
+                f"        for i in range({layout.state_first[p + 1] - layout.state_first[p]}):\n",
+                f"            blocks[{first} + i] = b[{layout.state_first[p]} + i]\n",
+            ]
+            for c in self.parts.network.inputs(p):
+                place = places[index[c.source, c.output]]
+                lines.append(f"        blocks[{self.place(p, c.input)}] = b[{place}]\n")
+            lines += [
+                f"        blocks[{to}] = u[{k}]\n" for to, k in inputs.items() if first <= to < end
+            ]
+            lines.append(f"        {self.name(p)}_out({self.block(p)}, t)\n")
+            own = [k for k, row in enumerate(rows) if row[0] == p]
+            for nodes in (True, False):
+                chosen = [k for k in own if (k < shown.with_nodes) == nodes]
+                if not chosen:
+                    continue
+                lines += [
+                    f"        for i in range({chosen[0]}, {chosen[-1] + 1}):\n",
+                    "            if bent[i] != 0.0:\n",
+                    "                b[SHOWN_TO[i]] = blocks[SHOWN_FROM[i]]\n",
+                ]
+                if nodes:
+                    lines.append("                b[SHOWN_TO[i] + 1] = blocks[SHOWN_FROM[i]]\n")
+        return "".join(lines)
+
     def signals(self) -> str:
         """Outputs of the sources at a time."""
         calls = [f"    {self.name(p)}_out({self.block(p)}, t)\n" for p in pure_sources(self.parts)]
@@ -164,7 +233,13 @@ class _Writer:
 
 
 def core_source(
-    parts: Parts, first: int, inputs: Sequence[int], own: int = 0, held: Sequence[str] = ()
+    parts: Parts,
+    first: int,
+    inputs: Sequence[int],
+    own: int = 0,
+    held: Sequence[str] = (),
+    *,
+    shown: bool = False,
 ) -> str:
     """The kernels.
 
@@ -174,6 +249,7 @@ def core_source(
         inputs: places in these blocks of what the inputs feed.
         own: states in front of those of the parts.
         held: names of states that keep their values.
+        shown: its outputs are those of the parts, and can be had one by one.
     """
     write = _Writer(parts)
     values = sum(len(laws.values) for laws in write.laws.values())
@@ -182,8 +258,12 @@ def core_source(
     preparing = {
         write.name(p) for p, laws in write.laws.items() if hasattr(laws.prepare, "py_func")
     }
+    first_input = values + len(signals_of(parts))
+    given = {to: first_input + k for k, to in enumerate(inputs)}
     text = _KERNELS.format(
         first=first,
+        outputs=write.outputs() if shown else "",
+        show=write.show(given) if shown else "",
         given="".join(f"    blocks[{to}] = u[{values + k}]\n" for k, to in enumerate(fed)),
         motions=write.motions(),
         rates=write.rates(),
@@ -206,4 +286,6 @@ def core_source(
     )
     names = sorted({write.name(p) for p in write.laws})
     head = "".join(_LAWS.format(name=name) for name in names)
+    if shown:  # arrays: what seldom happens has no checks of their ends
+        head += "SHOWN_FROM, SHOWN_TO = np.array(OUTPUT_FROM), np.array(OUTPUT_TO)\n"
     return f"\n\nfrom herringbone.kernels.compiling.jit import rare\n{head}{text}"

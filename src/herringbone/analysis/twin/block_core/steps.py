@@ -9,14 +9,23 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.twin.block_core.form import equations_of
-from herringbone.core import ByTolerance, Declaration, Experiment, Remark, Variable, local
+from herringbone.core import (
+    Asked,
+    ByTolerance,
+    Declaration,
+    Experiment,
+    Remark,
+    Variable,
+    local,
+)
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.condense import FOUND
 from herringbone.kernels.condensed.in_block.form import Form
-from herringbone.kernels.condensed.in_block.leaps import leaper
+from herringbone.kernels.condensed.in_block.leaps import leaper, readier
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size, work_places
+from herringbone.kernels.condensed.in_block.shown import HOLDS, STALE, show_kernels
 from herringbone.kernels.stepping.adaptive import (
     FIRST,
     LARGEST,
@@ -95,8 +104,8 @@ def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndar
 
 def step_kernel(
     declaration: Declaration, module: ModuleType, found: Stepping, micro_step: str
-) -> Callable:
-    """Compile the step of a component.
+) -> tuple[Callable, Asked]:
+    """Compile the step of a component, and how its native FMU makes outputs.
 
     Args:
         declaration: of the component.
@@ -115,24 +124,45 @@ def step_kernel(
             return micro
         return min(LARGEST, _STABLE / w[at.fastest])
 
-    by_core = adaptive_stepper(
-        module.system_rhs,
-        module.system_out,
-        d,
-        NEXT_STEP,
-        longest_inner_step,
-        partial(leaper, found.form, at, equations),
-        LENGTHS[-1],
-    )
+    ready = readier(found.form, at, equations)
     fixed = steppers.body_stepper(module.system_rhs, module.system_out, d)
     micro_at, tolerance, degree = d.indices(micro_step, TOLERANCE, INTERFACE_DEGREE)
 
-    @inner(d.name)
-    def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
-        refresh(b)
-        if b[micro_at] > 0.0:
-            b[kept] = 0.0
-            return fixed(b, w, t, h, b[micro_at], int(b[degree]))
-        return by_core(b, w, t, h, b[tolerance], int(b[degree]))
+    def stepper(*, later: bool) -> Callable:
+        by_core = adaptive_stepper(
+            module.system_rhs,
+            module.system_out,
+            d,
+            NEXT_STEP,
+            longest_inner_step,
+            partial(leaper, found.form, at, equations, ready),
+            LENGTHS[-1],
+            later=later,
+        )
 
-    return step
+        @inner(d.name)
+        def step(b, w, t, h):  # noqa: ANN001, ANN202 (the contract of all steps)
+            if w[at.status] == 0.0:  # parameters may have changed
+                refresh(b)
+            if b[micro_at] > 0.0:
+                b[kept] = 0.0
+                return fixed(b, w, t, h, b[micro_at], int(b[degree]))
+            return by_core(b, w, t, h, b[tolerance], int(b[degree]))
+
+        return step
+
+    asked, everything = show_kernels(found.form, at, equations)
+
+    @inner(d.name)
+    def answer(b, w, t, references, count):  # noqa: ANN001, ANN202 (see `Asked`)
+        if w[at.status] == 0.0:
+            refresh(b)
+            ready(b, w, t)
+        if b[kept + HOLDS] == 0.0 or b[kept + STALE] == 0.0:
+            return
+        if count > 0:
+            asked(b, w, t, references, count)
+        else:
+            everything(b, w, t)
+
+    return stepper(later=False), Asked(stepper(later=True), answer, kept + STALE)

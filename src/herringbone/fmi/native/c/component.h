@@ -181,6 +181,11 @@ typedef struct {
        zero elsewhere; on exit also the tangents of outputs and locals. dx, 2 states long: on exit the
        states' derivatives, then their tangents. b: outputs are written as `out` does. */
     void (*tangent)(double *b, double t, double *d, double *dx);
+    /* Writes those of the entries that are stale: states and outputs that a step has not made; of no
+       entries: all. NULL: steps make them. `stale` is the index of what tells which are stale: 0 none,
+       1 those that were not asked for, 2 all; it is part of an FMU state. */
+    void (*answer)(double *b, double *w, double t, const uint32_t *references, int64_t count);
+    uint32_t stale;
 } HbComponent;
 
 extern const HbComponent hb_component;

@@ -101,12 +101,40 @@ static double end_slope(double values[], uint32_t degree, double step_size) {
     return sum * degree / step_size;
 }
 
-static double output_derivative(const Instance *instance, uint32_t reference) {
+static void exchange(double *a, double *b, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double kept = a[i];
+        a[i] = b[i];
+        b[i] = kept;
+    }
+}
+
+/* Outputs at the start of the last step, if they were not made then: as if it had not been taken. */
+static void complete_previous(Instance *instance) {
+    uint32_t first = hb_component.first_output, states = hb_component.states;
+    if (!hb_component.answer || instance->previous[hb_component.stale - first] == 0.0)
+        return;
+    size_t count = hb_component.mutable_size - first;
+    double *block = instance->block, end = instance->now.time;
+    memcpy(instance->rates, block, states * sizeof(double));
+    exchange(block + first, instance->previous, count);
+    block[hb_component.stale] = 2.0;
+    instance->now.time = end - instance->now.last_step;
+    instance_complete(instance);
+    instance->now.time = end;
+    exchange(block + first, instance->previous, count);
+    memcpy(block, instance->rates, states * sizeof(double));
+    instance->rates_outdated = true;
+}
+
+static double output_derivative(Instance *instance, uint32_t reference) {
     const double *block = instance->block;
+    instance_complete(instance);
     if (hb_component.rates[reference])
         return block[hb_component.rates[reference]];
     if (!(instance->now.last_step > 0.0))
         return 0.0;
+    complete_previous(instance);
     uint32_t place = reference - hb_component.first_output;
     bool nodes = place < hb_component.node_outputs * HB_STRIDE;
     uint32_t degree = nodes && instance->now.last_degree ? instance->now.last_degree : 1;

@@ -111,6 +111,8 @@ Status instance_set_state(Instance *instance, void *handle) {
                parameters * sizeof(double)) != 0)
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
     memcpy(instance->slopes, state->saved, saved_size(instance));
+    if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
+        instance->block[hb_component.stale] = 2.0; /* what was asked for is another instance's */
     instance->now = state->moment;
     instance->outdated = state->moment.phase != PHASE_STEP &&
                          state->moment.phase != PHASE_INSTANTIATED &&

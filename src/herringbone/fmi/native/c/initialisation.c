@@ -221,6 +221,7 @@ Status instance_refresh_rates(Instance *instance) {
         if (status != STATUS_OK)
             return status;
     }
+    instance_complete(instance);
     hb_component.rhs(instance->block, instance->now.time, instance->rates);
     instance->rates_outdated = false;
     return STATUS_OK;

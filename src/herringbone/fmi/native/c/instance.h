@@ -118,6 +118,8 @@ Status instance_set_texts(Instance *instance, const uint32_t references[], size_
                           const char *const values[]);
 
 /* values.c: reals by value reference. */
+/* Make all that a step has left stale. */
+void instance_complete(Instance *instance);
 Status instance_get(Instance *instance, const uint32_t references[], size_t count,
                     double values[]);
 Status instance_set(Instance *instance, const uint32_t references[], size_t count,

@@ -34,6 +34,7 @@ static Status explain_failure(Instance *instance, int32_t failed, double step_si
                              "inputs: the inner step is the cause, whatever the communication step "
                              "size; give a larger tolerance, or smaller inputs",
                              instance->name, instance->block[hb_component.tolerance]);
+    instance_complete(instance);
     uint32_t i = first_not_finite(instance);
     bool found = i < hb_component.first_table;
     const char *name = found ? real_name(i) : "result", *unit = found ? real_unit(i) : "";

@@ -26,6 +26,7 @@ static Status prepare(Instance *instance) {
     if (!instance->direction)
         return refuse(instance, "out of memory");
     memset(instance->direction, 0, hb_component.first_table * sizeof(double));
+    instance_complete(instance);
     return instance->outdated ? instance_refresh(instance) : STATUS_OK;
 }
 

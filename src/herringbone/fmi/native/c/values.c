@@ -59,7 +59,17 @@ Status instance_unknown(Instance *instance, const char *type, const uint32_t ref
                          instance->name, type, list);
 }
 
+static bool is_stale(const Instance *instance) {
+    return hb_component.answer && instance->block[hb_component.stale] != 0.0;
+}
+
+void instance_complete(Instance *instance) {
+    if (is_stale(instance))
+        hb_component.answer(instance->block, instance->work, instance->now.time, NULL, 0);
+}
+
 static Status get_indicator(Instance *instance, uint32_t k, double *value) {
+    instance_complete(instance);
     hb_component.indicators(instance->block, instance->now.time, instance->indicators);
     *value = instance->indicators[k];
     return STATUS_OK;
@@ -89,6 +99,9 @@ Status instance_get(Instance *instance, const uint32_t references[], size_t coun
         return instance_refuse(instance, "getReal");
     Status worst = instance->outdated ? instance_refresh(instance) : STATUS_OK;
     const double *block = instance->block;
+    if (is_stale(instance) && count > 0)
+        hb_component.answer(instance->block, instance->work, instance->now.time, references,
+                            (int64_t)count);
     for (size_t i = 0; i < count; i++) {
         uint32_t reference = references[i];
         if (instance_is_real(reference)) {
@@ -156,8 +169,10 @@ static Status set_checked(Instance *instance, uint32_t reference, double value) 
         message_write(&why, "a %s cannot be set now", kind_of(access));
         return refuse_value(instance, reference, value, why.text);
     }
-    if (instance->block[reference] != value && reference >= hb_component.mutable_size)
+    if (instance->block[reference] != value && reference >= hb_component.mutable_size) {
+        instance_complete(instance);
         memset(instance->work, 0, hb_component.work * sizeof *instance->work);
+    }
     instance->block[reference] = value;
     return STATUS_OK;
 }

@@ -25,6 +25,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
     """
     owner, given, values = equations.owner, equations.given, form.values
     n, channels, arguments = form.states, form.channels, form.arguments
+    rows = n + form.outputs
     stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
     of = taken_places(form, at.rungs)
     find_rotations = rotation_finder(form, at, owner)
@@ -33,19 +34,19 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
     def answer(b: np.ndarray, w: np.ndarray) -> None:
         """Rates and arguments at the states and channels."""
         z = w[at.start : at.start + arguments]
-        given(b, w[at.x : at.x + n], w[at.now :], w[of.rates : of.rates + n], z)
+        given(b, w[at.x : at.x + n], w[at.now :], w[of.rates : of.rates + rows], z)
 
     @outside(owner)
     def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
         """Write matrices of the rest; False if laws depend on each other without delay."""
-        dx, still = w[of.rates : of.rates + n], w[of.rates + n : of.rates + 2 * n]
+        dx, still = w[of.rates : of.rates + rows], w[of.rates + rows : of.rates + 2 * rows]
         z, direct = w[at.start : at.start + arguments], 0.0
         for i in range(n):
             w[at.x + i] = 0.0
         for c in range(channels):
             w[at.now + c] = 0.0
         answer(b, w)
-        for i in range(n):
+        for i in range(rows):
             still[i] = dx[i]
             w[of.of_inputs + i * channels + channels - 1] = dx[i]
         for k in range(arguments):
@@ -54,7 +55,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             w[at.now + c] = 1.0
             answer(b, w)
             w[at.now + c] = 0.0
-            for i in range(n):
+            for i in range(rows):
                 w[of.of_inputs + i * channels + c] = dx[i] - still[i]
             for k in range(arguments):
                 own = z[k] - w[at.of_channels + k * channels + channels - 1]
@@ -65,7 +66,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             w[at.x + j] = 1.0
             answer(b, w)
             w[at.x + j] = 0.0
-            for i in range(n):
+            for i in range(rows):
                 w[of.whole + i * n + j] = dx[i] - still[i]
             for k in range(arguments):
                 own = z[k] - w[at.of_channels + k * channels + channels - 1]
@@ -79,7 +80,7 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
             for k in range(arguments):
                 mean = tangent[s * arguments + k]
                 if mean != 0.0:
-                    for i in range(n):
+                    for i in range(rows):
                         first = of.of_inputs + i * channels
                         by = mean * w[first + int(stiff[s])]
                         for j in range(n):
@@ -106,12 +107,14 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
 
     @outside(owner)
     def is_felt(w: np.ndarray, j: int) -> bool:
-        """True if arguments, or rates of what moves, depend on a state."""
+        """True if arguments, rates of what moves, or outputs depend on a state."""
         can, felt = w[of.rates : of.rates + n], 0.0
         for k in range(arguments):
             felt += abs(w[of.of_states + k * n + j])
         for i in range(n):
             felt += abs(can[i] * w[of.whole + i * n + j])
+        for i in range(n, rows):
+            felt += abs(w[of.whole + i * n + j])
         return felt != 0.0
 
     @outside(owner)

@@ -1,4 +1,4 @@
-"""Whether a component's rates are those of its modal coordinates and laws.
+"""Whether a component's rates are those of its modal coordinates and laws, and which outputs are.
 
 So parameters are seen that make it otherwise than linear beside the laws.
 """
@@ -9,10 +9,18 @@ import numpy as np
 
 from herringbone.kernels.compiling.jit import outside
 from herringbone.kernels.condensed.in_block.form import Equations, Form
-from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_places
+from herringbone.kernels.condensed.in_block.places import (
+    WorkPlaces,
+    output_places,
+    taken_places,
+)
 
 _LINEAR = 1e-7
 """Largest deviation of rates, over the sizes of the terms that are added."""
+_SAME = 1e-9
+"""Of an output, over the sizes of the terms that are added: a difference below is rounding."""
+_FARTHER = (-10.0, 0.1, 100.0)
+"""Usual sizes by which states and inputs are moved to see which outputs are affine."""
 _LATER = 1e3
 """Time [s] after which nothing is brought in any more."""
 
@@ -22,18 +30,22 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
 ) -> Callable[[np.ndarray, np.ndarray, float], bool]:
     """Compile holds(b, w, t) -> bool, at the block's states and where all are larger; they stay.
 
+    It notes which outputs are not affine.
+
     Args:
         form: of the component.
         at: places in the work space.
         equations: of the component.
     """
     owner, sizes, inputs = equations.owner, np.array(equations.sizes), equations.inputs
-    rhs, given, prepare = equations.rhs, equations.given, equations.prepare
+    rhs, out, given, prepare = equations.rhs, equations.out, equations.given, equations.prepare
     laws, signals = equations.laws, equations.signals
     n, channels, arguments, values = form.states, form.channels, form.arguments, form.values
     stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
     signal_count, first_input, input_count = form.signals, values + form.signals, form.inputs
-    of, capacity = taken_places(form, at.rungs), at.capacity
+    of, capacity, rows = taken_places(form, at.rungs), at.capacity, n + form.outputs
+    shown, farther = form.shown, np.array(_FARTHER)
+    outputs, places, timed = form.outputs, output_places(form.shown), np.array([*shown.timed, -1])
 
     @outside(owner)
     def channels_at(b: np.ndarray, w: np.ndarray, t: float) -> None:
@@ -42,7 +54,7 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         signals(b, t, u[values : values + signal_count])
         for k in range(input_count):
             u[first_input + k] = b[inputs[k]]
-        given(b, x, u, w[of.rates : of.rates + n], z)
+        given(b, x, u, w[of.rates : of.rates + rows], z)
         laws(b, t, z, u, w[at.k :], w[at.e :])
         for s in range(unknowns):
             for k in range(arguments):
@@ -126,11 +138,52 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         return True
 
     @outside(owner)
+    def note_bent(b: np.ndarray, w: np.ndarray, t: float) -> None:
+        """Note the outputs that are not those of the form in the block's state."""
+        for i in range(n):
+            w[at.x + i] = b[i]
+        channels_at(b, w, t)
+        out(b, t)
+        for k in range(outputs):
+            row, y, terms = n + k, 0.0, 1e-300
+            for i in range(n):
+                term = w[of.whole + row * n + i] * b[i]
+                y += term
+                terms += abs(term)
+            for c in range(channels):
+                term = w[of.of_inputs + row * channels + c] * w[at.now + c]
+                y += term
+                terms += abs(term)
+            if not abs(y - b[int(places[k])]) <= _SAME * terms:
+                w[at.bent + k] = 1.0
+
+    @outside(owner)
+    def find_bent(b: np.ndarray, w: np.ndarray, t: float) -> None:
+        """Note the outputs that are not affine; states and inputs are those in `of.room`."""
+        kept = w[of.room : of.room + n + input_count]
+        for k in range(outputs):
+            w[at.bent + k] = 0.0
+        for k in range(timed.size - 1):
+            w[at.bent + timed[k]] = 1.0
+        note_bent(b, w, t)
+        for k in range(farther.size):
+            far = farther[k]
+            for i in range(n):
+                b[i] = kept[i] + far * sizes[i] * (1.0 + 0.125 * (i % 8))
+            for j in range(input_count):
+                b[inputs[j]] = kept[n + j] + far * (1.0 + abs(kept[n + j]))
+            note_bent(b, w, t + _LATER)
+        for k in range(input_count):
+            b[inputs[k]] = kept[n + k]
+
+    @outside(owner)
     def holds(b: np.ndarray, w: np.ndarray, t: float) -> bool:
         """True if it does here, and where all states are larger, now and later."""
-        kept = w[of.room : of.room + n]
+        kept = w[of.room : of.room + n + input_count]
         for i in range(n):
             kept[i] = b[i]
+        for k in range(input_count):
+            kept[n + k] = b[inputs[k]]
         prepare(b)
         found = agrees(b, w, t)
         for i in range(int(w[at.inside])):
@@ -139,6 +192,10 @@ def checker(  # noqa: PLR0915 (kernels that share their layout)
         found = found and agrees(b, w, t + _LATER)
         for i in range(n):
             b[i] = kept[i]
+        if found and outputs > 0:
+            find_bent(b, w, t)
+            for i in range(n):
+                b[i] = kept[i]
         return found
 
     return holds

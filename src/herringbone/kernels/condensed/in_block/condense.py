@@ -12,6 +12,7 @@ from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.in_modes import mode_finder
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.condensed.in_block.rung import rung_maker
+from herringbone.kernels.condensed.in_block.shown import seen_arranger
 
 FOUND, NONE = 1, -1
 """Status: there is a condensed form, or none."""
@@ -31,6 +32,7 @@ def condenser(
     owner, lengths, rungs = equations.owner, np.array(form.lengths), len(form.lengths)
     apart, holds = apart_taker(form, at, equations), checker(form, at, equations)
     (find, arrange), make = mode_finder(form, at, owner), rung_maker(form, at, owner)
+    arrange_seen, outputs = seen_arranger(form, at, owner), form.outputs
 
     @outside(owner)
     def fastest(w: np.ndarray) -> float:
@@ -45,6 +47,8 @@ def condenser(
         w[at.status] = NONE
         if not apart(b, w) or not find(w) or not holds(b, w, t):
             return
+        if outputs > 0:
+            arrange_seen(w)
         arrange(w)
         w[at.fastest] = fastest(w)
         for rung in range(rungs):

@@ -11,17 +11,20 @@ from herringbone.kernels.condensed.collocation import less_tangents
 from herringbone.kernels.condensed.in_block.arrays import array_kernels
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces, kept_size
+from herringbone.kernels.condensed.in_block.shown import ALL, COORDINATES, HOLDS, STALE
 from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
 
 
 def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     form: Form, at: WorkPlaces, equations: Equations
-) -> tuple[Callable, Callable, Callable, Callable]:
+) -> tuple[Callable, Callable, Callable, Callable, Callable]:
     """Compile the ways between states and coordinates.
 
-    They are enter(b, w, t, close), which writes the laws there, too, and leave(b, w); with a place
-    for what is kept, belongs(b, w) -> bool: whether the states are to the bit those that follow
-    from it; and forget(b): the states were changed.
+    They are enter(b, w, t, close), which writes the laws there, too, and leave(b, w). With a place
+    for what is kept, states are not made by the latter, but are stale from then on; and there are
+    belongs(b, w) -> bool: whether the states that are not stale are to the bit those that follow
+    from it; settle(b, w): makes states that are stale; and forget(b, w): does so, as they are to be
+    changed.
 
     Args:
         form: of the component.
@@ -34,7 +37,8 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     given, input_count, stiff = equations.inputs, form.inputs, np.array(form.stiff)
     degree, count, capacity, unknowns = form.degree, form.degree + 1, at.capacity, len(form.stiff)
     table_of, nodes_of, _ = array_kernels(form, at, owner)
-    size, goes_on = kept_size(form) - 1, equations.kept >= 0
+    size, goes_on = kept_size(form) - COORDINATES, equations.kept >= 0
+    first = kept + COORDINATES
 
     @outside(owner)
     def neglect(w: np.ndarray, modes: int, close: float) -> None:
@@ -101,14 +105,18 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
         for r in range(int(w[at.rotations])):
             angle, v = b[int(w[at.references + r])], w[at.rigid + r * n : at.rigid + (r + 1) * n]
             for i in range(inside):
-                rigid = v[int(w[at.states + i])]
-                if rigid != 0.0:
-                    x[i] += rigid * angle
+                x[i] += v[int(w[at.states + i])] * angle
+
+    @outside(owner)
+    def kept_states(b: np.ndarray, w: np.ndarray) -> None:
+        """As `states_of`, at the coordinates that are kept."""
+        copy(b[first : first + at.q_size], w[at.q : at.q + at.q_size])
+        states_of(b, w)
 
     @inner(owner)
     def enter(b: np.ndarray, w: np.ndarray, t: float, close: float) -> None:
-        if goes_on and b[kept] != 0.0:
-            copy(b[kept + 1 : kept + 1 + size], w[at.q : at.q + size])
+        if goes_on and b[kept + HOLDS] != 0.0:
+            copy(b[first : first + size], w[at.q : at.q + size])
             return
         inside, modes = int(w[at.inside]), int(w[at.modes])
         x = w[at.x : at.x + inside]
@@ -128,35 +136,49 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
         w[at.before] = -1.0
 
     @inner(owner)
+    def write_states(b: np.ndarray, w: np.ndarray) -> None:
+        for i in range(int(w[at.inside])):
+            b[int(w[at.states + i])] = w[at.x + i]
+
+    @inner(owner)
     def leave(b: np.ndarray, w: np.ndarray) -> None:
         modes = int(w[at.modes])
         for r in range(int(w[at.rotations])):
             b[int(w[at.references + r])] += w[at.q + 2 * modes + r]
             w[at.q + 2 * modes + r] = 0.0
-        states_of(b, w)
-        for i in range(int(w[at.inside])):
-            b[int(w[at.states + i])] = w[at.x + i]
         if goes_on:
-            b[kept] = 1.0
-            copy(w[at.q : at.q + size], b[kept + 1 : kept + 1 + size])
+            b[kept + HOLDS], b[kept + STALE] = 1.0, ALL
+            copy(w[at.q : at.q + size], b[first : first + size])
+        else:
+            states_of(b, w)
+            write_states(b, w)
 
     @outside(owner)
     def belongs(b: np.ndarray, w: np.ndarray) -> bool:
-        if not goes_on or b[kept] == 0.0:
+        if not goes_on or b[kept + HOLDS] == 0.0:
             return False
-        copy(b[kept + 1 : kept + 1 + size], w[at.q : at.q + size])
-        states_of(b, w)
+        if b[kept + STALE] != 0.0:
+            return True
+        kept_states(b, w)
         for i in range(int(w[at.inside])):
             if b[int(w[at.states + i])] != w[at.x + i]:
                 return False
         return True
 
     @inner(owner)
-    def forget(b: np.ndarray) -> None:
-        if goes_on:
-            b[kept] = 0.0
+    def settle(b: np.ndarray, w: np.ndarray) -> None:
+        if goes_on and b[kept + STALE] != 0.0:
+            kept_states(b, w)
+            write_states(b, w)
+            b[kept + STALE] = 0.0
 
-    return enter, leave, belongs, forget
+    @inner(owner)
+    def forget(b: np.ndarray, w: np.ndarray) -> None:
+        if goes_on:
+            settle(b, w)
+            b[kept + HOLDS] = 0.0
+
+    return enter, leave, belongs, settle, forget
 
 
 _NEGLIGIBLE = 1e-5

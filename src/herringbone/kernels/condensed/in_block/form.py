@@ -1,10 +1,33 @@
 """What the condensed core of a component is over, and the kernels that it needs of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+
+
+class Shown(NamedTuple):
+    """Outputs of a component that are made when they are asked for, in the order of the block.
+
+    Those that are not affine in states, laws' values, signals and inputs are made by the part whose
+    they are, from its states and inputs.
+
+    Attributes:
+        first: place of the first one in the block.
+        with_nodes: so many have nodes, and stand first.
+        part: by output, number of the part that can make it alone; -1: none can.
+        timed: outputs that depend on the time alone.
+        states: (parts,) first state of each part, and the one after the last.
+        feeding: (parts,) outputs that are inputs of each part.
+    """
+
+    first: int = 0
+    with_nodes: int = 0
+    part: tuple[int, ...] = ()
+    timed: tuple[int, ...] = ()
+    states: tuple[tuple[int, int], ...] = ()
+    feeding: tuple[tuple[int, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -29,6 +52,7 @@ class Form:
         lengths: of steps, by rung, falling [s].
         rough: highest power of the laws' values over a step, over their size and the tolerance, at
             most.
+        shown: what is shown straight from the coordinates.
     """
 
     states: int
@@ -48,6 +72,12 @@ class Form:
     ahead: np.ndarray
     lengths: tuple[float, ...]
     rough: float
+    shown: Shown = field(default_factory=Shown)
+
+    @property
+    def outputs(self) -> int:
+        """How many are shown."""
+        return len(self.shown.part)
 
     @property
     def degree(self) -> int:
@@ -83,12 +113,15 @@ class Equations(NamedTuple):
         kept: place in the block of what a core goes on with, `kept_size` long; -1: it begins anew
             in every call.
         rhs: the component's kernel.
-        given: kernel (b, x, u, dx, z), rates and arguments where laws' values, signals and inputs
-            are given.
+        out: the component's kernel.
+        given: kernel (b, x, u, dx, z), rates, then outputs that are shown, and arguments, where
+            laws' values, signals and inputs are given.
         signals: kernel (b, t, to), writes the signals at a time [s].
         prepare: kernel (b), before the laws.
         laws: kernel (b, t, z, f, k, e), values, tangents and indicators at arguments and a time.
         period: kernel (b), time in which the laws repeat themselves [s].
+        show: kernel (b, u, t, need, bent), writes the outputs that are not affine (bent) of parts
+            that are needed, by states and outputs in the block and channels at a time [s].
     """
 
     owner: str
@@ -96,8 +129,10 @@ class Equations(NamedTuple):
     sizes: tuple[float, ...]
     kept: int
     rhs: Callable
+    out: Callable
     given: Callable
     signals: Callable
     prepare: Callable
     laws: Callable
     period: Callable
+    show: Callable

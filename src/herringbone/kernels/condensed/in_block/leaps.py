@@ -13,6 +13,7 @@ from herringbone.kernels.condensed.in_block.condense import FOUND, condenser
 from herringbone.kernels.condensed.in_block.coordinates import advancing, coordinate_kernels
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
+from herringbone.kernels.condensed.in_block.shown import shower
 from herringbone.kernels.condensed.modal import add_chosen, add_product
 
 _CLOSE = 10.0
@@ -89,9 +90,24 @@ def step_beginner(
     return begin_step
 
 
-def leaper(  # noqa: PLR0915 (kernels that share their layout)
-    form: Form, at: WorkPlaces, equations: Equations, set_inputs: Callable
-) -> tuple[Callable, Callable, Callable]:
+def readier(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
+    """Compile ready(b, w, t): finds the condensed form, if that is not done."""
+    condense = condenser(form, at, equations)
+    _, _, belongs, _, forget = coordinate_kernels(form, at, equations)
+
+    @inner(equations.owner)
+    def ready(b: np.ndarray, w: np.ndarray, t: float) -> None:
+        if w[at.status] == 0.0:
+            condense(b, w, t)
+            if w[at.status] != FOUND or not belongs(b, w):
+                forget(b, w)
+
+    return ready
+
+
+def leaper(
+    form: Form, at: WorkPlaces, equations: Equations, ready: Callable, set_inputs: Callable
+) -> tuple[Callable, Callable, Callable, Callable]:
     """Compile the leaps of a component.
 
     Returns:
@@ -99,12 +115,12 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
         inside of a macro step of length h [s]; time since t that it has reached. It leaves what is
         shorter than the shortest step, and stops where in the shortest step a law bends or its
         values are rough, and where the iteration does not end.
-        ready(b, w, t): finds the condensed form, if that is not done.
-        forget(b): the states are others than it left.
+        ready(b, w, t): as given, see `readier`.
+        forget(b, w): the states are to be others than it left.
+        show(b, w, t, how) -> bool: see `shown.shower`.
     """
     owner, prepare, period = equations.owner, equations.prepare, equations.period
-    condense = condenser(form, at, equations)
-    enter, leave, belongs, forget = coordinate_kernels(form, at, equations)
+    enter, leave, _, settle, forget = coordinate_kernels(form, at, equations)
     begin_step = step_beginner(form, at, equations, set_inputs)
     iterate, advance = iteration(form, at, equations), advancing(form, at, owner)
     bends, rough = doubts(form, at, owner)
@@ -127,13 +143,6 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
             if length < 0.5 * most:
                 break
         return longest
-
-    @inner(owner)
-    def ready(b: np.ndarray, w: np.ndarray, t: float) -> None:
-        if w[at.status] == 0.0:
-            condense(b, w, t)
-            if w[at.status] != FOUND or not belongs(b, w):
-                forget(b)
 
     @inner(owner)
     def leap(
@@ -171,4 +180,4 @@ def leaper(  # noqa: PLR0915 (kernels that share their layout)
             leave(b, w)
         return end if end - done < shortest * _SAME else done
 
-    return leap, ready, forget
+    return leap, ready, forget, shower(form, at, equations, settle)

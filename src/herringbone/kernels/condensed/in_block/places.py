@@ -3,12 +3,15 @@
 from itertools import accumulate
 from typing import NamedTuple
 
-from herringbone.kernels.condensed.in_block.form import Form
+import numpy as np
+
+from herringbone.kernels.condensed.in_block.form import Form, Shown
 from herringbone.kernels.eigen.vectors import room
+from herringbone.kernels.signals import STRIDE
 
 _SPARE = 16
 """Modes that are not oscillations, at most twice as many, for which there is room."""
-_LINE = 8
+LINE = 8
 _SCRATCH = 64
 
 
@@ -38,6 +41,17 @@ class WorkPlaces(NamedTuple):
         shapes, back: see `kernels.eigen.vectors`; when all is found, by columns over coordinates.
         room: for a node of a mode.
         full: (q_size + channels x nodes, (nodes - 1) x arguments), while a rung is made.
+        seen: (2 modes + rotations + channels, states inside and outputs, in whole lines), see
+            `in_block.shown`.
+        bent: (outputs,) 1 where one is not affine.
+        asked: (outputs and states,) rows of `seen` that were asked for, in this order.
+        known: (outputs and states,) 1 for these.
+        need: (parts,) 1 where a part makes some of them.
+        asking: how many rows these are.
+        showing: 1 if outputs can be shown.
+        packed: these rows of `seen`, in whole lines.
+        values: (states and outputs,) of them.
+        inside_of: (states,) which of the states inside each one is, or -1.
         x: (states,).
         now: (channels,) at a time.
         q: real parts of the coordinates, imaginary parts, growth of the angles, zeros.
@@ -81,6 +95,16 @@ class WorkPlaces(NamedTuple):
     back: int
     room: int
     full: int
+    seen: int
+    bent: int
+    asked: int
+    known: int
+    need: int
+    asking: int
+    showing: int
+    packed: int
+    values: int
+    inside_of: int
     x: int
     now: int
     q: int
@@ -114,10 +138,10 @@ class Taken(NamedTuple):
     """Places of what is taken from the kernels, where the rungs are to be; n states.
 
     Attributes:
-        whole: (n, n) of the states, with mean tangents.
-        of_inputs: (n, channels).
+        whole: (n + outputs, n) of the states, with mean tangents.
+        of_inputs: (n + outputs, channels).
         of_states: (arguments, n).
-        rates: (4, n).
+        rates: (4, n + outputs).
         matrix: (n, n).
         room: of the eigenvalues.
         end: behind everything.
@@ -132,15 +156,18 @@ class Taken(NamedTuple):
     end: int
 
 
-def _lines(count: int) -> int:
+def lines(count: int) -> int:
     """A count of reals that fills whole lines of the cache."""
-    return -(-count // _LINE) * _LINE
+    return -(-count // LINE) * LINE
 
 
 def taken_places(form: Form, first: int) -> Taken:
     """Places from `first` on."""
-    n = form.states
-    sizes = (n * n, n * form.channels, n * form.arguments, 4 * n, n * n, room(n))
+    n, rows = form.states, form.states + form.outputs
+    sizes = (
+        rows * n, rows * form.channels, n * form.arguments, 4 * rows, n * n,
+        room(n) + form.inputs,
+    )  # fmt: skip
     return Taken(*accumulate(sizes, initial=first))
 
 
@@ -149,14 +176,32 @@ def _state_sizes(form: Form) -> tuple[int, ...]:
     channels, angles = form.channels, len(form.turning)
     given = channels * (form.degree + 1)
     return (
-        _lines(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
+        lines(form.states + _SPARE + angles), given, form.values, channels, 1, form.arguments,
         (form.degree + 1) * form.kinks,
     )  # fmt: skip
 
 
+def output_places(shown: Shown) -> np.ndarray:
+    """Of the outputs that are shown, in the block; one more, as a kernel has no empty arrays."""
+    with_nodes = shown.first + STRIDE * np.arange(shown.with_nodes)
+    others = shown.first + STRIDE * shown.with_nodes
+    count = len(shown.part) - shown.with_nodes
+    return np.concatenate([with_nodes, others + np.arange(count), [0]])
+
+
 def kept_size(form: Form) -> int:
-    """How many reals a core goes on with: 1 where they hold, and they."""
-    return 1 + sum(_state_sizes(form))
+    """How many reals a core goes on with: `coordinates.HOLDS`, `coordinates.STALE`, and they."""
+    return 2 + sum(_state_sizes(form))
+
+
+def _shown_sizes(form: Form, q_size: int) -> tuple[int, ...]:
+    """From `seen` to `inside_of`."""
+    if not form.outputs:
+        return (0,) * 10
+    rows = form.states + form.outputs
+    matrix = (q_size + form.channels) * lines(rows)
+    parts = len(form.shown.states)
+    return matrix, form.outputs, rows, rows, parts, 1, 1, matrix, lines(rows), form.states
 
 
 def work_places(form: Form, first: int) -> WorkPlaces:
@@ -165,7 +210,7 @@ def work_places(form: Form, first: int) -> WorkPlaces:
     angles, stiff, tangents = len(form.turning), len(form.stiff), len(form.directions)
     capacity, given, unknowns = (n + _SPARE) // 2, channels * (degree + 1), stiff * degree
     of_state = _state_sizes(form)
-    q_size, width = of_state[0], _lines(form.rows + angles)
+    q_size, width = of_state[0], lines(form.rows + angles)
     matrices = (
         2 * capacity, q_size * width, given * width, given * q_size, unknowns * degree * tangents,
     )  # fmt: skip
@@ -173,9 +218,9 @@ def work_places(form: Form, first: int) -> WorkPlaces:
         1, 1, 1, 1, 1, n, angles, angles * n, 2 * capacity, 2 * angles * capacity,
         angles * arguments, arguments * channels, 2 * arguments * capacity,
         2 * channels * capacity, n * (n + _SPARE), n * (n + _SPARE), _SCRATCH,
-        (q_size + given) * degree * arguments, n, channels, *of_state, given, given, given, width,
-        width, degree * arguments, degree * form.values, degree * tangents, unknowns * unknowns,
-        unknowns, unknowns, stiff, degree * tangents,
+        (q_size + given) * degree * arguments, *_shown_sizes(form, q_size), n, channels, *of_state,
+        given, given, given, width, width, degree * arguments, degree * form.values,
+        degree * tangents, unknowns * unknowns, unknowns, unknowns, stiff, degree * tangents,
     )  # fmt: skip
     rung, own = list(accumulate(matrices, initial=0)), list(accumulate(arrays, initial=first))
     end = max(own[-1] + len(form.lengths) * rung[-1], taken_places(form, own[-1]).end)
