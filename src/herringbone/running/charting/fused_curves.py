@@ -21,6 +21,8 @@ def fused_points(
 ) -> Iterator[Point]:
     """The base steps of a ladder, for each degree; passes are evaluations of all laws.
 
+    Times are of the loop, as those of FMUs: the matrices of the steps were made by the first run.
+
     Raises:
         StructureError: the system cannot be fused.
     """
@@ -31,9 +33,9 @@ def fused_points(
         for grid in grids:
             progress(name, grid.step)
             steps = Steps(grid.step, degree, _CLOSE)
-            FusedRun(core, steps, columns, Grid(grid.step, 2, 1), None).go(None)  # loads code
-            runs = [FusedRun(core, steps, columns, grid, None).go(None) for _ in range(_REPEATS)]
-            recording = runs[0]
+            recording, *runs = (
+                FusedRun(core, steps, columns, grid, None).go(None) for _ in range(1 + _REPEATS)
+            )
             evaluations = recording.core.evaluations if recording.core else math.nan
             reached = recording.outcome.time
             yield Point(

@@ -21,7 +21,6 @@ from herringbone.analysis.twin.condensed.rungs import (
     aligned,
     coefficients,
     continued,
-    empty_rungs,
     make_rung,
     padded,
     powers,
@@ -209,7 +208,7 @@ class Solution:
         """Matrices of steps of a length [s], and of shorter ones; see `make`."""
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            self._rungs[h] = empty_rungs(self._modes, lengths, self._shape)
+            self._rungs[h] = self._system.rungs(lengths, self._shape)
         return self._rungs[h]
 
     def make(self, rungs: Rungs, rung: int) -> None:

@@ -1,6 +1,6 @@
 """What a march needs to know of a condensed system: addresses, offsets, tangents."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -11,6 +11,7 @@ from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.condensed.march_arrays import Calls
 from herringbone.analysis.twin.condensed.modes import Modes, make_modes
 from herringbone.analysis.twin.condensed.renewed import renewed
+from herringbone.analysis.twin.condensed.rungs import Rungs, Shape, empty_rungs
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.law_addresses import law_address, signals_address
 from herringbone.core import Instance, Laws, StructureError
@@ -18,6 +19,8 @@ from herringbone.core.one_thread import one_blas_thread
 from herringbone.kernels.condensed.collocation import Table
 
 _NO_ROWS = np.zeros((0, 0))
+_KEPT = 4
+"""Lengths of base steps whose matrices are kept, with all that are halves of them: some MB each."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,22 @@ class Condensed:
         twin = self.twin
         known = self.equations.of_sources
         return all(twin.instances[p].component.curve is not None for p, _ in known)
+
+    @cached_property
+    def _kept(self) -> dict[tuple, Rungs]:
+        return {}
+
+    def rungs(self, lengths: Sequence[float], shape: Shape) -> Rungs:
+        """Matrices of steps of some lengths [s], which marches of the same kind share.
+
+        Those of the last few lengths are kept, filled as far as some march has needed them.
+        """
+        key = (shape.degree, shape.lean, len(shape.sharp), *lengths)
+        if key not in self._kept:
+            while len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[key] = empty_rungs(self.modes, lengths, shape)
+        return self._kept[key]
 
     def signals(self, t: float) -> np.ndarray:
         """Signals (signals,) at a time [s]; of open inputs the values that the twin has."""
