@@ -154,6 +154,7 @@ Status instance_step(Instance *instance, double time, double step_size);
    interface_degree = 0. An output derivative holds at the end of the last step: another output
    where that is the derivative; otherwise the slope of the polynomial through the values of the
    step, which is 0 before the first step. */
+void instance_keep_outputs(Instance *instance); /* at the start of a step */
 Status instance_set_input_derivatives(Instance *instance, const uint32_t references[],
                                       size_t count, const int32_t orders[],
                                       const double values[]);

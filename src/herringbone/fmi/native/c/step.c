@@ -113,8 +113,7 @@ Status instance_step(Instance *instance, double time, double step_size) {
     now->time = time;
     if (now->input_order && instance->block[hb_component.degree] != 0.0)
         return refuse_two_signals(instance);
-    memcpy(instance->previous, instance->block + hb_component.first_output,
-           (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
+    instance_keep_outputs(instance);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
     if (hb_component.watch)
