@@ -205,7 +205,7 @@ def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool)
     """LLVM code of entry points for a platform."""
     target = _target(platform)
     module = _linked(kernels, target, platform.triple)
-    if fast and platform.triple.startswith("x86_64"):
+    if fast and platform.chooses_vectors:
         module = with_wide(module)
     _internalise(module, kernels)
     module.verify()

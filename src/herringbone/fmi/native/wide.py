@@ -62,7 +62,7 @@ def _twice(text: str, function: llvm.ValueRef, groups: dict[str, str]) -> str:
     )
     wide = after.replace(f"#{number}", f"#9{number}")
     found = [
-        f'define {before}@"{function.name}{way}"{arguments}{attributes}{{\n{lines}}}\n'
+        f'define {before}@"{function.name}{way}"{arguments} noinline{attributes}{{\n{lines}}}\n'
         for way, attributes, lines in (
             ("", after, choice),
             (".plain", after, body),

@@ -105,6 +105,8 @@ Status instance_refresh_rates(Instance *instance);
 
 /* remarks.c: log what holds now and was not told before. */
 void instance_tell_remarks(Instance *instance);
+/* Tell which one is why a step failed; false if none is. */
+bool instance_blame_remark(Instance *instance, double step_size);
 
 /* reals.c: what messages call a real, "" for a hidden state; the node is "" or ".node1" ... */
 const char *real_name(uint32_t reference);

@@ -26,6 +26,8 @@ static Status explain_failure(Instance *instance, int32_t failed, double step_si
                              "%s: step size %g s; one call takes at most %g s", instance->name,
                              step_size, hb_component.longest_step(instance->block));
     instance_tell_remarks(instance);
+    if (instance_blame_remark(instance, step_size))
+        return STATUS_DISCARD;
     if (hb_component.watch && hb_component.watch->blame(instance, step_size))
         return STATUS_DISCARD;
     if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)

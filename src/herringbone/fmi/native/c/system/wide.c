@@ -1,6 +1,6 @@
-/* Whether kernels may use vectors of 256 bits, for processors of the x86-64 family; see
-   fmi/native/wide.py. */
-#if defined(__x86_64__)
+/* Whether kernels may use vectors of 256 bits, for processors of the x86-64 family, where somebody
+   tests it; see fmi/native/wide.py. */
+#if defined(__x86_64__) && !defined(__APPLE__)
 #include <cpuid.h>
 #include <stdint.h>
 
