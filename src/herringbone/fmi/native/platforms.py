@@ -31,7 +31,7 @@ class Platform:
 
     @property
     def chooses_vectors(self) -> bool:
-        """Whether code asks the processor for wide vectors, see `wide`: where that can be tested."""
+        """Whether code asks the processor for wide vectors, where that is tested: see `wide`."""
         return self.triple.startswith("x86_64") and self.tested
 
 

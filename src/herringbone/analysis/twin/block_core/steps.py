@@ -176,7 +176,7 @@ def step_kernel(
                 refresh(b)
             if b[micro_at] > 0.0:
                 ready(b, w, t)
-                b[kept] = 0.0
+                b[kept + HOLDS] = 0.0
                 return fixed(b, w, t, h, b[micro_at], int(b[degree]))
             return by_core(b, w, t, h, b[tolerance], int(b[degree]))
 
