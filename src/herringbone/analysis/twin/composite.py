@@ -15,12 +15,12 @@ from herringbone.analysis.twin.block_core.form import core_form, shown_of, why_n
 from herringbone.analysis.twin.block_core.source import core_source
 from herringbone.analysis.twin.block_core.steps import (
     LENGTHS,
-    REMARK,
     ROUGH,
     Stepping,
     by_tolerance,
     locals_of,
     longest_step,
+    remark_source,
     step_kernel,
     stepping,
 )
@@ -103,7 +103,7 @@ def make_composite(
     if steps:
         fed = tuple(to for _, to in places.inputs)
         source += core_source(parts, declaration.first_table, fed, held=held, shown=True)
-        source += REMARK.format(status=steps.at.status)
+        source += remark_source(steps, declaration.index[MICRO_STEP])
     module = load_generated("composite", source)
     loader = loader_of(declaration, instances, module)
     step, asked = _step_kernel(declaration, module, steps)

@@ -78,6 +78,9 @@ class Experiment(NamedTuple):
     tolerance: float | None = None
 
 
+HOLDS_NOW, FAILS_STEPS = 1, 2
+
+
 @dataclass(frozen=True)
 class ByTolerance:
     """How a native FMU's inner steps follow a tolerance, and what it says of them.
@@ -86,8 +89,9 @@ class ByTolerance:
         tolerance: name of the local that the wrapper sets to the host's tolerance.
         experiment: the default experiment.
         remarks: what may be told after a step, or at the end of initialisation.
-        remark: kernel remark(b, w, which, report) -> int, on block and work space: 1 where the
-            remark holds, with its numbers in the report (`REPORT` of them), else 0.
+        remark: kernel remark(b, w, which, report) -> int, on block and work space, with numbers in
+            the report (`REPORT` of them): HOLDS_NOW where the remark holds, FAILS_STEPS where it is
+            why a step failed that did, or both; else 0.
     """
 
     tolerance: str

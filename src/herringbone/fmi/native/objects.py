@@ -20,6 +20,7 @@ from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Component, StructureError
 from herringbone.core.declaring.component import unbounded, unchanged
 from herringbone.fmi.native.platforms import Platform
+from herringbone.fmi.native.wide import with_wide
 from herringbone.kernels.compiling.jit import c_code
 from herringbone.kernels.compiling.linking import CFunction, quickly
 
@@ -204,6 +205,8 @@ def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool)
     """LLVM code of entry points for a platform."""
     target = _target(platform)
     module = _linked(kernels, target, platform.triple)
+    if fast and platform.chooses_vectors:
+        module = with_wide(module)
     _internalise(module, kernels)
     module.verify()
     if not fast:

@@ -29,6 +29,11 @@ class Platform:
     extension: str
     tested: bool
 
+    @property
+    def chooses_vectors(self) -> bool:
+        """Whether code asks the processor for wide vectors, where that is tested: see `wide`."""
+        return self.triple.startswith("x86_64") and self.tested
+
 
 PLATFORMS: dict[str, Platform] = {
     p.name: p

@@ -15,6 +15,7 @@ _IN_OBJECTS: Final = frozenset({
     "__bzero", "bzero", "memcpy", "memmove", "memset", "memset_pattern16",
 })  # fmt: skip
 """What object code of kernels may ask for: copying and filling; compilers put these calls in."""
+_OF_WRAPPER: Final = frozenset({"hb_wide"})
 _LIBC: Final = _IN_OBJECTS | {
     "bcmp", "calloc", "fclose", "ferror", "fgetc", "fopen", "fread", "free",
     "freelocale", "fseek", "ftell", "localeconv", "malloc", "memchr", "memcmp", "newlocale",
@@ -35,7 +36,7 @@ def check_object(data: bytes, platform: Platform, what: str) -> None:
     Raises:
         FmuError: it needs more.
     """
-    _refuse(sorted(undefined(data) - _IN_OBJECTS), platform, f"the kernels of {what}")
+    _refuse(sorted(undefined(data) - _IN_OBJECTS - _OF_WRAPPER), platform, f"the kernels of {what}")
 
 
 def check_library(data: bytes, platform: Platform, what: str) -> None:

@@ -11,6 +11,7 @@ from herringbone.kernels.compiling import constants, elements  # noqa: F401 (reg
 from herringbone.kernels.compiling.cache import cached
 from herringbone.kernels.compiling.kept_pieces import kept
 from herringbone.kernels.compiling.linking import (
+    HOT,
     LINKED,
     QUICK,
     RARE,
@@ -63,6 +64,14 @@ def rare(function: Callable[P, T]) -> Callable[P, T]:
     """As `kernel`, for what seldom happens: its callers call it, and keep their registers."""
     options = {**_OPTIONS, "_nrt": False}
     return kept(KernelDispatcher(function, options, piece_class=RARE), function)
+
+
+def hot(function: Callable[P, T]) -> Callable[P, T]:
+    """As `kernel`, for products whose rows lie side by side in vectors.
+
+    Native FMUs have it for wide vectors, too.
+    """
+    return kept(KernelDispatcher(function, {**_OPTIONS, "_nrt": False}, piece_class=HOT), function)
 
 
 def seldom(function: Callable[P, T]) -> Callable[P, T]:

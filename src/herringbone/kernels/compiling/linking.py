@@ -36,7 +36,7 @@ from numba.core.untyped_passes import (
 )
 
 from herringbone.core.activity import COMPILING
-from herringbone.kernels.compiling.pieces import Piece, Rare, is_global
+from herringbone.kernels.compiling.pieces import Hot, Piece, Rare, is_global
 from herringbone.kernels.compiling.quiet import quiet
 from herringbone.kernels.compiling.typed_calls import remembered_calls
 
@@ -138,7 +138,7 @@ def _pipeline(library_class: type[JITCodeLibrary]) -> type[compiler.Compiler]:
     return Pipeline
 
 
-PIECE, RARE, WHOLE, QUICK, LINKED = map(_pipeline, (Piece, Rare, Whole, Quick, Linked))
+PIECE, RARE, HOT, WHOLE, QUICK, LINKED = map(_pipeline, (Piece, Rare, Hot, Whole, Quick, Linked))
 
 
 class _Flags(compiler.Flags):

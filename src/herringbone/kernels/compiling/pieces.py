@@ -150,6 +150,16 @@ class Rare(Piece):
                 function.add_function_attribute("cold")
 
 
+class Hot(Piece):
+    """As `Piece`, for products of matrices: native FMUs have it for wide vectors, too."""
+
+    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
+        super()._optimize_functions(ll_module)
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                function.add_function_attribute("hot")
+
+
 def _copy_of(library: CodeLibrary, number: int) -> tuple[Copy, dict[str, str]]:
     """A copy of a library of numba, and the new names of its functions by the old ones."""
     known = _copied.setdefault(library, {})

@@ -6,7 +6,7 @@ by side over rows, several columns at once, and no sum changes its order.
 
 import numpy as np
 
-from herringbone.kernels.compiling.jit import kernel
+from herringbone.kernels.compiling.jit import hot, kernel
 
 
 @kernel
@@ -16,7 +16,7 @@ def copy(values: np.ndarray, to: np.ndarray) -> None:
         to[i] = values[i]
 
 
-@kernel
+@hot
 def add_product(matrix: np.ndarray, values: np.ndarray, to: np.ndarray) -> None:
     """Add matrix (values, rows) times the values to `to` (rows,), eight at once."""
     n, rows = values.size, to.size
@@ -43,7 +43,7 @@ def add_product(matrix: np.ndarray, values: np.ndarray, to: np.ndarray) -> None:
             to[row] += of_a[row] * a
 
 
-@kernel
+@hot
 def add_chosen(
     matrix: np.ndarray, values: np.ndarray, chosen: np.ndarray, count: int, to: np.ndarray
 ) -> None:

@@ -22,7 +22,7 @@ import numpy as np
 from herringbone.core.declaring.declaration import Declaration
 from herringbone.core.declaring.variable import Variable
 from herringbone.kernels.compiling.jit import inner, kernel
-from herringbone.kernels.condensed.in_block.shown import ANEW, AT_ONCE, LATER
+from herringbone.kernels.condensed.in_block.shown import ANEW, AT_ONCE, HOLDS, LATER
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
 
@@ -217,7 +217,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         return True
 
     leap, ready, forget, show = core(set_inputs) if core else (stay, idle, nothing, show)
-    kept, kept_count = declaration.first_kept, declaration.kept
+    kept, kept_count = (declaration.first_kept, declaration.kept) if later else (0, 0)
 
     @inner(declaration.name)
     def interval(
@@ -261,8 +261,10 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
             if show(b, w, t + end, how):
                 store_node(b, first_output, outputs, node)
         restore_inputs(b, w, degree)
-        if status == 0 and not (all_finite(b, 0, n) and all_finite(b, kept, kept_count)):
-            status = NOT_FINITE
+        if status == 0:
+            made = how != LATER or b[kept + HOLDS] == 0.0
+            sound = all_finite(b, 0, n) if made else all_finite(b, kept, kept_count)
+            status = 0 if sound else NOT_FINITE
         return status
 
     return step

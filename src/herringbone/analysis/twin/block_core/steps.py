@@ -19,6 +19,7 @@ from herringbone.core import (
     local,
 )
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.hosting import FAILS_STEPS, HOLDS_NOW
 from herringbone.kernels import steppers
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.condensed.in_block.condense import FOUND
@@ -50,13 +51,29 @@ _NOT_LINEAR = Remark(
     "parameters the equations have no condensed form; look for stiffnesses and dampings of 0, and "
     "for parts that are not linear beside the laws they had at export"
 )
-REMARK = """
+_TOO_LONG = Remark(
+    "micro_step = %g s: with these parameters Runge-Kutta is stable up to some %g s; make it "
+    "shorter, or 0, by which inner steps follow the tolerance",
+    warning=True,
+)
+_LIMIT, _DOUBTFUL = 2.785, 0.7
+"""Of Runge-Kutta: eigenvalue times step beyond which something grows, be it a decay (Hairer and
+Wanner, Solving Ordinary Differential Equations II, 1996, section IV.2); and a share of it beyond
+which steeper tangents than the mean ones may do."""
+_REMARK = """
 
 @kernel
 def remark(b: np.ndarray, w: np.ndarray, which: int, report: np.ndarray) -> int:
-    return 1 if w[{status}] < 0.0 else 0
+    micro_step = b[{micro_step}]
+    if which == 0:
+        return {holds} if w[{status}] < 0.0 and micro_step == 0.0 else 0
+    if w[{status}] <= 0.0:
+        return 0
+    report[0], report[1] = micro_step, {limit} / w[{fastest}]
+    if micro_step > report[1]:
+        return {holds} | {causes}
+    return {causes} if micro_step > {doubtful} * report[1] else 0
 """
-"""Source of the kernel of the remarks."""
 
 
 class Stepping(NamedTuple):
@@ -87,7 +104,20 @@ def locals_of(found: Stepping) -> tuple[list[Variable], int]:
 
 def by_tolerance(module: ModuleType) -> ByTolerance:
     """What the wrapper hands over and tells."""
-    return ByTolerance(TOLERANCE, _EXPERIMENT, (_NOT_LINEAR,), module.remark)
+    return ByTolerance(TOLERANCE, _EXPERIMENT, (_NOT_LINEAR, _TOO_LONG), module.remark)
+
+
+def remark_source(found: Stepping, micro_step: int) -> str:
+    """Source of the kernel of the remarks; the parameter's place in the block."""
+    return _REMARK.format(
+        micro_step=micro_step,
+        status=found.at.status,
+        fastest=found.at.fastest,
+        limit=_LIMIT,
+        doubtful=_DOUBTFUL,
+        holds=HOLDS_NOW,
+        causes=FAILS_STEPS,
+    )
 
 
 def longest_step(declaration: Declaration, micro_step: str) -> Callable[[np.ndarray], float]:
@@ -145,7 +175,8 @@ def step_kernel(
             if w[at.status] == 0.0:  # parameters may have changed
                 refresh(b)
             if b[micro_at] > 0.0:
-                b[kept] = 0.0
+                ready(b, w, t)
+                b[kept + HOLDS] = 0.0
                 return fixed(b, w, t, h, b[micro_at], int(b[degree]))
             return by_core(b, w, t, h, b[tolerance], int(b[degree]))
 

@@ -158,7 +158,8 @@ typedef struct {
        that line of `not_settled` is logged, counted from 1. */
     int32_t (*settle)(double *b, double t);
     const char *const *not_settled;
-    /* Whether a remark holds, with its numbers for the format; after `out`. */
+    /* With a remark's numbers for the format, after `out`, a sum: 1, it holds; 2, it is why a step
+       failed that did. */
     uint32_t remarks_count;
     const HbRemark *remarks;
     int32_t (*remark)(double *b, double *w, int32_t which, double *report);

@@ -109,6 +109,15 @@ static void exchange(double *a, double *b, size_t count) {
     }
 }
 
+/* What follows from the coordinates need not be kept: `stale` stands before them. */
+void instance_keep_outputs(Instance *instance) {
+    uint32_t first = hb_component.first_output;
+    if (hb_component.answer && instance->block[hb_component.stale] != 0.0)
+        first = hb_component.stale;
+    memcpy(instance->previous + first - hb_component.first_output, instance->block + first,
+           (hb_component.mutable_size - first) * sizeof *instance->previous);
+}
+
 /* Outputs at the start of the last step, if they were not made then: as if it had not been taken. */
 static void complete_previous(Instance *instance) {
     uint32_t first = hb_component.first_output, states = hb_component.states;

@@ -105,6 +105,8 @@ Status instance_refresh_rates(Instance *instance);
 
 /* remarks.c: log what holds now and was not told before. */
 void instance_tell_remarks(Instance *instance);
+/* Tell which one is why a step failed; false if none is. */
+bool instance_blame_remark(Instance *instance, double step_size);
 
 /* reals.c: what messages call a real, "" for a hidden state; the node is "" or ".node1" ... */
 const char *real_name(uint32_t reference);
@@ -154,6 +156,7 @@ Status instance_step(Instance *instance, double time, double step_size);
    interface_degree = 0. An output derivative holds at the end of the last step: another output
    where that is the derivative; otherwise the slope of the polynomial through the values of the
    step, which is 0 before the first step. */
+void instance_keep_outputs(Instance *instance); /* at the start of a step */
 Status instance_set_input_derivatives(Instance *instance, const uint32_t references[],
                                       size_t count, const int32_t orders[],
                                       const double values[]);

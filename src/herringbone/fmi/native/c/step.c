@@ -26,6 +26,8 @@ static Status explain_failure(Instance *instance, int32_t failed, double step_si
                              "%s: step size %g s; one call takes at most %g s", instance->name,
                              step_size, hb_component.longest_step(instance->block));
     instance_tell_remarks(instance);
+    if (instance_blame_remark(instance, step_size))
+        return STATUS_DISCARD;
     if (hb_component.watch && hb_component.watch->blame(instance, step_size))
         return STATUS_DISCARD;
     if (failed == INNER_STEPS_TOO_SMALL && hb_component.tolerance)
@@ -113,8 +115,7 @@ Status instance_step(Instance *instance, double time, double step_size) {
     now->time = time;
     if (now->input_order && instance->block[hb_component.degree] != 0.0)
         return refuse_two_signals(instance);
-    memcpy(instance->previous, instance->block + hb_component.first_output,
-           (hb_component.mutable_size - hb_component.first_output) * sizeof *instance->previous);
+    instance_keep_outputs(instance);
     now->last_step = step_size;
     now->last_degree = (uint32_t)instance->block[hb_component.degree];
     if (hb_component.watch)

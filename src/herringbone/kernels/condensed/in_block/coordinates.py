@@ -117,6 +117,8 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
     def enter(b: np.ndarray, w: np.ndarray, t: float, close: float) -> None:
         if goes_on and b[kept + HOLDS] != 0.0:
             copy(b[first : first + size], w[at.q : at.q + size])
+            for r in range(int(w[at.rotations])):
+                w[at.q + 2 * int(w[at.modes]) + r] = 0.0
             return
         inside, modes = int(w[at.inside]), int(w[at.modes])
         x = w[at.x : at.x + inside]
@@ -149,6 +151,8 @@ def coordinate_kernels(  # noqa: PLR0915 (kernels that share their layout)
         if goes_on:
             b[kept + HOLDS], b[kept + STALE] = 1.0, ALL
             copy(w[at.q : at.q + size], b[first : first + size])
+            for r in range(int(w[at.rotations])):
+                b[first + 2 * modes + r] = b[int(w[at.references + r])]
         else:
             states_of(b, w)
             write_states(b, w)

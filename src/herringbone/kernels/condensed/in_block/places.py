@@ -190,7 +190,7 @@ def output_places(shown: Shown) -> np.ndarray:
 
 
 def kept_size(form: Form) -> int:
-    """How many reals a core goes on with: `coordinates.HOLDS`, `coordinates.STALE`, and they."""
+    """How many reals a core goes on with, see `shown.STALE`, `shown.HOLDS`."""
     return 2 + sum(_state_sizes(form))
 
 

@@ -20,9 +20,10 @@ from herringbone.kernels.condensed.in_block.places import (
 from herringbone.kernels.condensed.modal import add_product
 from herringbone.kernels.signals import STRIDE
 
-HOLDS, STALE, COORDINATES = 0, 1, 2
-"""Places in what a core goes on with: 1 where the rest holds; what the block is not made of, ALL of
-its states and outputs or the UNASKED ones; then the coordinates."""
+STALE, HOLDS, COORDINATES = 0, 1, 2
+"""Places in what a core goes on with: which of the states and outputs in the block do not belong to
+it, ALL or the UNASKED ones; 1 where the rest holds; then the coordinates, with angles themselves
+where their growth stands in a step."""
 UNASKED, ALL = 1, 2
 
 
@@ -184,7 +185,8 @@ def show_kernels(  # noqa: PLR0915 (kernels that share their layout)
             y[k] = 0.0
         add_product(matrix(w, place, 2 * modes, size), q[: 2 * modes], y)
         for r in range(rotations):
-            angle, row = b[int(w[at.references + r])], w[place + (2 * modes + r) * size :]
+            angle, row = q[2 * modes + r], w[place + (2 * modes + r) * size :]
+            b[int(w[at.references + r])] = angle
             for k in range(size):
                 y[k] += angle * row[k]
         for c in range(channels):
