@@ -104,15 +104,18 @@ def _by_trials(
 
 
 def _heard(lab: Laboratory, changes: np.ndarray) -> tuple[Pulses, np.ndarray]:
-    """Answers to pulses, and the changes that made them: larger where nothing answered."""
-    pulse = pulses(lab, changes)
+    """Answers to pulses, and the changes that made them: larger where nothing answered.
+
+    What nothing answers at all is changed by little: the input of a controller at its limit.
+    """
+    pulse, small = pulses(lab, changes), changes
     for _ in range(_LOUDER):
         deaf = (pulse.delay < 0).all(axis=0)
         if not deaf.any():
             break
         changes = np.where(deaf, RATIO * changes, changes)
         pulse = pulses(lab, changes)
-    return pulse, changes
+    return pulse, np.where((pulse.delay < 0).all(axis=0), small, changes)
 
 
 def _signature(
