@@ -101,7 +101,7 @@ class Part(Protocol):
         variables: by name.
         has_states: whether outputs depend on what inputs were before; None if only the declared
             dependencies tell, by which a part that passes inputs to outputs has none.
-        once: True if there can be no second instance.
+        once: True if there can be no second instance in the same process.
         one_step: True if the part declares that its steps must all have one length.
     """
 

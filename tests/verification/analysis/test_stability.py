@@ -252,3 +252,20 @@ def test_simulated_points_of_the_atlas_lie_on_its_lines(zeta):
     system = atlas.two_rotors(zeta, 3.0)
     bands = step_limits(system, Jacobi(1)).unstable_bands
     assert atlas.simulated_limit(system, Jacobi(1), bands) == pytest.approx(bands[0][0], rel=0.02)
+
+
+def test_frozen_mesh_is_a_line_below_no_force():
+    """A foreign part may push far from equilibrium in the steps of which a matrix is made.
+
+    Forces of both meshes over the approach: equal differences down to the opposite of the load.
+    """
+    _, instances = linear_network(rig())
+    gear = next(i for i in instances if i.name == "gearbox.gear_mesh")
+    start, found = gear["approach"], []
+    for way in range(9):
+        gear.set("approach", start - way * 0.4e-6)
+        gear.component.kernels.out(gear.block, 0.0)
+        found.append([gear["mesh_left.force"], gear["mesh_right.force"]])
+    falls = np.diff(found, axis=0)
+    assert np.min(found) < 0.0
+    assert falls == pytest.approx(np.broadcast_to(falls[0], falls.shape), rel=1e-6)

@@ -9,6 +9,7 @@ import pytest
 from support.kinds import KINDS
 
 from herringbone.commands.main import main
+from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.cosim.fmu.opening import many_of
 from herringbone.cosim.signature import Answer, Kind
 from herringbone.cosim.signature.rotation import InputRule
@@ -25,8 +26,8 @@ NAMES = {
 CASES = [(name, step) for name, answer in ANSWERS.items() for step in answer["steps"]]
 MAY_BE_UNKNOWN = {
     "dog_clutch": "it is not linear there",
-    "single_flywheel": "it can be instantiated once only: no trials",
-    "c_single_flywheel": "it can be instantiated once only: no trials",
+    "single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
+    "c_single_flywheel": "it can be instantiated once only, and runs in this process: no trials",
     "press_ram": "its steps cannot vary: no trials",
     "c_press_ram": "its steps cannot vary: no trials",
 }
@@ -128,6 +129,27 @@ def test_what_a_part_makes_of_an_angle(found, name, angle, rule, step):
     """Sources: held; `phi += h w` from its value on; `PHI + (i - n) d W`, up to its value."""
     it = found(name, step)
     assert it.given[it.inputs.index(angle)] is rule
+
+
+@pytest.mark.parametrize("name", ["single_flywheel", "c_single_flywheel"])
+def test_one_instance_in_a_process_of_its_own(kinds, name):
+    """One after another, in a cell: a body, whose torque passes to nothing at once."""
+    with foreign_fmu_policy(in_process=False):
+        it = signature(kinds / ANSWERS[name]["file"], 1e-4)
+    assert (it.kind, it.memory) == (Kind.BODY, Answer.YES)
+    assert set(it.dependencies().values()) == {frozenset()}
+
+
+def test_what_passes_through_noise(found):
+    """d(w_sensed)/d(w_true) = 1, within the error that is told; five deviations of the mean."""
+    it = found("wheel_speed_sensor", 1e-4)
+    (line,) = [note for note in it.notes if "+-" in note]
+    error = float(line.partition("+- ")[2].split()[0])
+    assert 0.0 < error <= 0.1
+    assert abs(it.feedthrough[0, 0] - 1.0) <= error
+    noise = float(line.partition("noise of ")[2])
+    sigma = ANSWERS["wheel_speed_sensor"]["sigma"]
+    assert sigma / 3.0 < noise < 3.0 * sigma  # of 12 values: 0.2 % beyond for chi-square
 
 
 def test_check_prints_it(kinds, capsys):

@@ -22,6 +22,7 @@ from herringbone.analysis.flange.work import passivity
 from herringbone.core import FmuError
 from herringbone.core.declaring.roles import Role
 from herringbone.core.part import Part, is_signal_node
+from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.signature import Kind, Laboratory, Signature, find_signature
 from herringbone.cosim.signature.trial import Refused
 
@@ -77,8 +78,9 @@ def check_flanges(
         part.close()
     if not all(finding.holds for finding in findings):
         return findings
-    if part.once:
-        return [*findings, *_nothing("it can be instantiated once only", role)]
+    if not has_further(part):
+        why = "it can be instantiated once only, and runs in this process"
+        return [*findings, *_nothing(why, role)]
     try:
         with Laboratory(make, inputs, outputs, start, step) as lab:
             progress("what it is")

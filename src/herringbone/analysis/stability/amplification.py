@@ -174,8 +174,8 @@ class Amplification:
                 self._used_by[kinds] = _coupled(np.sum(sizes, axis=0))
             if self._used_by[kinds] is not self._used:
                 self._used = self._used_by[kinds]
-                sizes = self._z_changes[self._used]
-                self._followers = Followers(int(np.sum(self._used < self._states)), sizes)
+                states = int(np.sum(self._used < self._states))
+                self._followers = Followers(states, self._z_changes[self._used])
             by_kind = {which: self._of(which, step, self._used) for which in kinds}
             found = by_kind[ticking[0]]
             for which in ticking[1:]:

@@ -13,7 +13,7 @@ GROWTH = 1e-6
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
-_SPLIT, _EVENLY = 5e-4, 0.05
+_SPLIT, _EVENLY = 9e-4, 0.05
 """Errors of what stands for foreign parts split a double eigenvalue evenly, by so much at most: its
 mean stays where it was, while what the coupling adds moves both, or one of them.
 """
@@ -127,7 +127,7 @@ def _is_sure(matrix: np.ndarray, value: complex, noise: float) -> bool:
         left = lu_solve(factors, left, trans=2, check_finite=False)
         right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
     missed = np.linalg.norm(scaled @ right - value * right)
-    error = max(noise * np.linalg.norm(scaled), float(missed))
+    error = max(noise * float(np.linalg.norm(scaled)), float(missed))
     return bool(_MARGIN * error < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 

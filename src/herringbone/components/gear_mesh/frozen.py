@@ -4,7 +4,7 @@ At the operating point each mesh has a normal force N, a depth d of the flanks t
 a mesh period, tangent stiffnesses. The frozen mesh keeps the operating point and has one stiffness
 K:
 
-    F(p, depth) = N + K (depth - d),    depth >= d / 2
+    F(p, depth) = N + K (depth - d),    depth >= d / 2 - 15 um
 
 so that the states at which the mesh was frozen are still an equilibrium. The axial offset of the
 chevron's apex, the given transmission error and the reactions on what moved them stay at their
@@ -25,6 +25,9 @@ from herringbone.core.declaring.roles import GEARS, SIDES
 from herringbone.kernels import force_law
 
 _LAST = force_law.DEFLECTIONS - 1
+_DEEPER = 3e-5
+"""By what flanks are deeper in each other than they are, with the same force, so that the line goes
+on below no force [m]: parts may be far from equilibrium where a linear analysis steps them."""
 
 
 def _carrying(gear: Instance) -> int:
@@ -67,7 +70,8 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
     for name in ("impact_force", *(f"{g}.unbalance" for g in GEARS)):
         gear.block[index[name]] = 0.0
     reactions = _reactions(gear)
-    missing = [_approach(gear, side) - _depth(gear, side) for side in range(2)]
+    missing = [_approach(gear, side) - _depth(gear, side) - _DEEPER for side in range(2)]
+    _ungate_damping(gear)
     for side, name in enumerate(SIDES):
         depth, force = _depth(gear, side), abs(gear[f"mesh_{name}.force"])
         if depth <= 0.0 or force <= 0.0:
@@ -77,12 +81,24 @@ def freeze_mesh(gear: Instance, stiffness: Callable[[np.ndarray], float]) -> Non
                 "that starts in equilibrium under load"
             )
         tangent = stiffness(tangent_stiffness(gear, side))
-        _write_line(gear.block, at.TABLE[side], depth, force, tangent)
+        _write_line(gear.block, at.TABLE[side], depth + _DEEPER, force, tangent)
     _hold_errors(gear, missing)
     gear.block[at.DEVIATIONS : at.DEVIATIONS + tooth_deviations.TABLE_SIZE] = 0.0
     gear.block[at.HELD : at.HELD + len(reactions)] = reactions
     gear.block[index["symmetry_pinion"]] = gear.block[index["symmetry_wheel"]] = 0.0
     gear.block[index["symmetry_constant"]] = offset / share if share else 0.0
+
+
+def _ungate_damping(gear: Instance) -> None:
+    """Damping as it is at the operating point, in the mean of both meshes, at any depth."""
+    block = gear.block
+    if block[at.GATE] == 0.0:
+        return
+    over = np.array(
+        [min(1.0, max(0.0, _depth(gear, side)) / block[at.TRANSITION]) for side in (0, 1)]
+    )
+    block[at.ZETA] *= float(np.mean(over * over * (3.0 - 2.0 * over)))
+    block[at.GATE] = 0.0
 
 
 def _reactions(gear: Instance) -> list[float]:

@@ -8,7 +8,9 @@ from typing import TypeVar
 from fmpy.model_description import ModelDescription
 
 from herringbone.core.caching.built import is_built
+from herringbone.core.part import Part
 from herringbone.core.places.temporary import remove_temporary_folder
+from herringbone.cosim.adapter import PartAdapter
 from herringbone.cosim.cell.part import CellPart
 from herringbone.cosim.cell.policy import Remark, cells_work, policy
 from herringbone.cosim.cell.pool import applied as applied_in_cell
@@ -67,6 +69,16 @@ def runs_again(name: str, file: Path) -> bool:
     return not abilities.canBeInstantiatedOnlyOncePerProcess or _needs_cell(name, file)
 
 
+def has_further(part: Part) -> bool:
+    """True if there can be further instances of a part, as `many_of` makes them.
+
+    Of one that allows one instance per process they have a cell of their own, if it has one.
+    """
+    while isinstance(part, PartAdapter):
+        part = part.part
+    return not part.once or isinstance(part, CellPart)
+
+
 def applied(file: Path, function: Callable[[Path], T]) -> T:
     """What a function, which opens an FMU, finds about it, where this FMU belongs.
 
@@ -87,7 +99,8 @@ def many_of(name: str, file: str | Path) -> Iterator[Callable[[], FmuPart | Cell
     """A function that makes instances of an FMU, which is extracted once for all of them.
 
     All must be closed before the context ends. They share one cell, if they need one, until it is
-    lost. See `open_fmu` for arguments and errors.
+    lost; one after another, if there may be one in a process, which then has more cells if others
+    are not closed. See `open_fmu` for arguments and errors.
     """
     file = Path(file)
     model = read_fmu(file)
@@ -110,9 +123,11 @@ def _instances(
     cells: list[Cell] = []
 
     def make() -> CellPart:
-        if not cells or cells[-1].lost:
-            cells.append(cell_for(name, file, model, folder))
-        return CellPart(name, file, read_fmu(file), folder, cells[-1], owned=False)
+        free = [cell for cell in cells if not (cell.lost or (cell.once and cell.has_instances))]
+        if not free:
+            free = [cell_for(name, file, model, folder)]
+            cells.append(free[-1])
+        return CellPart(name, file, read_fmu(file), folder, free[-1], owned=False)
 
     try:
         yield make

@@ -10,6 +10,7 @@ from herringbone.cosim.signature.feedthrough import SAME, feedthrough_of, runs_o
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
+from herringbone.cosim.signature.noise import noisy_feedthrough
 from herringbone.cosim.signature.rates import rates_of
 from herringbone.cosim.signature.rotation import InputRule, pairs, rule_of
 from herringbone.cosim.signature.signature import Answer, Findings, Kind, Signature
@@ -42,7 +43,11 @@ def find_signature(lab: Laboratory, variables: Mapping[str, PartVariable]) -> Si
     unknown = np.full(shape, np.nan)
     if not lab.repeats:
         found.note(f"the same steps give other outputs: {lab.why}; its inputs are held")
-        return _signature(lab, found, Kind.NOISY, unknown)
+        try:
+            return _signature(lab, found, Kind.NOISY, noisy_feedthrough(lab, variables, found))
+        except Refused as error:
+            found.note(f"repeated trials are not possible: {error}")
+            return _signature(lab, found, Kind.NOISY, unknown)
     if lab.restores is False:
         found.note(f"its saved state is not trusted: {lab.why}")
     if not np.isfinite(lab.start_outputs).all():
@@ -99,15 +104,18 @@ def _by_trials(
 
 
 def _heard(lab: Laboratory, changes: np.ndarray) -> tuple[Pulses, np.ndarray]:
-    """Answers to pulses, and the changes that made them: larger where nothing answered."""
-    pulse = pulses(lab, changes)
+    """Answers to pulses, and the changes that made them: larger where nothing answered.
+
+    What nothing answers at all is changed by little: the input of a controller at its limit.
+    """
+    pulse, small = pulses(lab, changes), changes
     for _ in range(_LOUDER):
         deaf = (pulse.delay < 0).all(axis=0)
         if not deaf.any():
             break
         changes = np.where(deaf, RATIO * changes, changes)
         pulse = pulses(lab, changes)
-    return pulse, changes
+    return pulse, np.where((pulse.delay < 0).all(axis=0), small, changes)
 
 
 def _signature(

@@ -16,6 +16,7 @@ from herringbone.core.declaring.declaration import INTERFACE_DEGREE, is_node
 from herringbone.core.part import Part, PartVariable
 from herringbone.cosim.adapter import PartAdapter, WithoutStates
 from herringbone.cosim.cell.part import CellPart
+from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.fmu.part import FmuPart
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Answer, Kind, Laboratory, Signature, find_signature
@@ -24,6 +25,12 @@ from herringbone.cosim.structure.system import PartSpec, System
 from herringbone.running.foreign.known_signatures import known_signature
 
 _CLEAR = {Kind.BODY, Kind.ELEMENT, Kind.STATES_AND_FEEDTHROUGH}
+
+_HERE = (
+    ", and runs in this process: no trials; in a child process (on Linux, without --in-process) "
+    "there are"
+)
+_LEFT = "it can be instantiated once only, and one after another in a process is not as new"
 
 Instances = Callable[[PartSpec], AbstractContextManager[Callable[[], Part]]]
 
@@ -103,8 +110,8 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
         step: of the trials [s].
     """
     inputs, outputs = (_reals(part, causality) for causality in ("input", "output"))
-    if part.once:
-        return _unknown(inputs, outputs, step, "it can be instantiated once only: no trials")
+    if not has_further(part):
+        return _unknown(inputs, outputs, step, f"it can be instantiated once only{_HERE}")
     if part.one_step:
         return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
@@ -112,6 +119,8 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
     try:
         start = start_inputs(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
+            if part.once and not lab.repeats:
+                return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
             return find_signature(lab, part.variables)
     except FmuError as error:
         return _unknown(inputs, outputs, step, f"no trials: {error}")
@@ -159,6 +168,9 @@ def _with_signature(part: Part, signature: Signature) -> tuple[Part, list[str]]:
         return NodalPart(part, _as_it_moves(signature)), lines
     if signature.kind not in _CLEAR:
         lines.append(f"taken by what it declares, because it is {signature.kind} to trials")
+        if signature.kind is Kind.NOISY:
+            lines += _contradictions(part.variables, signature)
+            part.variables = _measured(part.variables, signature)
         repeats = signature.repeats and signature.restores is not False
         return (part if repeats else WithoutStates(part)), lines
     lines += _contradictions(part.variables, signature)
@@ -226,7 +238,7 @@ def _measured(
 ) -> dict[str, PartVariable]:
     passed = signature.dependencies()
     return {
-        name: replace(v, dependencies=passed[name]) if name in passed else v
+        name: v if passed.get(name) is None else replace(v, dependencies=passed[name])
         for name, v in variables.items()
     }
 
@@ -240,7 +252,7 @@ def _contradictions(variables: Mapping[str, PartVariable], signature: Signature)
             continue
         for column, name in enumerate(signature.inputs):
             value = signature.feedthrough[row, column]
-            if value != 0.0 and name not in declared:
+            if abs(value) > 0.0 and name not in declared:
                 lines.append(
                     f"{output} is declared not to depend directly on {name}; found "
                     f"d({output})/d({name}) = {value:.4g}, which is used"

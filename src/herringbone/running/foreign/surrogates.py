@@ -16,6 +16,7 @@ from herringbone.core.activity import activity
 from herringbone.core.part import Part, closing_all
 from herringbone.cosim.adapter import WithoutStates
 from herringbone.cosim.approached_part import approached
+from herringbone.cosim.fmu.opening import has_further
 from herringbone.cosim.nodal import NodalPart
 from herringbone.cosim.signature import Kind, Laboratory, Signature
 from herringbone.cosim.signature.amplitudes import amplitude
@@ -255,7 +256,8 @@ def _with_clock(
 
 def _refusal(part: Part, signature: Signature) -> str:
     """Why no trials tell of the part's steps; "" if they do."""
-    if part.once or signature.kind is Kind.NOISY:
+    no_trials = not has_further(part) or (part.once and signature.kind is Kind.UNKNOWN)
+    if no_trials or signature.kind is Kind.NOISY:
         return signature.notes[0]
     return ""
 

@@ -10,6 +10,7 @@ from herringbone.analysis.twin.monolithic import make_instances
 from herringbone.components.in_process import InProcessPart
 from herringbone.core.part import Part
 from herringbone.cosim.fmu.file import read_fmu
+from herringbone.cosim.fmu.opening import runs_again
 from herringbone.cosim.signature import Kind
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.rates import rates
@@ -52,7 +53,8 @@ def _stranger(
     """A foreign part of the network; raises NoSettledStartError if it cannot settle in trials."""
     signature = found_signature(spec, part, instances, step)
     if signature.kind not in _KINDS:
-        raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps")
+        why = f": {signature.notes[0]}" if signature.notes else ""
+        raise NoSettledStartError(f"{part.name} is {signature.kind} to trial steps{why}")
     number = network.parts.index(part)
     inputs = [c.input for c in network.inputs(number)]
     taken = list(dict.fromkeys(c.output for c in network.connections if c.source == number))
@@ -79,8 +81,11 @@ def _units(network: Network, part: Part) -> dict[str, str]:
 
 def _refuse_untriable(spec: PartSpec) -> None:
     """Raise NoSettledStartError of an FMU that allows no further instance, or no other steps."""
-    abilities = read_fmu(Path(str(spec.fmu))).coSimulation
-    if abilities.canBeInstantiatedOnlyOncePerProcess:
-        raise NoSettledStartError(f"{spec.name} can be instantiated once only")
+    file = Path(str(spec.fmu))
+    abilities = read_fmu(file).coSimulation
+    if not runs_again(spec.name, file):
+        raise NoSettledStartError(
+            f"{spec.name} can be instantiated once only, and runs in this process"
+        )
     if not abilities.canHandleVariableCommunicationStepSize:
         raise NoSettledStartError(f"{spec.name} takes steps of one length only")

@@ -22,7 +22,8 @@ from herringbone.running.settling.anderson import Anderson
 from herringbone.running.settling.laid_out import laid_out
 from herringbone.running.settling.links import Links
 from herringbone.running.settling.own_motion import OwnMotion, own_motion
-from herringbone.running.settling.stranger import LONGEST, NoSettledStartError, Settled, Stranger
+from herringbone.running.settling.settled import LONGEST, Settled
+from herringbone.running.settling.stranger import NoSettledStartError, Stranger
 
 _FIRST = 0.02
 """Duration that is tried first [s]."""
@@ -146,6 +147,7 @@ class _Search:
         for part in self._strangers:
             before, now = None, part.settled(self._approach(part, motion))
             while not part.is_settled(now, before, known=part.name in self._settle):
+                part.refuse_hopeless(now, before, self._durations[part.name])
                 motion = self._lengthen(part, now, motion)
                 before, now = now, part.settled(self._approach(part, motion))
             self._settle.add(part.name)

@@ -1,8 +1,6 @@
 """A foreign part that is stepped alone, under the inputs of a steady motion, until it settles."""
 
 from collections.abc import Callable, Mapping, Sequence
-from time import perf_counter
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,44 +11,20 @@ from herringbone.cosim.signature.rotation import InputRule
 from herringbone.cosim.signature.trial import Trial
 from herringbone.cosim.structure.approach import Approach, SteadyInput
 from herringbone.cosim.structure.rates import rate_of
+from herringbone.running.settling.settled import CHANGES, LONGEST, Settled, why_not
 
-LONGEST = 41.0
-"""Time that a part may take to settle [s]."""
-_SECONDS, _BATCH = 2.0, 32
-"""That one trial may take, by the quickest of batches of steps, as other work makes some slower."""
 _MOST_STEPS = 8192
 """Of a trial; longer ones take longer steps."""
 _SHARES = {InputRule.MEAN: 0.5, InputRule.START: 0.0, InputRule.END: 1.0}
-_CHANGES = 5e-4
-"""Of the largest value of its unit that counts as settled: over the last quarter; or of its curve
-there about a straight line, and of its end if it is given half the time."""
 _CURVED = 5e-3
-"""The same about a straight line, of what has settled before: drag that rises with the speed."""
+"""As `CHANGES`, about a straight line, of what has settled before: drag that rises with speed."""
 _NOTHING = {"m": 1e-12, "rad": 1e-9, "m/s": 1e-9, "rad/s": 1e-6, "N": 1e-6, "N.m": 1e-6}
 _WATCHED = 200
-"""Points of the last quarter that are looked at."""
+"""Points of each quarter that are looked at."""
 
 
 class NoSettledStartError(HerringboneError):
     """There is no start in equilibrium: a part has no steady answer, takes too long, or more."""
-
-
-class Settled(NamedTuple):
-    """What a part has come to.
-
-    Attributes:
-        outputs: (m,) at the start of the run.
-        change: over the last quarter, over the largest value of its unit, of the worst output.
-        bend: the same about straight lines.
-        worst: name of that output.
-        peak: (m,) largest values.
-    """
-
-    outputs: np.ndarray
-    change: float
-    bend: float
-    worst: str
-    peak: np.ndarray
 
 
 class Stranger:
@@ -117,11 +91,10 @@ class Stranger:
         trial = Trial(self._make(), self.inputs, self.outputs, -given.duration, LONGEST)
         try:
             direct = self.feedthrough()
-            first = -0.25 * given.duration
-            every = max(1, int(-first / given.step / _WATCHED))
-            seen, peak = [], np.zeros(len(self.outputs))
-            begun = mark = perf_counter()
-            quickest = np.inf
+            first = -0.5 * given.duration
+            every = max(1, int(-0.5 * first / given.step / _WATCHED))
+            seen: list[list[np.ndarray]] = [[], []]
+            peak = np.zeros(len(self.outputs))
             for number, (t, h) in enumerate(given.steps()):
                 held = given.held(t, h)
                 trial.set(held)
@@ -129,39 +102,44 @@ class Stranger:
                 peak = np.maximum(peak, np.abs(trial.values()))
                 if t >= first and number % every == 0:
                     end = given.held(t + h, 0.0)
-                    seen.append(trial.values() + direct @ (end - held))
-                if number % _BATCH == _BATCH - 1:
-                    now = perf_counter()
-                    quickest, mark = min(quickest, (now - mark) / _BATCH), now
-                    if now - begun > _SECONDS:
-                        self._refuse_slow(given, quickest)
+                    seen[t >= 0.5 * first].append(trial.values() + direct @ (end - held))
             trial.set(given.at_end())
             last = trial.values()
         finally:
             trial.close()
-        path, line = np.array(seen), np.linspace(-1.0, 1.0, len(seen))
-        change, worst = self._change(path)
-        slope = line @ path / (line @ line)
-        bend, _ = self._change(path, np.outer(line, slope))
-        return Settled(last, change, bend, worst, peak)
-
-    def _refuse_slow(self, given: Approach, seconds: float) -> None:
-        """Raise NoSettledStartError where steps of so many seconds make too long a trial."""
-        if seconds * given.duration / given.step > _SECONDS:
-            raise NoSettledStartError(
-                f"stepping {self.name} over {given.duration:.3g} s, which parts need to settle, "
-                f"takes more than {_SECONDS:g} s"
-            )
-
-    def _change(self, seen: np.ndarray, about: np.ndarray | float = 0.0) -> tuple[float, str]:
-        """Largest change of a watched output, over the largest value of its unit; its name."""
-        if not np.isfinite(seen).all():
+        path = np.array(seen[1])
+        if not np.isfinite(path).all():
             raise NoSettledStartError(f"{self.name}: its outputs are not finite")
-        sizes = self.sizes(np.abs(seen).max(axis=0))
-        changes = np.ptp(seen - about, axis=0)[self._watched] / sizes[self._watched]
+        changes = self._changes(path, path)
         if not changes.size:
-            return 0.0, ""
-        return float(changes.max()), self.outputs[self._watched[int(np.argmax(changes))]]
+            return Settled(last, 0.0, 0.0, "", peak, 0.0, 0.0)
+        line = np.linspace(-1.0, 1.0, len(path))
+        bends = self._changes(path - np.outer(line, line @ path / (line @ line)), path)
+        worst = int(np.argmax(changes))
+        before = self._changes(np.array(seen[0]), path)[worst] if seen[0] else 0.0
+        number = self._watched[worst]
+        moved = np.ptp(path[:, number])
+        return Settled(
+            last, float(changes[worst]), float(bends.max()), self.outputs[number], peak,
+            float(moved), float(before),
+        )  # fmt: skip
+
+    def _changes(self, seen: np.ndarray, path: np.ndarray) -> np.ndarray:
+        """Changes of the watched outputs, over the largest values of their units on a path."""
+        sizes = self.sizes(np.abs(path).max(axis=0))
+        return np.ptp(seen, axis=0)[self._watched] / sizes[self._watched]
+
+    def refuse_hopeless(self, found: Settled, before: Settled | None, duration: float) -> None:
+        """Raise NoSettledStartError of what will not settle in time, see `why_not`.
+
+        Args:
+            found: after this time [s].
+            before: after half of it; None: not tried.
+            duration: see above.
+        """
+        why = why_not(found, before, duration, self.units.get(found.worst, "")) if before else ""
+        if why:
+            raise NoSettledStartError(f"{self.name}.{found.worst} {why}")
 
     def sizes(self, values: np.ndarray) -> np.ndarray:
         """(m,) largest values of the same unit."""
@@ -179,9 +157,9 @@ class Stranger:
             before: after half of it; None: not tried.
             known: it settles in this time under another motion.
         """
-        if found.change <= _CHANGES or (known and found.bend <= _CURVED):
+        if found.change <= CHANGES or (known and found.bend <= _CURVED):
             return True
-        if before is None or found.bend > _CHANGES:
+        if before is None or found.bend > CHANGES:
             return False
         off = np.abs(found.outputs - before.outputs) / self.sizes(found.outputs)
-        return bool(np.all(off[self._watched] <= _CHANGES))
+        return bool(np.all(off[self._watched] <= CHANGES))

@@ -26,6 +26,8 @@ and by a low one the next step would be far too short. One that presumes too muc
 run, no accuracy: what was measured tells the error."""
 _LOWEST = 0.5
 """Of these powers."""
+_FAR_BELOW = 0.1
+"""Share of a tolerance below which it is told why no longer step was taken."""
 _BLIND = 2.0
 """What the step is divided by as long as nothing is known of the error."""
 _FALLS = 0.3
@@ -174,9 +176,12 @@ class Search:
             return f"; its error is not known: {self.why}"
         if last.error > self._tolerance:
             return f"; not met: {self.why}"
+        unstable = f"{max(self.failed):g} s is not stable" if self.failed else ""
         if len(self.tried) > 2:
-            return ""
-        longer = (
-            f"{max(self.failed):g} s is not stable" if self.failed else "no longer one is tried"
-        )
+            if last.error > _FAR_BELOW * self._tolerance:
+                return ""
+            before = self.tried[-2]
+            also = f", and {unstable}" if unstable else ""
+            return f"; with {before.step:g} s it was not seen to be met: {before.error:.2g}{also}"
+        longer = unstable or "no longer one is tried"
         return f"; a step longer than {self.tried[0].step:g} s is of no use here: {longer}"

@@ -1,0 +1,77 @@
+"""What a foreign part has come to in a trial, and whether it will settle at all."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+LONGEST = 5.12
+"""Time that a part may take to settle [s]; of its own time, so that every machine starts alike."""
+CHANGES = 5e-4
+"""Of the largest value of its unit that counts as settled: over the last quarter; or of its curve
+there about a straight line, and of its end if it is given half the time."""
+_EVENLY, _TWICE = 0.05, 2.0
+"""What drifts keeps its rate by so much; factor by which a time to settle may be told wrong."""
+_TELLING, _SURELY = 0.16, 1.28
+"""Shortest trial that tells of later times [s]; that tells what does not die out at all."""
+_EVER = 100.0
+_LATER = 8.0 / 3.0
+"""Time of a trial over that from the end of its rise to the middle of its last quarter."""
+
+
+class Settled(NamedTuple):
+    """What a part has come to.
+
+    Attributes:
+        outputs: (m,) at the start of the run.
+        change: over the last quarter, over the largest value of its unit, of the worst output.
+        bend: the same about straight lines.
+        worst: name of that output.
+        peak: (m,) largest values.
+        moved: change of that output [its unit].
+        before: `change` of that output over the quarter before.
+    """
+
+    outputs: np.ndarray
+    change: float
+    bend: float
+    worst: str
+    peak: np.ndarray
+    moved: float
+    before: float
+
+
+def why_not(found: Settled, before: Settled, duration: float, unit: str) -> str:
+    """Why an output will not settle in time, as far as two trials tell; "" if they do not.
+
+    What drifts at the same rate in both is the integral of what it is given, or as good as that.
+    Of what dies out evenly, two quarters of each trial tell in which time it does.
+
+    Args:
+        found: after this time, not settled.
+        before: after half of it, not settled either.
+        duration: see above [s].
+        unit: of the worst output.
+    """
+    if before.worst != found.worst or duration < _TELLING:
+        return ""
+    straight = max(s.bend / s.change for s in (found, before)) < _EVENLY
+    if straight and abs(2.0 * before.moved - found.moved) < _EVENLY * found.moved:
+        rate = 4.0 * found.moved / duration
+        return f"goes on evenly, by {rate:.3g} {unit} a second, in the steady motion: it integrates"
+    times = _time_to_settle(before, 0.5 * duration), _time_to_settle(found, duration)
+    if min(times) <= _TWICE * LONGEST:
+        return ""
+    if times[1] > _EVER * LONGEST:
+        return f"does not die out in {duration:.3g} s"
+    return (
+        f"dies out so slowly that it would take some {times[1]:.2g} s; {LONGEST:g} s are the most"
+    )
+
+
+def _time_to_settle(found: Settled, duration: float) -> float:
+    """Time [s] of a trial in which it would settle, by how it dies out in this one; 0: not told."""
+    if found.change >= found.before:
+        return math.inf if duration >= _SURELY else 0.0
+    rate = math.log(found.before / found.change) / (0.25 * duration)
+    return duration + _LATER * math.log(max(found.change / CHANGES, 1.0)) / rate
