@@ -36,7 +36,8 @@ def unsettled(structure: Structure, march: March | None) -> str:
         return "a march from equilibrium fails, too"
     return (
         f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
-        f"changes by {100.0 * march.least:.2g} % from one period to later ones"
+        f"changes by {100.0 * march.least:.2g} % from one period to later ones; ask for a larger "
+        "torque, or run it"
     )
 
 

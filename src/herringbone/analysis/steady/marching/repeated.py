@@ -73,7 +73,7 @@ def repeated(
             found = _until_repeated(way, close, _MOST)
             if found.change <= close:
                 return found
-            mesh = begin.period / structure.meshes
+            mesh = way.period / structure.meshes
             apart = parting(structure, motion, found.march.end, mesh, structure.meshes)
             if not apart.parts:
                 found = _until_repeated(way, close, _FARTHER)
