@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.files import replacing

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.guess import SETTLING, beginnings
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.marched import Following, March
 from herringbone.analysis.steady.marching.parting import Parting, parting
+from herringbone.analysis.steady.searching.guess import SETTLING, beginnings
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 

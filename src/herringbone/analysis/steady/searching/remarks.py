@@ -1,9 +1,9 @@
 """What is said of a search for a periodic motion."""
 
-from herringbone.analysis.steady.guess import LONG, SETTLING
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.marched import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.searching.guess import LONG, SETTLING
+from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
