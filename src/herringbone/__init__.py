@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from herringbone.analysis.accuracy.comparison import compare
-    from herringbone.analysis.figures.plateaus import plateau_statistics
     from herringbone.analysis.figures.radiated_power import radiated_power
+    from herringbone.analysis.figures.sensing.plateaus import plateau_statistics
     from herringbone.analysis.measured.of_run import compare_record
     from herringbone.analysis.steady.set_points import Point
     from herringbone.analysis.steady.solver import SteadySolver
@@ -99,7 +99,7 @@ _WHERE = {
     "modes": "herringbone.running.operating.modes",
     "compare": "herringbone.analysis.accuracy.comparison",
     "compare_record": "herringbone.analysis.measured.of_run",
-    "plateau_statistics": "herringbone.analysis.figures.plateaus",
+    "plateau_statistics": "herringbone.analysis.figures.sensing.plateaus",
     "Point": "herringbone.analysis.steady.set_points",
     "SteadySolver": "herringbone.analysis.steady.solver",
     "SteadyState": "herringbone.analysis.steady.state",

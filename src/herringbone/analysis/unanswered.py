@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from herringbone.analysis.asked import by_half, shaft_side
 from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.radiated_power import power_inputs
-from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import GEARS, SIDES, Quantity, Role
 from herringbone.result.result import Result

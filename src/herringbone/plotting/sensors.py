@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from herringbone.analysis.figures.operating_point import run_mesh_frequency
-from herringbone.analysis.figures.sensors import SensorFigures, sensor_figures
+from herringbone.analysis.figures.sensing.sensors import SensorFigures, sensor_figures
 from herringbone.analysis.figures.spectra import FEWEST_SAMPLES, amplitude_spectrum, mesh_orders
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 from herringbone.core import ParameterError

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from herringbone.analysis.figures.sensors import check_sensors
+from herringbone.analysis.figures.sensing.sensors import check_sensors
 from herringbone.core import EquilibriumError, ParameterError
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.ssp.format import is_ssp

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import herringbone as hb
-from herringbone.analysis.figures.plateaus import plateaus
+from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.core import ParameterError
 
 CYCLE = """# units: time s, speed r/min, torque N.m
@@ -36,7 +36,7 @@ def test_plateaus_are_where_set_points_rest(result):
 
 def test_statistics_are_those_of_the_last_samples(result):
     found = hb.plateau_statistics(result, 50)
-    from herringbone.analysis.figures.sensors import sensor_figures
+    from herringbone.analysis.figures.sensing.sensors import sensor_figures
 
     one = sensor_figures(result)[0]["A"]
     own = found[(found["sensor"] == "A") & (found["plateau"] == 2)].iloc[0]

@@ -7,7 +7,7 @@ import pytest
 from support.result import MESH_FREQUENCY, make_result
 
 from herringbone.analysis.figures.modal_response import seat_forces
-from herringbone.analysis.figures.sensors import check_sensors, sensor_figures
+from herringbone.analysis.figures.sensing.sensors import check_sensors, sensor_figures
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.sensor_spec import SensorSpec
 from herringbone.cosim.structure.system_file import read_system

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from support.result import make_foreign_result
+from support.result import SPEED, make_foreign_result, make_result
 
 from herringbone.analysis.figures.settling import unsettled
 
@@ -69,3 +69,13 @@ def test_growth_of_a_known_unit_is_no_rotation():
     """A temperature that rises evenly: 5 K in a quarter over 5 / sqrt(12) K of rms."""
     (line,) = unsettled(turning(0.0, unit="K"))
     assert f"changes by {100.0 * np.sqrt(12.0):.0f} %" in line
+
+
+def test_a_speed_that_is_not_steady_is_told():
+    """A ramp from 0 to 1000 r/min: from the middle on 500 to 1000."""
+    result = make_result()
+    (column,) = [c for c in result.data if c.endswith("gear_mesh.pinion.w")]
+    assert not any("speed varies" in line for line in unsettled(result))
+    ramp = np.linspace(0.0, SPEED, len(result.data))
+    (line,) = unsettled(replace(result, data=result.data.assign(**{column: ramp})))
+    assert line.startswith("not settled: the pinion's speed varies from 500 to 1000 r/min")

@@ -8,7 +8,7 @@ from scipy.io import wavfile
 from support.universal_file import write_universal
 
 import herringbone as hb
-from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.analysis.measured.of_run import predicted_of
 from herringbone.commands.main import main
 

@@ -1,7 +1,7 @@
 """What sensors and the sound feel of the forces on a housing: lines, and signals, of these.
 
 As of a run's results: the forces on the seats drive all oscillators of the housing's data, whatever
-a leaner model holds; see `analysis.figures.sensors` and `analysis.figures.radiated_power`.
+a leaner model holds; see `analysis.figures.sensing.sensors` and `analysis.figures.radiated_power`.
 """
 
 import math
@@ -17,7 +17,7 @@ from herringbone.analysis.figures.modal_response import (
     ports_at_seats,
 )
 from herringbone.analysis.figures.radiated_power import AIR_DENSITY, SPEED_OF_SOUND, level_db
-from herringbone.analysis.figures.sensors import chain_of
+from herringbone.analysis.figures.sensing.sensors import chain_of
 from herringbone.analysis.figures.system_housings import data_of
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor
 from herringbone.core import ParameterError

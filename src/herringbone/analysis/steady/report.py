@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.of_runs.settled import SettledState
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.sensitivities.sensitivity import Sensitivity
 from herringbone.analysis.steady.state import SteadyState
 from herringbone.core.places.files import replacing
@@ -116,14 +116,8 @@ def _of_balance(state: SteadyState) -> list[str]:
         f"  speed {state.speed * R_MIN:.6g} r/min, repeats after {state.meshes} mesh periods "
         f"({state.period:.6g} s)",
         f"  error {state.errors.worst:.2g} of the alternating part (asked {state.tolerance:g}), "
-        f"with {state.orbit.places} points of the period",
+        f"measured{_after(state)} at twice the {state.orbit.places} points of the period",
     ]
-    if state.by is None:
-        last = max(state.errors.change.values(), default=0.0)
-        lines.append(
-            f"  iterations {state.orbit.iterations}: the last one still moved it by {last:.2g} of "
-            f"the alternating part, another one would by about {last * last:.1g}"
-        )
     if worst := _worst(state):
         lines.append(
             f"  worst channel {worst['error']:.2g} of its own alternating part: {worst['name']}"
@@ -150,6 +144,12 @@ def _of_balance(state: SteadyState) -> list[str]:
             " out"
         )
     return lines
+
+
+def _after(state: SteadyState) -> str:
+    """How many iterations of harmonic balance came before; "" of a march or a shot."""
+    count = state.orbit.iterations
+    return "" if state.by else f" after {count} iteration{'s' * (count != 1)}"
 
 
 def _group(state: PeriodicMotion, group: str) -> list[str]:

@@ -5,9 +5,9 @@ from copy import copy
 
 import numpy as np
 
-from herringbone.analysis.steady.guess import Guess, Neighbour, motion_at
-from herringbone.analysis.steady.remarks import NO_LOAD, check_shooting
-from herringbone.analysis.steady.search import Search
+from herringbone.analysis.steady.searching.guess import Guess, Neighbour, motion_at
+from herringbone.analysis.steady.searching.remarks import NO_LOAD, check_shooting
+from herringbone.analysis.steady.searching.search import Search
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.state import SHOOTING, SteadyState
 from herringbone.analysis.steady.structure import Structure

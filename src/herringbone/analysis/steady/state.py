@@ -8,15 +8,15 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
-from herringbone.analysis.steady.found import Settled
-from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.floquet import Multipliers, multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.shooting import Shot
 from herringbone.analysis.steady.outputs import Harmonics, harmonics, states
 from herringbone.analysis.steady.periodic import R_MIN, PeriodicMotion
+from herringbone.analysis.steady.searching.found import Settled
+from herringbone.analysis.steady.searching.guess import Guess, Neighbour
+from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core.one_thread import one_blas_thread

@@ -9,8 +9,8 @@ import numpy as np
 
 from herringbone.analysis.figures.sensitivity import SENSITIVITY
 from herringbone.analysis.set_points import SPEED, TORQUE, set_point
-from herringbone.analysis.steady.guess import Guess, Neighbour
 from herringbone.analysis.steady.periodic import PeriodicMotion
+from herringbone.analysis.steady.searching.guess import Guess, Neighbour
 from herringbone.analysis.steady.sensitivities.assumed import Changes, assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point as SteadyPoint

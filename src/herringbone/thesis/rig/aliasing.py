@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from herringbone.analysis.figures.plateaus import plateaus
+from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.analysis.figures.spectra import amplitude_spectrum, mesh_frequency
 from herringbone.analysis.figures.velocity_sensor import VelocitySensor, sensor_velocity
 from herringbone.result.result import TIME

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.asked import shaft_torques, signal
-from herringbone.analysis.figures.plateaus import plateaus
+from herringbone.analysis.figures.sensing.plateaus import plateaus
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import TIME, Result
 from herringbone.thesis.entry import Entry, Finding, Outcome, Tables, Verdict, table

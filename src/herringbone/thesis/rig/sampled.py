@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from herringbone.analysis.figures.plateaus import SAMPLES, plateau_statistics
-from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.figures.sensing.plateaus import SAMPLES, plateau_statistics
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.thesis.entry import table
 from herringbone.thesis.rig.runs import SENSORS, TEETH, cycle_run
 

@@ -7,7 +7,7 @@ import pytest
 
 import herringbone as hb
 from herringbone.analysis.figures.radiated_power import radiated_power
-from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.analysis.leaner.form import Form
 from herringbone.analysis.leaner.question import Question, apart, lines_of
 from herringbone.core import ParameterError

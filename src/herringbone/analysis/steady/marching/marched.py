@@ -20,6 +20,8 @@ from herringbone.analysis.twin.condensed.system import Condensed
 _DEGREE, _CLOSE = 3, 1e-3
 _LONGEST = 100e-6
 """Longest base step [s]."""
+_SAME = 1e-10
+"""Change of a period that is rounding."""
 _MOST_TIMES = 4
 """Most periods after which a march may repeat."""
 
@@ -156,12 +158,19 @@ def laws_values(run: Solution, part: Samples) -> np.ndarray:
 class Following:
     """The condensed core on its way from a motion on, place by place of the period.
 
+    The period is that in which theta turns as it should: after each whole one that was marched it
+    is taken anew, as where torques decide on the speed, what vibrates has a say in it.
+
     Args:
         structure: the system.
         motion: what is given.
-        begin: where it begins; its period is that of the places.
+        begin: where it begins; the first period is its own.
         places: points in time of a period.
         ramp: turns of the first pinion over which deviations come in.
+
+    Attributes:
+        period: [s].
+        time: how long it has gone on [s].
     """
 
     def __init__(
@@ -171,18 +180,18 @@ class Following:
         self._run = marching(structure, motion, _CLOSE, lean=True, ramp=ramp)
         own = start_of(begin)
         self._run.state.q[: own.size] = own
-        self._begin, self._late, self._gone = begin, structure.late, 0
-        self.places, self._gap = places, begin.period / places
-        self._step = self._gap / np.ceil(self._gap / _LONGEST)
+        self._late, self._turn = structure.late, np.copysign(motion.turn, begin.response.speed)
+        self.places, self.period, self.time, self._longest = places, begin.period, 0.0, _LONGEST
 
     @property
-    def time(self) -> float:
-        """How long it has gone on [s]."""
-        return self._gone * self._gap
+    def _theta(self) -> float:
+        """The angle that has grown [rad]; 0 where nothing turns."""
+        rates, angles = self._condensed.modes.rates, self._condensed.modes.angles
+        return float(self._run.state.q[2 * rates.size]) if angles.size else 0.0
 
     def halve(self) -> None:
         """Go on with steps of half the length."""
-        self._step *= 0.5
+        self._longest *= 0.5
 
     def on(self, places: int, kept: int, inside: int = 1) -> March:
         """Go on for some places, and keep the last ones.
@@ -195,24 +204,32 @@ class Following:
         Raises:
             CoreStopped: the march fails.
         """
-        first, end = self._gone, self._gone + places
-        times = self._late + (end - kept + np.arange(kept * inside) / inside) * self._gap
-        begin, end_time = (self._late + n * self._gap for n in (first, end))
+        gap, begin, theta = self.period / self.places, self._late + self.time, self._theta
+        end = begin + places * gap
+        times = end + (np.arange(kept * inside) / inside - kept) * gap
+        step = gap / np.ceil(gap / self._longest)
         series, angles = [np.zeros((self._values, 0))], [np.zeros(0)]
-        for part in self._run.piece(begin, end_time, self._step, times):
+        for part in self._run.piece(begin, end, step, times):
             series.append(laws_values(self._run, part)[: self._values])
             coarse = Samples(*(array[::inside] for array in part))
             angles.append(self._run.coordinates(coarse)[:, 2 * self._condensed.modes.rates.size :])
-        self._gone = end
-        return self._march(np.hstack(series), np.concatenate(angles[1:]), self.places * inside)
+        self.time += places * gap
+        found = self._march(np.hstack(series), np.concatenate(angles[1:]), self.places * inside)
+        if places % self.places == 0 and self._turn:
+            self._take_period(self._turn * (places * gap) / (self._theta - theta))
+        return found
+
+    def _take_period(self, period: float) -> None:
+        """Take another one [s], if it is not the same."""
+        if abs(period - self.period) > _SAME * self.period:
+            self.period = period
 
     def _march(self, series: np.ndarray, angles: np.ndarray, places: int) -> March:
         """What was kept; the first of it where theta, but for its swing, is as far as it is."""
-        response = self._begin.response
-        modes = self._condensed.modes
-        turned = mean_turn(angles, self._gap * response.speed) if modes.angles.size else 0.0
+        modes, speed = self._condensed.modes, self._turn / self.period
+        turned = mean_turn(angles, self.period / self.places * speed) if modes.angles.size else 0.0
         end = self._run.state.q[: 2 * modes.rates.size + modes.angles.size].copy()
-        return March(series, places, turned, response.speed, response.frequency, end)
+        return March(series, places, turned, speed, 2.0 * np.pi / self.period, end)
 
 
 def mean_turn(angles: np.ndarray, grown: float) -> float:

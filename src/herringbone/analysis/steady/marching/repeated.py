@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.guess import SETTLING, beginnings
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
 from herringbone.analysis.steady.marching.marched import Following, March
 from herringbone.analysis.steady.marching.parting import Parting, parting
+from herringbone.analysis.steady.searching.guess import SETTLING, beginnings
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 
@@ -73,7 +73,7 @@ def repeated(
             found = _until_repeated(way, close, _MOST)
             if found.change <= close:
                 return found
-            mesh = begin.period / structure.meshes
+            mesh = way.period / structure.meshes
             apart = parting(structure, motion, found.march.end, mesh, structure.meshes)
             if not apart.parts:
                 found = _until_repeated(way, close, _FARTHER)

@@ -1,9 +1,9 @@
 """What is said of a search for a periodic motion."""
 
-from herringbone.analysis.steady.guess import LONG, SETTLING
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.marched import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.searching.guess import LONG, SETTLING
+from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import ParameterError
@@ -36,7 +36,8 @@ def unsettled(structure: Structure, march: March | None) -> str:
         return "a march from equilibrium fails, too"
     return (
         f"no stable periodic motion was found: {SETTLING:g} s from equilibrium a march still "
-        f"changes by {100.0 * march.least:.2g} % from one period to later ones"
+        f"changes by {100.0 * march.least:.2g} % from one period to later ones; ask for a larger "
+        "torque, or run it"
     )
 
 

@@ -11,8 +11,12 @@ from functools import cached_property
 import numpy as np
 
 from herringbone.analysis.steady.bending import bending_parts
-from herringbone.analysis.steady.found import Found, by_marching, by_shooting, none_found
-from herringbone.analysis.steady.guess import (
+from herringbone.analysis.steady.harmonic_balance.accuracy import accuracy
+from herringbone.analysis.steady.harmonic_balance.balance import Balance
+from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
+from herringbone.analysis.steady.marching.marched import Following, March, start_of
+from herringbone.analysis.steady.searching.found import Found, by_marching, by_shooting, none_found
+from herringbone.analysis.steady.searching.guess import (
     LONG,
     PLACES,
     SETTLING,
@@ -25,12 +29,8 @@ from herringbone.analysis.steady.guess import (
     standing,
     turns,
 )
-from herringbone.analysis.steady.harmonic_balance.accuracy import accuracy
-from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.irregular import irregular
-from herringbone.analysis.steady.marching.marched import Following, March, start_of
-from herringbone.analysis.steady.remarks import (
+from herringbone.analysis.steady.searching.irregular import irregular
+from herringbone.analysis.steady.searching.remarks import (
     GROWS,
     NO_ROTATION,
     NO_SHOT,
@@ -39,7 +39,7 @@ from herringbone.analysis.steady.remarks import (
     told,
     unsettled,
 )
-from herringbone.analysis.steady.resolution import first
+from herringbone.analysis.steady.searching.resolution import first
 from herringbone.analysis.steady.structure import Structure
 from herringbone.core import HerringboneError
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from herringbone.analysis.asked import signal
-from herringbone.analysis.figures.sensors import sensor_figures
+from herringbone.analysis.figures.sensing.sensors import sensor_figures
 from herringbone.core import ParameterError
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.result.result import TIME, Result

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.guess import PLACES
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Period
 from herringbone.analysis.steady.marching.parting import Parting
 from herringbone.analysis.steady.marching.repeated import Repeated
 from herringbone.analysis.steady.outputs import harmonics, level_of
+from herringbone.analysis.steady.searching.guess import PLACES
 from herringbone.analysis.steady.structure import Structure
 
 _LOOKED_AT = 4

@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.analysis.steady.guess import PLACES, several
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accuracy, with_change
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.irregular import Irregular
 from herringbone.analysis.steady.marching.repeated import INSIDE, Repeated, repeated
 from herringbone.analysis.steady.marching.shooting import Shooting, Shot
-from herringbone.analysis.steady.resolution import first
+from herringbone.analysis.steady.searching.guess import PLACES, several
+from herringbone.analysis.steady.searching.irregular import Irregular
+from herringbone.analysis.steady.searching.resolution import first
 from herringbone.analysis.steady.structure import Structure
 
 _STEPS, _NEUTRAL = 256, 1e-3

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from herringbone.analysis.steady.guess import LONG
 from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy
 from herringbone.analysis.steady.harmonic_balance.orbit import Period
+from herringbone.analysis.steady.searching.guess import LONG
 from herringbone.analysis.steady.structure import Structure
 
 _MOST_PLACES, _MOST_IN_ALL = 2048, 150_000

@@ -1,0 +1,1 @@
+"""What sensors show of a run: their signals, and figures of these."""

@@ -1,0 +1,1 @@
+"""The search for a periodic motion: where it begins, what it tries, what it says."""
