@@ -80,6 +80,7 @@ ONLY_IN: dict[str, set[str]] = {
         "cosim/loops/float_modes.py",
         "cosim/fmu/fmi3/steps.py",
         "fmi/native/objects.py",
+        "fmi/native/wide.py",
         "kernels/compiling/constants.py",
         "kernels/compiling/elements.py",
         "kernels/compiling/kept_pieces.py",
