@@ -22,6 +22,7 @@ def vibration(t_end: float) -> np.ndarray:
         result = hb.run(
             "test_rig",
             t_end=t_end,
+            step=RECORD_STEP,  # records are taken where steps end
             record_step=RECORD_STEP,
             values={"bench_controller.cycle": str(cycle)},
         )

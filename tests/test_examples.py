@@ -25,7 +25,7 @@ KNOWN = {
     "06_loop_benchmark": ({"steps": 200}, None, None),
     "07_symmetry_and_relief": ({}, 5296.0, WHOLE),
     "08_swap_the_housing": ({"t_end": 0.005}, None, None),
-    "09_aliasing": ({"t_end": 0.1}, None, None),
+    "09_aliasing": ({"t_end": 0.4}, None, None),
     "10_plain_fmpy": ({"t_end": 2e-4}, None, None),
     "11_gearbox_fmu_in_a_loop": ({"t_end": 0.005}, 200.0, WHOLE),
 }

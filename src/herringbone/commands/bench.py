@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from herringbone.running.prepared import Wishes
 
 _RIG = "macro-step"
-_PARTS = (_RIG, "accuracy", "fused", "step", "steady", "fmus")
+_PARTS = (_RIG, "accuracy", "fused", "step", "loop", "steady", "fmus")
 
 
 def add_options(sub: argparse.ArgumentParser) -> None:
@@ -155,6 +155,36 @@ def _step() -> tuple[str, dict[str, Any]]:
     return "\n".join(lines), {"parts": [row._asdict() for row in found]}
 
 
+def _loop() -> tuple[str, dict[str, Any]]:
+    from herringbone.benchmarks import loop_profile, step_part  # noqa: PLC0415
+
+    tables, figures = [], {}
+    for found in loop_profile.measure():
+        names = list(loop_profile.CALLS)
+        lines = [
+            f"{step_part.SYSTEM}, {found.name}, native FMUs: "
+            f"{1e6 * found.seconds:.1f} us of CPU for a macro step of {1e6 * found.step:.1f} us "
+            f"with {found.passes:.2f} passes, {found.step / found.seconds:.2f} times real time; "
+            f"Python FMUs take {found.python / found.seconds:.1f} times as long",
+            f"{'us':>8}" + "".join(f"{name:>9}" for name in names) + "  part",
+        ]
+        for piece in found.pieces:
+            calls = "".join(
+                f"{1e6 * piece.calls[name]:9.2f}" if piece.calls else f"{'':>9}" for name in names
+            )
+            lines.append(f"{1e6 * piece.seconds:8.2f}{calls}  {piece.name}")
+        pad = " " * (9 * len(names))
+        for seconds, what in (
+            (found.one_pass, "if one pass were enough"),
+            (found.one_pass_of_bodies, "and elements were parts of the bodies, at no cost"),
+        ):
+            factor = f"{found.step / seconds:.1f} times real time"
+            lines.append(f"{1e6 * seconds:8.2f}{pad}  {what}: {factor}")
+        tables.append("\n".join(lines))
+        figures[found.name] = {**found._asdict(), "pieces": [p._asdict() for p in found.pieces]}
+    return "\n\n".join(tables), figures
+
+
 def _steady() -> tuple[str, dict[str, Any]]:
     from herringbone.benchmarks import steady  # noqa: PLC0415
 
@@ -169,5 +199,6 @@ def _steady() -> tuple[str, dict[str, Any]]:
 
 
 _MEASURE = {
-    "accuracy": _accuracy, "fused": _fused, "step": _step, "steady": _steady, "fmus": _fmus
+    "accuracy": _accuracy, "fused": _fused, "step": _step, "loop": _loop, "steady": _steady,
+    "fmus": _fmus,
 }  # fmt: skip

@@ -74,6 +74,11 @@ class Outcome:
         return self.kind in _REACHED_END
 
     @property
+    def failed(self) -> bool:
+        """True if a fault ended the run before its end."""
+        return EXIT_CODES[self.kind] == 1 and not self.reached_end
+
+    @property
     def unstable(self) -> bool:
         """True if the values grew without bound, so that no figure of them means anything."""
         return self.kind in {OutcomeKind.UNSTABLE, OutcomeKind.DIVERGED}

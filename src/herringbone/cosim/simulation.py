@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
+from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
+from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
 from herringbone.cosim.other_signals import OtherSignals
@@ -98,6 +100,26 @@ def simulate(
         ParameterError: a body cannot be slow, or the algorithm takes no slow bodies.
         HerringboneError: a part refuses to initialise.
     """
+    run, loop = ready(
+        system, parts, algorithm, grid, bond_frequency=bond_frequency, slow=slow,
+        inner_step=inner_step, tolerance=tolerance, streaming=streaming,
+    )  # fmt: skip
+    return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
+
+
+def ready(
+    system: System,
+    parts: Sequence[Part],
+    algorithm: Algorithm,
+    grid: Grid,
+    *,
+    bond_frequency: float | None = None,
+    slow: Mapping[str, int] | None = None,
+    inner_step: float = 0.0,
+    tolerance: float | None = None,
+    streaming: Streaming | None = None,
+) -> tuple[Run, AlgebraicLoop | None]:
+    """A run whose parts are initialised, and the algebraic loop that it has; see `simulate`."""
     network = build_network(system, parts).with_slow(slow or {})
     _check_units(network)
     if network.slow:
@@ -106,6 +128,8 @@ def simulate(
     prepared = algorithm.prepare(network)
     if isinstance(prepared, PreparedAdaptive):
         prepared.inner_step = inner_step
+    elif isinstance(prepared, PreparedNodes) and tolerance:
+        prepared.suit(tolerance)
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))
@@ -121,7 +145,7 @@ def simulate(
             "initialisation mode: the gain of the algebraic loop is not known"
             for p in sorted(network.feedthrough)
         )
-    return run.go(progress) if loop is None else run.go_around(loop, str(algorithm), progress)
+    return run, loop
 
 
 def _check_units(network: Network) -> None:

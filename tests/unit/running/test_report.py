@@ -14,6 +14,7 @@ from support.result import make_foreign_result, make_result
 
 from herringbone.analysis.figures.radiated_power import radiated_power
 from herringbone.core import HerringboneError, Outcome, OutcomeKind
+from herringbone.running.reporting.physical import physical_results
 from herringbone.running.reporting.report import write_report
 from herringbone.running.reporting.summary import summary_text
 
@@ -123,6 +124,24 @@ def test_a_run_without_figures_says_so(rig, kind):
     assert "a.b is not finite; use a smaller step" in text
     assert "No figures" in text
     assert "No figures" in summary_text(replace(rig, data=rig.data.iloc[:0]))
+
+
+@pytest.mark.parametrize(("reached", "rows"), [(3e-6, 2), (1.9e-3, 60)])
+def test_a_run_that_failed_at_its_start_shows_no_figures(rig, reached, rows):
+    """Within a hundredth of its 0.2 s; one that failed later, or was stopped there, shows them."""
+    short = replace(rig, data=rig.data.iloc[:rows])
+
+    def ended(kind, time):
+        return replace(short, outcome=Outcome(kind, time, "a", "a refused its step"))
+
+    early = ended(OutcomeKind.PART_FAILED, reached)
+    text = summary_text(early)
+    assert "No figures: the run failed after" in text
+    assert f"and left {rows} records." in text
+    assert physical_results(early) == {}
+    for other in (ended(OutcomeKind.PART_FAILED, 2.1e-3), ended(OutcomeKind.INTERRUPTED, reached)):
+        assert "Means taken over" in summary_text(other)
+        assert physical_results(other)
 
 
 def test_a_record_step_longer_than_the_run_is_named(rig):

@@ -9,7 +9,7 @@ import pytest
 from fuzz.campaign import last_commit
 from support.compiler import needs_compiler
 
-from herringbone.benchmarks import coupled_step, fmus, fused_step, macro_step, steady
+from herringbone.benchmarks import coupled_step, fmus, fused_step, loop_profile, macro_step, steady
 from herringbone.commands.main import main
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.simulation import make_grid, simulate
@@ -99,3 +99,19 @@ def test_a_coupled_step_passes_over_its_parts_twice_and_seldom_once_more():
     """Prediction and one correction; a third pass where the residual asks for it."""
     passes = next(p.name for p in coupled_step.measure(repeats=1, steps=400) if "passes" in p.name)
     assert 2.0 <= float(passes.split()[0]) < 3.0
+
+
+def test_a_macro_step_is_all_its_pieces(monkeypatch):
+    """Its parts and the loop's pieces; equal steps take two passes, of which one is done again."""
+    for name, value in (("_LONG", 8e-3), ("_SHORT", 4e-3), ("_SHORTER", 2e-3), ("_AGAIN", 20)):
+        monkeypatch.setattr(loop_profile, name, value)
+    for found in loop_profile.measure(1):
+        parts = [piece for piece in found.pieces if piece.calls]
+        assert len(parts) == 8
+        assert sum(piece.seconds for piece in found.pieces) == pytest.approx(found.seconds)
+        elements = {piece.name.rpartition(".")[2] for piece in parts if piece.element}
+        assert elements == {"drive_coupling", "load_coupling", "bearing_supports"}
+        once = {piece.name for piece in parts if piece.again == 0.0}
+        assert once == {"bench_controller"}
+        if "tolerance" not in found.name:
+            assert (found.step, found.passes) == (pytest.approx(4e-5), pytest.approx(2.0, abs=0.05))

@@ -82,6 +82,11 @@ def test_algorithm_and_shares(rig):
     )  # fmt: skip
 
 
+def test_a_run_may_be_shorter_than_the_largest_step():
+    result = hb.run("gearbox", tolerance=1e-3, t_end=1e-4, fmu="in-process")
+    assert (result.outcome.completed, result.outcome.time) == (True, pytest.approx(1e-4))
+
+
 def test_work_follows_the_tolerance():
     """Passes of the gear: three nodes each, with inner steps that shorten by the fourth root."""
     passes = []

@@ -17,6 +17,10 @@ SETTLING_SHARE = 0.2
 SPEED_BAND = 0.01
 """The steady part's speed stays within this share of its final value."""
 _SHORTEST_SHARE = 0.1
+_FEWEST = 2
+"""Records of which anything can be said."""
+_TOLD_SHARE, _TOLD_RECORDS = 0.01, 100
+"""A run that failed before this share of its duration, and so many records, tells its start."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,18 @@ class SteadyPart:
     end: float
     sample_step: float
     steady: bool
+
+
+def has_figures(result: Result) -> bool:
+    """True if means and spectra of a run say anything.
+
+    They do not if its values grew without bound, or if it failed as soon as it had begun.
+    """
+    outcome, count = result.outcome, len(result.data)
+    if count < _FEWEST or outcome.unstable:
+        return False
+    begun = outcome.time < _TOLD_SHARE * result.info.t_end and count < _TOLD_RECORDS
+    return not (outcome.failed and begun)
 
 
 def steady_part(result: Result) -> SteadyPart:

@@ -144,6 +144,11 @@ class PreparedAdaptive(PreparedNodes):
         )
 
     @property
+    def adaptive(self) -> Adaptive | None:
+        """What the loop works on beside; None if the run has not begun."""
+        return self._adaptive
+
+    @property
     def estimate(self) -> ErrorEstimate | None:
         """Error of the run so far: of the group of forces that errs most, over their alternation.
 

@@ -32,7 +32,9 @@ from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.repeating import answers_again, explicit_note, explicit_parts
 
 REST = 1e-6
-"""Residual, relative to the largest signal of the same unit, that asks for more corrections."""
+"""Residual that asks for more corrections where no tolerance is asked for."""
+REST_SHARE = 0.1
+"""Of the tolerance that parts are told, where that is more."""
 SLOW = 0.1
 """Contraction of a correction above which the Jacobian is computed again."""
 SLOW_OF_PARTS = 5e-3
@@ -56,6 +58,10 @@ class PreparedNodes(PreparedRun):
         newton: correct with a frozen Jacobian; else plain fixed point.
         corrections: how many at least.
         most: how many at most.
+
+    Attributes:
+        rest: residual, relative to the largest signal of the same unit, that asks for more
+            corrections.
     """
 
     def __init__(
@@ -69,7 +75,7 @@ class PreparedNodes(PreparedRun):
         most: int,
     ) -> None:
         self.network, self.full_order, self.newton = network, full_order, newton
-        self.corrections, self.most = corrections, most
+        self.corrections, self.most, self.rest = corrections, most, REST
         degrees, notes = node_degrees(network, degree)
         explicit = explicit_parts(network)
         first = (*network.sources, *explicit)
@@ -96,17 +102,32 @@ class PreparedNodes(PreparedRun):
         self._corrected = False
         self.problem = ""
 
+    def suit(self, tolerance: float) -> None:
+        """Take account of the tolerance that parts are told."""
+        self.rest = max(REST, REST_SHARE * tolerance)
+
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and, after a run, a residual that the corrections did not remove."""
         left = float(self._buffers.worst[0]) if self._buffers else 0.0
-        if not self.newton or left <= REST:
+        if not self.newton or left <= self.rest:
             return self._downgrades
         return (
             *self._downgrades,
             f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "
             "largest: use a smaller step, or look for a part that does not repeat a step alike",
         )
+
+    @property
+    def buffers(self) -> Buffers:
+        """What the loop works on.
+
+        Raises:
+            ValueError: the run has not begun.
+        """
+        if self._buffers is None:
+            raise ValueError("the run has not begun")
+        return self._buffers
 
     @property
     def inner_outputs(self) -> bool:
@@ -220,7 +241,7 @@ class PreparedNodes(PreparedRun):
         )
 
     def _control(self, slow: float) -> Control:
-        return Control(self.corrections, self.most, REST, slow, PREDICTION)
+        return Control(self.corrections, self.most, self.rest, slow, PREDICTION)
 
     def _refresh(self, buffers: Buffers, chunk: Chunk) -> int:
         """Correction matrix at the present state, where the chunk starts; a status of the loop."""

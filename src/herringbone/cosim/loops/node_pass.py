@@ -25,16 +25,20 @@ from herringbone.kernels.compiling.jit import inlined
 
 
 @inlined
+def save_part(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int) -> int:
+    """Save the state of a part that can; FMI status."""
+    at = buffers.states.ctypes.data + 8 * p
+    if buffers.states[p] != 0:
+        state_call(nodes.free_state[p], layout.component[p], at)
+    return state_call(nodes.get_state[p], layout.component[p], at)
+
+
+@inlined
 def save(layout: Layout, nodes: NodeLayout, buffers: Buffers) -> int:
     """Save the state of all parts that can; -1, or the part that refused."""
-    at = buffers.states.ctypes.data
     for group in (nodes.bodies, nodes.elements, nodes.sources):
         for p in group:
-            if nodes.get_state[p] == 0:
-                continue
-            if buffers.states[p] != 0:
-                state_call(nodes.free_state[p], layout.component[p], at + 8 * p)
-            if state_call(nodes.get_state[p], layout.component[p], at + 8 * p) > LAST_GOOD:
+            if nodes.get_state[p] != 0 and save_part(layout, nodes, buffers, p) > LAST_GOOD:
                 return p
     return -1
 
@@ -55,7 +59,7 @@ def restore(layout: Layout, nodes: NodeLayout, buffers: Buffers, sources: bool) 
 
 
 @inlined
-def _set_from_nodes(layout: Layout, buffers: Buffers, p: int, h: float) -> int:
+def set_from_nodes(layout: Layout, buffers: Buffers, p: int, h: float) -> int:
     """Set a part's inputs from the nodes: all of them, or the polynomial that the part takes."""
     first, end = layout.input_first[p], layout.input_first[p + 1]
     if first == end:
@@ -77,7 +81,7 @@ def _set_from_nodes(layout: Layout, buffers: Buffers, p: int, h: float) -> int:
 
 
 @inlined
-def _get_to_nodes(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int, h: float) -> int:
+def get_to_nodes(layout: Layout, nodes: NodeLayout, buffers: Buffers, p: int, h: float) -> int:
     """Get a part's connected outputs at the nodes; without nodes, interpolate to its end value.
 
     With the rates at both ends, if the part gives them; else with the value before.
@@ -123,7 +127,7 @@ def _step_group(
 ) -> int:
     """Set, step and get a group of parts that do not see each other; -1, or who failed."""
     for p in group:
-        if _set_from_nodes(layout, buffers, p, h) > LAST_GOOD:
+        if set_from_nodes(layout, buffers, p, h) > LAST_GOOD:
             return p
     for p in group:
         buffers.passes[p] += 1
@@ -132,7 +136,7 @@ def _step_group(
             buffers.counts[2] = status
             return p
     for p in group:
-        status = _get_to_nodes(layout, nodes, buffers, p, h)
+        status = get_to_nodes(layout, nodes, buffers, p, h)
         if status > LAST_GOOD:  # of a part in a cell this may be that of its step
             buffers.counts[2] = status
             return p

@@ -12,6 +12,7 @@ from herringbone.analysis.asked import by_half, group, mesh_forces, shaft_torque
 from herringbone.analysis.figures.channels import largest_lines, moments
 from herringbone.analysis.figures.flange_power import mean_powers
 from herringbone.analysis.figures.operating_point import (
+    has_figures,
     power_balance,
     run_mesh_frequency,
     steady_part,
@@ -37,7 +38,7 @@ def physical_results(result: Result) -> dict[str, Any]:
     gearboxes have one entry each, by path; the only one is called "".
     """
     result = result.uniform()
-    if len(result.data) < 2 or result.outcome.unstable:
+    if not has_figures(result):
         return {}
     part, power = steady_part(result), power_balance(result)
     found: dict[str, Any] = {"steady_from_s": part.begin, "steady_to_s": part.end}

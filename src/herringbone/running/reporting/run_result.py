@@ -10,6 +10,7 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.accuracy.error_budget import by_size, coupling_row, error_budget
 from herringbone.analysis.anatomy import anatomy
 from herringbone.analysis.figures.misfits import misfits
+from herringbone.analysis.figures.operating_point import has_figures
 from herringbone.analysis.figures.settling import unsettled
 from herringbone.analysis.figures.standstill import stands_still, what_to_set
 from herringbone.analysis.twin.reference import reference
@@ -26,9 +27,6 @@ from herringbone.cosim.structure.system import System
 from herringbone.result.result import TIME, Result
 from herringbone.result.run_info import RunInfo
 from herringbone.scenes import Scene
-
-_FEWEST = 2
-"""Records of which anything can be said."""
 
 
 def make_result(
@@ -116,7 +114,7 @@ def judged(result: Result, system: System, bond_frequency: float | None) -> Resu
         system: of the run.
         bond_frequency: the highest of all bonds together [rad/s]; None if it is not known.
     """
-    if len(result.data) < _FEWEST or result.outcome.unstable:
+    if not has_figures(result):
         return result
     if stands_still(result):
         notes = (*result.info.notes, what_to_set(system))

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from herringbone.analysis.figures.channels import moments
+from herringbone.analysis.figures.operating_point import has_figures
 from herringbone.analysis.unanswered import unanswered
 from herringbone.core.energy_report import EnergyReport
 from herringbone.result.result import Result
@@ -23,7 +24,7 @@ def summary_text(result: Result) -> str:
     """A summary of a run for people: how it was computed, operating point, forces, spectra."""
     lines = [*_headline(result), "", *_cost(result)]
     result = result.uniform()
-    if len(result.data) < 2 or result.outcome.unstable:
+    if not has_figures(result):
         lines += ["", f"No figures: {_why_none(result)}."]
     else:
         for found in map(list, _sections(result)):
@@ -39,10 +40,13 @@ def summary_text(result: Result) -> str:
 def _why_none(result: Result) -> str:
     """Why a run has no figures."""
     records, step, reached = len(result.data), result.info.record_step, result.outcome.time
+    rows = f"{records} record{'s' if records != 1 else ''}"
+    if result.outcome.failed and not result.outcome.unstable:
+        return f"the run failed after {_time(reached)}, and left {rows}"
     if result.outcome.unstable or step <= reached:
         return "the run left nothing that can be evaluated"
     return (
-        f"{records} record{'s' if records != 1 else ''}, as one every {_time(step)} was asked for "
+        f"{rows}, as one every {_time(step)} was asked for "
         f"and the run takes {_time(reached)}; use a shorter --record-step"
     )
 

@@ -31,9 +31,11 @@ def suited_step(
         bond: highest frequency of all bonds together [rad/s]; None if it is not known.
         record_step: that the caller gave [s].
     """
+    if algorithm.adaptive:
+        return min(own, scene.t_end)
     rule = algorithm.accurate_step
     geared = any(Role.GEAR_PAIR in part.roles for part in anatomy(system).parts.values())
-    if not bond or rule is None or geared or algorithm.adaptive:
+    if not bond or rule is None or geared:
         return own
     longest = min(scene.t_end / _FEWEST_STEPS, record_step or scene.t_end)
     return max(own, min(_SHARE * rule / bond, longest))

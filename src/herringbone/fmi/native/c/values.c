@@ -16,6 +16,12 @@ static bool is_choice(uint32_t reference) {
     return is_variable(reference) && hb_component.reals[reference].choice;
 }
 
+/* A variable that is no parameter, of which alone some are no reals: `reals` is not looked at. */
+static bool is_signal(uint32_t reference) {
+    return reference < hb_component.first_table && hb_component.access[reference] != HB_HIDDEN &&
+           hb_component.access[reference] < HB_FIXED;
+}
+
 bool instance_is_real(uint32_t reference) {
     return is_variable(reference) && !hb_component.reals[reference].choice;
 }
@@ -104,7 +110,7 @@ Status instance_get(Instance *instance, const uint32_t references[], size_t coun
                             (int64_t)count);
     for (size_t i = 0; i < count; i++) {
         uint32_t reference = references[i];
-        if (instance_is_real(reference)) {
+        if (is_signal(reference) || instance_is_real(reference)) {
             values[i] = block[reference];
         } else {
             Status status = get_other(instance, reference, &values[i]);
