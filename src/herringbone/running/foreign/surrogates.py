@@ -256,10 +256,10 @@ def _with_clock(
 
 def _refusal(part: Part, signature: Signature) -> str:
     """Why no trials tell of the part's steps; "" if they do."""
-    no_trials = not has_further(part) or (part.once and signature.kind is Kind.UNKNOWN)
-    if no_trials or signature.kind is Kind.NOISY:
-        return signature.notes[0]
-    return ""
+    if not has_further(part):
+        return "it can be instantiated once only, and runs in this process"
+    no_trials = part.once and signature.kind is Kind.UNKNOWN
+    return signature.notes[0] if no_trials or signature.kind is Kind.NOISY else ""
 
 
 def _connected(network: Network, number: int) -> tuple[list[str], list[str]]:
