@@ -1,6 +1,7 @@
-"""Fixtures that several test files share."""
+"""Fixtures that several test files share, and the order of the files."""
 
 import fcntl
+from collections import Counter
 from contextlib import contextmanager
 
 import pytest
@@ -12,6 +13,15 @@ from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
+
+
+def pytest_collection_modifyitems(items):
+    """Files with slow tests first, those with most at the front: no process is left with them.
+
+    Tests of a file stay together, as they share what is made for the file.
+    """
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: -slow[item.path])
 
 
 @pytest.fixture(scope="session", autouse=True)

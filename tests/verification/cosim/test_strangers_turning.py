@@ -39,6 +39,7 @@ class Car:
             file.write('\ngearbox = { system = "gearbox" }\n')
         return path
 
+    @cache  # noqa: B019
     def torque(self, step, algorithm=None, *, plain=False, declared=True):
         """Of the motor's shaft, every 0.1 ms for 20 ms; short if the run ends early."""
         result = hb.run(
@@ -47,7 +48,6 @@ class Car:
         )  # fmt: skip
         return result.data["drive.flange.tau"].to_numpy()
 
-    @cache  # noqa: B019
     def converged(self):
         return self.torque(5e-6, "li:degree=4")
 

@@ -10,7 +10,7 @@ import pandas as pd
 from herringbone.core import HerringboneError
 from herringbone.thesis.readings.grid import Case, cases, combined, single
 from herringbone.thesis.readings.motion import RUN
-from herringbone.thesis.readings.points import DEVIATIONS, computed, looked_up, points
+from herringbone.thesis.readings.points import DEVIATIONS, by_point, computed, looked_up, points
 from herringbone.thesis.readings.reading import Reading
 from herringbone.thesis.readings.sentences import SENTENCES
 
@@ -52,8 +52,9 @@ def judged(readings: Sequence[Reading]) -> Judged:
             continue
         own = table.drop_duplicates(["deviation", "torque", "speed"])
         count, runs = count + len(own), runs + int((own["how"] == RUN).sum())
+        known = by_point(table)
         for case in cases(reading):
-            figures = looked_up(table, case.evaluation, case.positions)
+            figures = looked_up(known, case.evaluation, case.positions)
             found.append(case)
             margins.append([_cut(s.margin(figures, case.deviation)) for s in SENTENCES])
     return Judged(found, np.array(margins), count, runs, failed)

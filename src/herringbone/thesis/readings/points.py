@@ -1,7 +1,7 @@
 """Operating points of a reading, and the table of figures there."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import pandas as pd
@@ -46,6 +46,8 @@ def points(deviations: Sequence[float]) -> list[At]:
 
 Figures = Callable[[str, str, At], float]
 """A figure: what, kind, point."""
+Known = Mapping[tuple[str, str, str, At], float]
+"""Values by what, kind, evaluation and point."""
 
 
 def computed(reading: Reading, at: Sequence[At]) -> pd.DataFrame:
@@ -73,18 +75,22 @@ AS_DRAWN, MIRRORED = "A, B, C", "C, B, A"
 _SWAPPED = {"A": "C", "C": "A"}
 
 
-def looked_up(table: pd.DataFrame, evaluation: str, positions: str = AS_DRAWN) -> Figures:
-    """Figures of a table by one evaluation; means are the same by all.
-
-    Args:
-        table: see `computed`.
-        evaluation: of `EVALUATIONS`.
-        positions: AS_DRAWN or MIRRORED.
-    """
-    known = {
+def by_point(table: pd.DataFrame) -> Known:
+    """Values of a table, see `computed`."""
+    return {
         (row.what, row.kind, row.evaluation, At(row.deviation, row.torque, row.speed)): row.value
         for row in table.itertuples()
     }
+
+
+def looked_up(known: Known, evaluation: str, positions: str = AS_DRAWN) -> Figures:
+    """Figures by one evaluation; means are the same by all.
+
+    Args:
+        known: see `by_point`.
+        evaluation: of `EVALUATIONS`.
+        positions: AS_DRAWN or MIRRORED.
+    """
 
     def figure(what: str, kind: str, point: At) -> float:
         how = EVALUATIONS[0] if kind == "mean" else evaluation
