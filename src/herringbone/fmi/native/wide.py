@@ -29,7 +29,9 @@ def with_wide(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 
 def _is_hot(function: llvm.ValueRef) -> bool:
-    return any(b"hot" in attribute for attribute in function.attributes)
+    """False for what is a part of its callers, as numba writes some: it is there twice with them."""
+    attributes = b" ".join(function.attributes).split()
+    return b"hot" in attributes and b"alwaysinline" not in attributes
 
 
 def _twice(text: str, function: llvm.ValueRef, groups: dict[str, str]) -> str:
