@@ -20,7 +20,7 @@ from herringbone.cosim.simulation import make_grid, simulate
 
 SEATS = "gearbox.modal_housing."
 MARGIN = 0.02
-TRIED = np.linspace(0.25 * MARGIN, MARGIN, 4)
+TRIED = np.linspace(0.0625 * MARGIN, MARGIN, 16)
 FAST = 1e-3
 """Growth per step that needs no step farther beyond a limit."""
 RATE = 0.01

@@ -29,7 +29,7 @@ def with_wide(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 
 def _is_hot(function: llvm.ValueRef) -> bool:
-    """False for what is a part of its callers, as numba writes some: it is there twice with them."""
+    """False for what becomes a part of its callers: it is there twice with them."""
     attributes = b" ".join(function.attributes).split()
     return b"hot" in attributes and b"alwaysinline" not in attributes
 
