@@ -1,15 +1,13 @@
 """Fixtures that several test files share, and the order of the files."""
 
-import fcntl
 from collections import Counter
-from contextlib import contextmanager
 
 import pytest
+from support.alone import alone
 from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
 from herringbone.core.caching import answers
-from herringbone.core.places.paths import cache_folder
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
@@ -58,14 +56,6 @@ def answers_of_the_session(tmp_path_factory):
 def answers_of_the_test(request, answers_of_the_session, monkeypatch):
     """What a test is told, with whatever it has replaced, no other one is told."""
     monkeypatch.setattr(answers, "FOLDER", str(answers_of_the_session / str(id(request.node))))
-
-
-@contextmanager
-def alone(what):
-    """Context for one process at a time: what one test process builds, the others find built."""
-    with (cache_folder("locks") / what).open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # given back when the file is closed
-        yield
 
 
 @pytest.fixture(scope="session")

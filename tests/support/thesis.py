@@ -4,12 +4,14 @@ from functools import cache
 
 from herringbone.thesis.entry import Finding, Outcome
 from herringbone.thesis.study import study
+from support.alone import alone
 
 
 @cache
 def outcome(name: str) -> Outcome:
     """What an entry computes; out of the cache if it is there."""
-    (done,) = study("thesis", [name], workers=1).done
+    with alone(f"thesis_{name}"):
+        (done,) = study("thesis", [name], workers=1).done
     assert not done.error, done.error
     assert done.outcome is not None
     return done.outcome
