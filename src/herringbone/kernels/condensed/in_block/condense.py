@@ -12,7 +12,7 @@ from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.in_modes import mode_finder
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
 from herringbone.kernels.condensed.in_block.rung import rung_maker
-from herringbone.kernels.condensed.in_block.shown import seen_arranger
+from herringbone.kernels.condensed.in_block.seen import seen_arranger
 
 FOUND, NONE = 1, -1
 """Status: there is a condensed form, or none."""

@@ -42,7 +42,7 @@ class WorkPlaces(NamedTuple):
         room: for a node of a mode.
         full: (q_size + channels x nodes, (nodes - 1) x arguments), while a rung is made.
         seen: (2 modes + rotations + channels, states inside and outputs, in whole lines), see
-            `in_block.shown`.
+            `in_block.seen`.
         bent: (outputs,) 1 where one is not affine.
         asked: (outputs and states,) rows of `seen` that were asked for, in this order.
         known: (outputs and states,) 1 for these.
