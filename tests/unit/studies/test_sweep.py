@@ -18,6 +18,7 @@ from herringbone.core import HerringboneError, ResourceError
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
 from herringbone.studies.working.chain import Done, Row
+from herringbone.studies.working.processes import WorkerProcesses
 
 SPEEDS = [100.0 * k for k in range(1, 9)]
 TORQUES = [1.0, 2.0, 3.0]
@@ -131,6 +132,26 @@ def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
         hb.load(tmp_path)
     found = swept(tmp_path, evaluator=Cheap(seconds=0.05))
     assert found.table.equals(serial)
+
+
+class Twofold(Exception):
+    """Cannot be made again from its arguments alone, as some of libraries."""
+
+    def __init__(self, what, where):
+        super().__init__(f"{what} {where}")
+
+
+def raising():
+    raise Twofold("lost", "there")
+
+
+def test_what_a_process_sends_is_told_though_it_cannot_be_read():
+    """Nobody would be there to answer otherwise, and a study would wait for ever."""
+    with WorkerProcesses(1) as executor:
+        first, then = executor.submit(raising), executor.submit(abs, -2)
+        with pytest.raises(HerringboneError, match=r"a process of the study: .*missing 1 required"):
+            first.result(60.0)
+        assert then.result(60.0) == 2
 
 
 _FORKED = """

@@ -14,7 +14,7 @@ from queue import SimpleQueue
 from threading import Lock, Thread
 from typing import Any
 
-from herringbone.core import HerringboneError
+from herringbone.core import HerringboneError, reason
 from herringbone.core.places.paths import PACKAGE
 from herringbone.studies.working.forked import ForkedProcess
 
@@ -68,7 +68,11 @@ class WorkerProcesses(Executor):
         while (task := self._tasks.get()) is not None:
             if self._ended or not task[0].set_running_or_notify_cancel():
                 continue
-            process = self._done(process, task)
+            try:
+                process = self._done(process, task)
+            except Exception as error:  # no process can be started, what came back not be made here
+                task[0].set_exception(HerringboneError(f"a process of the study: {reason(error)}"))
+                process = None
         if process is not None:
             process.stdin.close()  # type: ignore[union-attr]
             process.wait()
