@@ -32,8 +32,9 @@ LARGEST = 300_000
 """Bytes of an FMU with all platforms: the limit that the project sets itself."""
 ASIDE = ("resources/", "documentation/", "extra/")
 """What does not count: data, pages, reference results."""
-WITH_SINGLE_TEETH = 330_000
-"""Of the gear mesh, which misses it: the law of single teeth takes 14 kB per platform."""
+WITH_SINGLE_TEETH = 334_000
+"""Of the gear mesh, which misses it: the law of single teeth takes 14 kB per platform. Outputs that
+are made when a host asks for them take 0.7 kB of the wrapper for FMI 3.0 per platform."""
 
 
 def library(fmu, folder):

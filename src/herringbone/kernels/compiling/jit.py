@@ -23,7 +23,8 @@ from herringbone.kernels.compiling.linking import (
 P = ParamSpec("P")
 T = TypeVar("T")
 _C_OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
-_OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True}
+_OPTIONS = {**_C_OPTIONS, "fastmath": False, "nogil": True, "forceinline": False}
+"""numba takes what is not set from whoever is being compiled: code would go by who calls first."""
 
 
 def kernel(function: Callable[P, T]) -> Callable[P, T]:
