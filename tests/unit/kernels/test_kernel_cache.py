@@ -182,6 +182,38 @@ def test_pieces_have_no_machine_code_and_are_their_wholes_own(cache, tmp_path, m
     assert found == ["internal"]  # it is there, as it is too long to become a part of its caller
 
 
+INLINED = """
+from herringbone.kernels.compiling.jit import inlined, kernel
+
+
+@kernel
+def called(x: float) -> float:
+    return 2.0 * x
+
+
+@inlined
+def calling(x: float) -> float:
+    return called(x) + 1.0
+
+
+@kernel
+def whole(x: float) -> float:
+    return calling(x) + 1.0
+"""
+
+
+def test_what_an_inlined_kernel_calls_is_not_inlined_for_that(cache, tmp_path):
+    """numba lets it inherit that from whoever is compiled: code would go by who is first."""
+    module = load(tmp_path / "inlined.py", INLINED)
+    assert module.whole(1.0) == 4.0
+    forced = {}
+    for name in ("called", "calling"):
+        (piece,) = getattr(module, name).piece.overloads.values()
+        own = piece.library.code.get_function(piece.fndesc.mangled_name)
+        forced[name] = any(b"alwaysinline" in attribute for attribute in own.attributes)
+    assert forced == {"called": False, "calling": True}
+
+
 def test_a_piece_is_compiled_once_whatever_constants_it_is_called_with(cache, tmp_path):
     module = load(tmp_path / "constants.py", CONSTANTS)
     assert module.whole(np.array([1.0, 2.0, 3.0, 4.0])) == 1.0 + 20.0 + 300.0 + 4.0
