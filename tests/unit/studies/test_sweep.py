@@ -18,7 +18,7 @@ from herringbone.core import HerringboneError, ResourceError
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
 from herringbone.studies.working.chain import Done, Row
-from herringbone.studies.working.processes import WorkerProcesses
+from herringbone.studies.working.processes import WorkerProcesses, _places
 
 SPEEDS = [100.0 * k for k in range(1, 9)]
 TORQUES = [1.0, 2.0, 3.0]
@@ -118,7 +118,7 @@ hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0, 2.0, 3.
 
 
 def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_places())}
     process = subprocess.Popen(
         [sys.executable, "-c", SCRIPT, str(tmp_path)], env=environment, start_new_session=True
     )
@@ -139,6 +139,14 @@ class Twofold(Exception):
 
     def __init__(self, what, where):
         super().__init__(f"{what} {where}")
+
+
+def test_places_of_modules_that_are_gone_are_left_out(monkeypatch, tmp_path):
+    """A variable of the environment has at most 128 kB, and each Python FMU leaves a folder."""
+    gone = [str(tmp_path / f"gone_{number}") for number in range(2000)]
+    monkeypatch.setattr(sys, "path", [*sys.path, *gone])
+    with WorkerProcesses(1) as executor:
+        assert executor.submit(abs, -2).result(60.0) == 2
 
 
 def raising():
@@ -238,7 +246,7 @@ hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0], worker
 def test_a_chain_goes_on_where_it_was_killed(tmp_path, serial, half):
     """Half: its last row had no time to come to its end; the point before is not lost by that."""
     folder, log, mark = (str(tmp_path / name) for name in ("study", "log", "mark"))
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_places())}
     code = subprocess.run(
         [sys.executable, "-c", ONE_CHAIN, folder, log, mark], env=environment, check=False
     ).returncode

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
+from pathlib import Path
 from queue import SimpleQueue
 from threading import Lock, Thread
 from typing import Any
@@ -114,12 +115,11 @@ class WorkerProcesses(Executor):
         return process
 
     def _started(self) -> subprocess.Popen:
-        path = [str(PACKAGE.parent), *filter(None, sys.path)]
         process = subprocess.Popen(
             [sys.executable, "-m", _MODULE],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(path)},
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(_places())},
             start_new_session=True,  # an interrupt is of the parent, which ends them
         )
         with self._lock:
@@ -136,3 +136,9 @@ class WorkerProcesses(Executor):
                 stream.close()  # type: ignore[union-attr]
             except OSError:  # what it did not take
                 continue
+
+
+def _places() -> list[str]:
+    """Where modules are: Python FMUs leave theirs in `sys.path`, and a variable has an end."""
+    found = dict.fromkeys([str(PACKAGE.parent), *filter(None, sys.path)])
+    return [place for place in found if Path(place).exists()]
