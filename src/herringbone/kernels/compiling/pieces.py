@@ -73,6 +73,8 @@ class Piece(JITCodeLibrary):
 
     known_as: Known | None = None
     """None if it is not kept."""
+    _marks: tuple[str, ...] = ()
+    """Attributes of its functions for LLVM."""
     _linking_libraries: list[CodeLibrary]
 
     @classmethod
@@ -100,6 +102,10 @@ class Piece(JITCodeLibrary):
 
     def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
         ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                for mark in self._marks:
+                    function.add_function_attribute(mark)
 
     def finalize(self) -> None:
         """Nothing more is added; callers link it, for which numba would copy it once more."""
@@ -142,22 +148,13 @@ class Piece(JITCodeLibrary):
 class Rare(Piece):
     """As `Piece`, for what seldom happens in a kernel that often runs: it stays outside."""
 
-    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
-        super()._optimize_functions(ll_module)
-        for function in ll_module.functions:
-            if not function.is_declaration:
-                function.add_function_attribute("noinline")
-                function.add_function_attribute("cold")
+    _marks = "noinline", "cold"
 
 
 class Hot(Piece):
     """As `Piece`, for products of matrices: native FMUs have it for wide vectors, too."""
 
-    def _optimize_functions(self, ll_module: llvm.ModuleRef) -> None:
-        super()._optimize_functions(ll_module)
-        for function in ll_module.functions:
-            if not function.is_declaration:
-                function.add_function_attribute("hot")
+    _marks = ("hot",)
 
 
 def _copy_of(library: CodeLibrary, number: int) -> tuple[Copy, dict[str, str]]:
