@@ -15,10 +15,11 @@ from support.studies import Cheap
 
 import herringbone as hb
 from herringbone.core import HerringboneError, ResourceError
+from herringbone.core.places.paths import module_path
 from herringbone.studies.expected import longest_period
 from herringbone.studies.working import processes
 from herringbone.studies.working.chain import Done, Row
-from herringbone.studies.working.processes import WorkerProcesses, _places
+from herringbone.studies.working.processes import WorkerProcesses
 
 SPEEDS = [100.0 * k for k in range(1, 9)]
 TORQUES = [1.0, 2.0, 3.0]
@@ -118,7 +119,7 @@ hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0, 2.0, 3.
 
 
 def test_a_killed_parent_leaves_chains_that_are_right(tmp_path, serial):
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_places())}
+    environment = {**os.environ, "PYTHONPATH": module_path()}
     process = subprocess.Popen(
         [sys.executable, "-c", SCRIPT, str(tmp_path)], env=environment, start_new_session=True
     )
@@ -246,7 +247,7 @@ hb.sweep("gearbox", speed=[100.0 * k for k in range(1, 9)], torque=[1.0], worker
 def test_a_chain_goes_on_where_it_was_killed(tmp_path, serial, half):
     """Half: its last row had no time to come to its end; the point before is not lost by that."""
     folder, log, mark = (str(tmp_path / name) for name in ("study", "log", "mark"))
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(_places())}
+    environment = {**os.environ, "PYTHONPATH": module_path()}
     code = subprocess.run(
         [sys.executable, "-c", ONE_CHAIN, folder, log, mark], env=environment, check=False
     ).returncode

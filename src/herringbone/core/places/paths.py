@@ -2,6 +2,7 @@
 
 import os
 import stat
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -35,6 +36,15 @@ def component_folder(component: str) -> Path:
 def systems_folder() -> Path:
     """Folder of the system models that come with the package."""
     return _data("system_models")
+
+
+def module_path() -> str:
+    """PYTHONPATH with which another process finds the modules of this one.
+
+    Folders that are gone are left out: pythonfmu adds one an instance, and a variable has an end.
+    """
+    known = dict.fromkeys(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
+    return os.pathsep.join(filter(os.path.exists, known))
 
 
 def cache_root() -> Path:

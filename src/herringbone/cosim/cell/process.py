@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from herringbone.core import FmuError, HerringboneError, errors
+from herringbone.core.places.paths import module_path
 from herringbone.cosim.cell.block import (
     ALIVE,
     CONTROL,
@@ -229,8 +230,6 @@ def _signal(number: int) -> str:
 
 def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-P", "-m", "herringbone.cosim.cell.inside.child"]
-    known = dict.fromkeys(os.path.abspath(path) for path in sys.path)  # noqa: PTH100 (as given)
-    paths = os.pathsep.join(filter(os.path.exists, known))  # pythonfmu adds one an instance
     try:
         return subprocess.Popen(
             [*command, str(block), str(words), str(os.getpid()), str(code), str(folder)],
@@ -239,7 +238,7 @@ def _start(block: int, words: int, code: Path, folder: Path) -> "subprocess.Pope
             stderr=subprocess.STDOUT,
             pass_fds=(block,),
             process_group=0,  # Ctrl-C is for the master
-            env={**os.environ, "PYTHONPATH": paths},
+            env={**os.environ, "PYTHONPATH": module_path()},
         )
     except OSError as error:
         raise FmuError(f"no cell for a foreign FMU starts ({error}); use --in-process") from error

@@ -10,13 +10,12 @@ import subprocess
 import sys
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from pathlib import Path
 from queue import SimpleQueue
 from threading import Lock, Thread
 from typing import Any
 
 from herringbone.core import HerringboneError, reason
-from herringbone.core.places.paths import PACKAGE
+from herringbone.core.places.paths import PACKAGE, module_path
 from herringbone.studies.working.forked import ForkedProcess
 
 _MODULE = "herringbone.studies.working.process"
@@ -94,13 +93,14 @@ class WorkerProcesses(Executor):
                 process.stdin.flush()  # type: ignore[union-attr]
                 found, raised = pickle.load(process.stdout)  # type: ignore[arg-type]
             except (OSError, EOFError, pickle.UnpicklingError):
-                process.kill()
-                self._forget(process)
-                code, process = process.wait(), None
+                code, process = self._end(process), None
                 if self._ended:
                     future.set_exception(HerringboneError("the study was ended"))
                     return None
                 continue
+            except Exception:  # what came back cannot be made here, and more of it may follow
+                self._end(process)
+                raise
             if raised is None:
                 future.set_result(found)
             else:
@@ -115,11 +115,12 @@ class WorkerProcesses(Executor):
         return process
 
     def _started(self) -> subprocess.Popen:
+        path = os.pathsep.join([str(PACKAGE.parent), module_path()])
         process = subprocess.Popen(
             [sys.executable, "-m", _MODULE],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(_places())},
+            env={**os.environ, "PYTHONPATH": path},
             start_new_session=True,  # an interrupt is of the parent, which ends them
         )
         with self._lock:
@@ -127,6 +128,12 @@ class WorkerProcesses(Executor):
             if self._ended:
                 process.kill()
         return process
+
+    def _end(self, process: Process) -> int:
+        """End a process; returns its exit code."""
+        process.kill()
+        self._forget(process)
+        return process.wait()
 
     def _forget(self, process: Process) -> None:
         with self._lock:
@@ -136,9 +143,3 @@ class WorkerProcesses(Executor):
                 stream.close()  # type: ignore[union-attr]
             except OSError:  # what it did not take
                 continue
-
-
-def _places() -> list[str]:
-    """Where modules are: Python FMUs leave theirs in `sys.path`, and a variable has an end."""
-    found = dict.fromkeys([str(PACKAGE.parent), *filter(None, sys.path)])
-    return [place for place in found if Path(place).exists()]
