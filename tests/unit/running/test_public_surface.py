@@ -54,29 +54,12 @@ def test_names_are_listed_and_there():
     assert herringbone.__version__
 
 
-def test_static_names_are_those_at_run_time():
-    tree = ast.parse(Path(herringbone.__file__).read_text(encoding="utf-8"))
-    (static,) = [
-        node
-        for node in tree.body
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-    ]
-    names = {
-        (alias.name, node.module)
-        for node in ast.walk(static)
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
-    assert names == set(herringbone._WHERE.items())
-    assert {name for name, _ in names} == set(herringbone.__all__)
-
-
 def test_star_import():
     assert python("-c", "from herringbone import *; print(run.__name__, LI.__name__)") == "run LI\n"
 
 
 def test_unknown_name_is_refused():
-    with pytest.raises(AttributeError, match="no attribute 'rnu'"):
+    with pytest.raises(AttributeError, match="attribute rnu"):
         _ = herringbone.rnu
 
 

@@ -1,0 +1,33 @@
+from .analysis.accuracy.comparison import compare as compare
+from .analysis.figures.radiated_power import radiated_power as radiated_power
+from .analysis.figures.sensing.plateaus import plateau_statistics as plateau_statistics
+from .analysis.measured.of_run import compare_record as compare_record
+from .analysis.steady.set_points import Point as Point
+from .analysis.steady.solver import SteadySolver as SteadySolver
+from .analysis.steady.state import SteadyState as SteadyState
+from .core import HerringboneError as HerringboneError
+from .core import OutcomeKind as OutcomeKind
+from .core.declaring.roles import Role as Role
+from .cosim.algorithms import LI as LI
+from .cosim.algorithms import FixedPoint as FixedPoint
+from .cosim.algorithms import GaussSeidel as GaussSeidel
+from .cosim.algorithms import Jacobi as Jacobi
+from .cosim.algorithms import Predict as Predict
+from .cosim.structure.system import System as System
+from .result.folder.load import load as load
+from .result.result import Result as Result
+from .running.api import run as run
+from .running.exporting.export import build_fmus as build_fmus
+from .running.operating.modes import modes as modes
+from .running.operating.steady import steady as steady
+from .running.own_master import connections as connections
+from .running.own_master import start_values as start_values
+from .scenes import Ask as Ask
+from .scenes import Scene as Scene
+from .studies.api import sweep as sweep
+from .studies.planning.plan import Plan as Plan
+from .studies.planning.plan import plan as plan
+from .studies.sweep import Sweep as Sweep
+from .thesis.study import study as study
+
+__version__: str
