@@ -36,10 +36,11 @@ class Rig:
         folder: for the resource files.
         values: of the operating point.
         kernel: its step, of a rig that is compiled already.
+        scene: of the rig.
     """
 
-    def __init__(self, folder, values=None, kernel=None):
-        self.system = prepared("test_rig", "loaded", Wishes(values=values or {})).system
+    def __init__(self, folder, values=None, kernel=None, scene="loaded"):
+        self.system = prepared("test_rig", scene, Wishes(values=values or {})).system
         composite = make_composite(self.system)
         for name, file in composite.resources.items():
             (folder / name).parent.mkdir(exist_ok=True)
@@ -88,7 +89,7 @@ def rig(tmp_path_factory):
     """Makes rigs that share one kernel."""
     folder = tmp_path_factory.mktemp("rig")
     kernel = Rig(folder).kernel
-    return lambda values=None: Rig(folder, values, kernel)
+    return lambda values=None, scene="loaded": Rig(folder, values, kernel, scene)
 
 
 def odd_times(end):
@@ -106,6 +107,12 @@ def test_error_is_that_of_the_tolerance(values, tolerance, rig):
     case = rig(values)
     found = case.with_tolerance(tolerance).run(EVEN)
     assert case.error(found, case.exact(EVEN)) < 2.0 * tolerance
+
+
+def test_teeth_that_part_cost_no_tolerance(rig):
+    """Steps in which they do are shorter by its root, and err with the square of their length."""
+    case, times = rig(scene="separation"), EVEN[::10]
+    assert case.error(case.with_tolerance(1e-4).run(times), case.exact(times)) < 2e-5
 
 
 def test_steps_of_any_length(rig):

@@ -33,6 +33,9 @@ SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
 LONGEST_STEP = 10.0
 """Longest communication step [s] of one call: about a million inner steps."""
 _WEIGHT = 0.1
+_BENT = 6.0
+"""Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
+estimate; what a step errs there grows with the square of its length."""
 _SAFETY, _LESS, _MORE = 0.9, 0.2, 2.0
 _FLOOR = 1e-12
 """Usual size of vectors that are at rest, in their units."""
@@ -76,8 +79,9 @@ def stay(
 
 
 @kernel
-def idle(b: np.ndarray, w: np.ndarray, t: float) -> None:
-    """What such a component does to be ready."""
+def idle(b: np.ndarray, w: np.ndarray, t: float) -> bool:
+    """Whether such a component can leap, once it is ready."""
+    return False
 
 
 @kernel
@@ -180,9 +184,9 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     @inner(declaration.name)
     def explicit(
         b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
-        tolerance: float, degree: int,
+        tolerance: float, degree: int, most: float,
     ) -> int:  # fmt: skip
-        """Integrate from t + begin to t + end, inside the macro step."""
+        """Integrate from t + begin to t + end, inside the macro step, in steps up to `most` [s]."""
         done, hs = begin, 0.0
         if w[known] == 0.0:
             set_inputs(b, w, degree, begin / h)
@@ -192,7 +196,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
             w[known] = 1.0
         while done < end:
             left = end - done
-            count = max(1.0, math.ceil(left / b[following] - 1e-9))
+            count = max(1.0, math.ceil(left / min(b[following], most) - 1e-9))
             hs = left / count
             runge_kutta(b, w, t + done, hs, degree, done / h, hs / h)
             error = error_of(b, w, hs) / tolerance
@@ -222,7 +226,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     @inner(declaration.name)
     def interval(
         b: np.ndarray, w: np.ndarray, t: float, h: float, begin: float, end: float,
-        tolerance: float, degree: int,
+        tolerance: float, degree: int, leaps: bool,
     ) -> int:  # fmt: skip
         """As `explicit`, with leaps where they can be taken."""
         done = begin
@@ -233,7 +237,10 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
             done = min(end, reached + shortest)
             if reached < done:
                 forget(b, w)
-                status = explicit(b, w, t, h, reached, done, tolerance, degree)
+                most = LARGEST
+                if leaps and end - reached > shortest:  # not for want of room: a law bends
+                    most = _BENT * math.sqrt(tolerance) * longest_step(b, w)
+                status = explicit(b, w, t, h, reached, done, tolerance, degree, most)
                 if status != 0:
                     return status
         return 0
@@ -244,7 +251,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
     ) -> int:
         if not h <= LONGEST_STEP:
             return TOO_LONG
-        ready(b, w, t)
+        leaps = ready(b, w, t)
         expand_inputs(b, w, degree)
         intervals = max(degree, 1)
         status, begin = 0, 0.0
@@ -255,7 +262,7 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
         for node in range(1, intervals + 1):
             end = h if node == intervals else h * node / intervals
             if status == 0 and end > begin:
-                status = interval(b, w, t, h, begin, end, tolerance, degree)
+                status = interval(b, w, t, h, begin, end, tolerance, degree, leaps)
             begin = end
             set_inputs(b, w, degree, node / intervals)
             if show(b, w, t + end, how):

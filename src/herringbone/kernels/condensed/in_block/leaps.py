@@ -91,16 +91,17 @@ def step_beginner(
 
 
 def readier(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
-    """Compile ready(b, w, t): finds the condensed form, if that is not done."""
+    """Compile ready(b, w, t) -> bool: seeks the condensed form, once; True if there is one."""
     condense = condenser(form, at, equations)
     _, _, belongs, _, forget = coordinate_kernels(form, at, equations)
 
     @inner(equations.owner)
-    def ready(b: np.ndarray, w: np.ndarray, t: float) -> None:
+    def ready(b: np.ndarray, w: np.ndarray, t: float) -> bool:
         if w[at.status] == 0.0:
             condense(b, w, t)
             if w[at.status] != FOUND or not belongs(b, w):
                 forget(b, w)
+        return w[at.status] == FOUND
 
     return ready
 
@@ -115,7 +116,7 @@ def leaper(
         inside of a macro step of length h [s]; time since t that it has reached. It leaves what is
         shorter than the shortest step, and stops where in the shortest step a law bends or its
         values are rough, and where the iteration does not end.
-        ready(b, w, t): as given, see `readier`.
+        ready(b, w, t) -> bool: as given, see `readier`.
         forget(b, w): the states are to be others than it left.
         show(b, w, t, how) -> bool: see `shown.shower`.
     """
