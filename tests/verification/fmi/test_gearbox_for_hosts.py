@@ -239,6 +239,13 @@ def test_what_is_no_gearbox_is_refused(tmp_path):
         export_fmu("gearbox", tmp_path / "g.fmu", wanted=Wanted({"shaft": Given.SPEED}))
 
 
+def test_a_flange_that_takes_motion_has_no_core(tmp_path, caplog):
+    export_fmu("gearbox", tmp_path / "torques.ssv", wanted=Wanted())
+    assert not caplog.records
+    export_fmu("gearbox", tmp_path / "motion.ssv", wanted=MOTION)
+    assert "not the condensed core: the host gives motion at the pinion's flange" in caplog.text
+
+
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_what_lies_in_it(fmi, exported):
     """Terminals of variables that exist, an icon, a licence, units as people read them."""

@@ -26,7 +26,7 @@ from herringbone.analysis.hosted.source import own_lines
 from herringbone.analysis.hosted.step_limits import advice, models_of
 from herringbone.analysis.twin.block_core.form import core_form, equations_of, why_not
 from herringbone.analysis.twin.block_core.source import core_source
-from herringbone.analysis.twin.composite import Composite
+from herringbone.analysis.twin.composite import Composite, dear
 from herringbone.analysis.twin.composite_parts import (
     Parts,
     full_name,
@@ -97,7 +97,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     )
     first = adaptive_work(count, _inputs(boundary))
     inputs = _inputs(boundary)
-    form = core_form(parts, inputs, LENGTHS, _ROUGH) if _can_be_condensed(boundary, parts) else None
+    without_core = _without_core(boundary, parts)
+    form = None if without_core else core_form(parts, inputs, LENGTHS, _ROUGH)
     work = work_places(form, first).end if form else first
     declaration = host_declaration(boundary, parts, _TOLERANCE, scratch, guesses, work)
     places = Places(boundary, parts, declaration)
@@ -154,7 +155,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
         ),
     )
     models = cache(lambda: models_of(composite, boundary.flanges))
-    composite = Composite(component, resources_with_gear_data(parts.instances, boundary.pair))
+    resources = resources_with_gear_data(parts.instances, boundary.pair)
+    composite = Composite(component, resources, dear(without_core))
     return composite
 
 
@@ -176,10 +178,12 @@ def _inputs(boundary: Boundary) -> int:
     return sum(2 if f.given is Given.MOTION else 1 for f in boundary.flanges)
 
 
-def _can_be_condensed(boundary: Boundary, parts: Parts) -> bool:
-    """True if the host gives torques alone, and the parts are linear beside their laws."""
-    torques = all(f.given is Given.TORQUE for f in boundary.flanges)
-    return torques and not why_not(parts)
+def _without_core(boundary: Boundary, parts: Parts) -> str:
+    """Why it has no condensed form; empty if the host gives torques alone, and its parts have."""
+    for flange in boundary.flanges:
+        if flange.given is not Given.TORQUE:
+            return f"the host gives {flange.given.value} at the {flange.name}'s flange"
+    return why_not(parts)
 
 
 def _step_kernel(

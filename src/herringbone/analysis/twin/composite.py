@@ -111,7 +111,7 @@ def make_composite(
         declaration,
         Kernels(step, module.system_rhs, module.system_out),
         f"{inside.description}: {', '.join(i.name for i in instances)} as one set of equations."
-        + (f"\n\n{_DEAR}: {without_core}." if without_core else ""),
+        + (f"\n\n{dear(without_core)}." if without_core else ""),
         load=loader,
         verify=loader.verify,
         start=module.system_start,
@@ -122,8 +122,12 @@ def make_composite(
         by_tolerance=by_tolerance(module) if steps else None,
         asked=asked,
     )
-    note = f"{_DEAR}: {without_core}" if without_core else ""
-    return Composite(component, dict(resources_of(instances)), note)
+    return Composite(component, dict(resources_of(instances)), dear(without_core))
+
+
+def dear(without_core: str) -> str:
+    """The note of a component, by why it has no condensed core."""
+    return f"{_DEAR}: {without_core}" if without_core else ""
 
 
 def _stepping(parts: Parts) -> Stepping:

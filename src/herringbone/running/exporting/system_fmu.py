@@ -113,8 +113,8 @@ def _exported(
             _log.warning(note)
     else:
         composite = make_composite(structure, tuple(outside), held)
-        if composite.note:
-            _log.warning(composite.note)
+    if composite.note:
+        _log.warning(composite.note)
     if file.suffix == ".ssv":
         with written(file):
             write_whole(file, parameter_set(_started(composite.component)))
