@@ -12,7 +12,7 @@ import numpy as np
 
 from herringbone.kernels.compiling.jit import inner
 from herringbone.kernels.steppers import Rhs
-from herringbone.kernels.stepping.adaptive import worse
+from herringbone.kernels.stepping.local_error import worse
 
 _PART = 1e-3
 """Displacement of a state over its usual size."""

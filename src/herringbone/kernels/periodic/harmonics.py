@@ -3,7 +3,7 @@
 import numpy as np
 
 from herringbone.kernels.compiling.jit import kernel
-from herringbone.kernels.stepping.adaptive import worse
+from herringbone.kernels.stepping.local_error import worse
 
 SAMPLES = 128
 """In a period, even; half as many harmonics."""

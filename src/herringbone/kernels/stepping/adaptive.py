@@ -20,11 +20,11 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.core.declaring.declaration import Declaration
-from herringbone.core.declaring.variable import Variable
 from herringbone.kernels.compiling.jit import inner, kernel
 from herringbone.kernels.condensed.in_block.shown import ANEW, AT_ONCE, HOLDS, LATER
 from herringbone.kernels.signals import STRIDE, all_finite, store_node
 from herringbone.kernels.steppers import NOT_FINITE, TOO_LONG, Out, Rhs, input_kernels
+from herringbone.kernels.stepping.local_error import Slots, error_measure, factor
 
 TOO_SMALL = 3
 """Status of a step in which the tolerance asked for inner steps below SMALLEST."""
@@ -32,41 +32,14 @@ SMALLEST, FIRST, LARGEST = 1e-10, 2.5e-6, 1e-4
 """Inner steps [s]: the smallest, the first, the largest."""
 LONGEST_STEP = 10.0
 """Longest communication step [s] of one call: about a million inner steps."""
-_WEIGHT = 0.1
 _BENT = 6.0
 """Of the longest step, and the root of the tolerance: steps in which a law bends, unseen by the
 estimate; what a step errs there grows with the square of its length."""
-_SAFETY, _LESS, _MORE = 0.9, 0.2, 2.0
-_FLOOR = 1e-12
-"""Usual size of vectors that are at rest, in their units."""
 
 
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
     return 7 * state_count + 1 + (STRIDE + 1) * input_count
-
-
-@kernel
-def worse(a: float, b: float) -> float:
-    """The larger one; NaN if one of them is."""
-    if a >= b:
-        return a
-    return b if b > a else a + b
-
-
-@kernel
-def factor(error: float) -> float:
-    """By what a step is to be multiplied whose error is so many times the tolerance."""
-    if not error < np.inf:
-        return _LESS
-    if error < 1e-6:
-        return _MORE
-    return max(_LESS, min(_MORE, _SAFETY / math.sqrt(math.sqrt(error))))
-
-
-def _kind(v: Variable) -> tuple[str, float, bool]:
-    """What the error of a state is measured by; the last one: by its usual size alone."""
-    return v.unit, v.nominal, v.steady == "rotating"
 
 
 @kernel
@@ -89,71 +62,11 @@ def nothing(b: np.ndarray, w: np.ndarray) -> None:
     """What it does when its states are to be changed."""
 
 
-def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
-    rhs: Rhs,
-    out: Out,
-    declaration: Declaration,
-    next_step: str,
-    longest_step: Callable[[np.ndarray, np.ndarray], float],
-    core: Callable[[Callable], tuple[Callable, Callable, Callable, Callable]] | None = None,
-    shortest: float = np.inf,
-    *,
-    later: bool = False,
-) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
-    """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
-
-    Args:
-        rhs, out: kernels.
-        declaration: of the component.
-        next_step: name of the local that keeps the length of the next inner step [s].
-        longest_step: kernel (b, w): no inner step is longer [s].
-        core: makes, of the kernel that sets inputs, those that leap ahead: `in_block.leaps`.
-        shortest: length of its steps that ends where it stops [s].
-        later: outputs of a leap are made when they are asked for, where inputs have no nodes.
-
-    Returns:
-        step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
-        and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
-        TOO_LONG or TOO_SMALL.
-    """
-    n, visible = declaration.state_count, len(declaration.states)
-    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
-    following = declaration.index[next_step]
-    kinds = list(dict.fromkeys(_kind(v) for v in declaration.states))
-    kind_of = tuple(kinds.index(_kind(v)) for v in declaration.states)
-    sizes, kind_count = tuple(size for _, size, _ in kinds), len(kinds)
-    grows = tuple(float(v.steady != "rotating") for v in declaration.states)
-    ends, at_vector = [], visible
-    for vector in declaration.vectors:
-        at_vector += vector.capacity
-        ends.append(at_vector)
-    vector_count, vectors = len(ends), np.array(ends, dtype=np.int64)
-    x0, slope, first, last, size_of, error_of_kind, known = (k * n for k in range(1, 8))
-    at = known + 1
-
-    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, at)
-
-    @inner(declaration.name)
-    def error_of(b: np.ndarray, w: np.ndarray, hs: float) -> float:
-        """Error of the step, by the sizes of the states."""
-        worst = 0.0
-        for kind in range(kind_count):
-            w[size_of + kind], w[error_of_kind + kind] = sizes[kind], 0.0
-        for i in range(visible):
-            of = kind_of[i]
-            w[size_of + of] = max(w[size_of + of], grows[i] * abs(b[i]))
-            w[error_of_kind + of] = worse(w[error_of_kind + of], abs(w[last + i] - w[i]))
-        for kind in range(kind_count):
-            worst = worse(worst, w[error_of_kind + kind] / w[size_of + kind])
-        begin = visible
-        for v in range(vector_count):
-            size, error = _FLOOR, 0.0
-            for i in range(begin, vectors[v]):
-                size = max(size, abs(b[i]))
-                error = worse(error, abs(w[last + i] - w[i]))
-            begin = vectors[v]
-            worst = worse(worst, error / size)
-        return _WEIGHT * hs * worst
+def _runge_kutta(
+    rhs: Rhs, declaration: Declaration, slots: Slots, set_inputs: Callable
+) -> Callable:
+    """Compile runge_kutta(b, w, ts, hs, degree, c, dc), between c and c + dc of the macro step."""
+    n, x0, slope, first, last = declaration.state_count, *slots[:4]
 
     @inner(declaration.name)
     def runge_kutta(
@@ -180,6 +93,21 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
             w[last + i] = dx[i]
             b[i] = w[x0 + i] + hs / 6.0 * (w[slope + i] + dx[i])
         rhs(b, ts + hs, dx)
+
+    return runge_kutta
+
+
+def _explicit_stepper(
+    rhs: Rhs, declaration: Declaration, following: int, longest_step: Callable, set_inputs: Callable
+) -> Callable:
+    """Compile explicit(b, w, t, h, begin, end, tolerance, degree, most) -> int.
+
+    `following` is the place of the length of the next inner step [s].
+    """
+    n, slots = declaration.state_count, Slots.of(declaration.state_count)
+    x0, first, known = slots.x0, slots.first, slots.known
+    error_of = error_measure(declaration, slots)
+    runge_kutta = _runge_kutta(rhs, declaration, slots, set_inputs)
 
     @inner(declaration.name)
     def explicit(
@@ -214,6 +142,42 @@ def adaptive_stepper(  # noqa: PLR0915 (kernels that share their layout)
                 if ahead < SMALLEST:
                     return TOO_SMALL
         return 0
+
+    return explicit
+
+
+def adaptive_stepper(
+    rhs: Rhs,
+    out: Out,
+    declaration: Declaration,
+    next_step: str,
+    longest_step: Callable[[np.ndarray, np.ndarray], float],
+    core: Callable[[Callable], tuple[Callable, Callable, Callable, Callable]] | None = None,
+    shortest: float = np.inf,
+    *,
+    later: bool = False,
+) -> Callable[[np.ndarray, np.ndarray, float, float, float, int], int]:
+    """Compile the step of a body; inputs and outputs as in `steppers.body_stepper`.
+
+    Args:
+        rhs, out: kernels.
+        declaration: of the component.
+        next_step: name of the local that keeps the length of the next inner step [s].
+        longest_step: kernel (b, w): no inner step is longer [s].
+        core: makes, of the kernel that sets inputs, those that leap ahead: `in_block.leaps`.
+        shortest: length of its steps that ends where it stops [s].
+        later: outputs of a leap are made when they are asked for, where inputs have no nodes.
+
+    Returns:
+        step(b, w, t, h, tolerance, degree) -> int: block, work space (`adaptive_work` long), start
+        and length of the macro step [s] (h >= 0), tolerance, interface degree; 0, NOT_FINITE,
+        TOO_LONG or TOO_SMALL.
+    """
+    n, known = declaration.state_count, Slots.of(declaration.state_count).known
+    first_output, outputs = declaration.first_output, len(declaration.node_outputs)
+    expand_inputs, set_inputs, restore_inputs = input_kernels(declaration, known + 1)
+    following = declaration.index[next_step]
+    explicit = _explicit_stepper(rhs, declaration, following, longest_step, set_inputs)
 
     @inner(declaration.name)
     def show(b: np.ndarray, w: np.ndarray, t: float, how: int) -> bool:

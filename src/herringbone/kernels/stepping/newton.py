@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from herringbone.kernels.compiling.jit import inner, kernel
-from herringbone.kernels.stepping.adaptive import worse
+from herringbone.kernels.stepping.local_error import worse
 
 SETTLED = 0
 NOT_FOUND = 1

@@ -13,7 +13,7 @@ from herringbone.kernels.condensed.in_block.places import WorkPlaces, taken_plac
 from herringbone.kernels.condensed.in_block.rotations import rotation_finder
 
 
-def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
+def apart_taker(
     form: Form, at: WorkPlaces, equations: Equations
 ) -> Callable[[np.ndarray, np.ndarray], bool]:
     """Compile apart(b, w) -> bool: writes the matrices, and which states move; False if it is none.
@@ -23,12 +23,32 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
         at: places in the work space.
         equations: of the component.
     """
+    take_apart = _matrix_taker(form, at, equations)
+    add_tangents = _tangent_adder(form, at, equations.owner)
+    find_rotations = rotation_finder(form, at, equations.owner)
+    list_moving = _moving_lister(form, at, equations.owner)
+
+    @outside(equations.owner)
+    def apart(b: np.ndarray, w: np.ndarray) -> bool:
+        if not take_apart(b, w):
+            return False
+        add_tangents(w)
+        if not find_rotations(w):
+            return False
+        list_moving(w)
+        return True
+
+    return apart
+
+
+def _matrix_taker(form: Form, at: WorkPlaces, equations: Equations) -> Callable:
+    """Compile take_apart(b, w) -> bool: matrices of the rest.
+
+    It is False if laws depend on each other without delay.
+    """
     owner, given, values = equations.owner, equations.given, form.values
     n, channels, arguments = form.states, form.channels, form.arguments
-    rows = n + form.outputs
-    stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
-    of = taken_places(form, at.rungs)
-    find_rotations = rotation_finder(form, at, owner)
+    rows, of = n + form.outputs, taken_places(form, at.rungs)
 
     @outside(owner)
     def answer(b: np.ndarray, w: np.ndarray) -> None:
@@ -38,7 +58,6 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
 
     @outside(owner)
     def take_apart(b: np.ndarray, w: np.ndarray) -> bool:
-        """Write matrices of the rest; False if laws depend on each other without delay."""
         dx, still = w[of.rates : of.rates + rows], w[of.rates + rows : of.rates + 2 * rows]
         z, direct = w[at.start : at.start + arguments], 0.0
         for i in range(n):
@@ -73,9 +92,17 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                 w[of.of_states + k * n + j] = own
         return direct == 0.0
 
+    return take_apart
+
+
+def _tangent_adder(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile add_tangents(w): adds to the matrices what the laws do by their mean tangents."""
+    n, channels, arguments, values = form.states, form.channels, form.arguments, form.values
+    rows, of = n + form.outputs, taken_places(form, at.rungs)
+    stiff, unknowns, tangent = np.array(form.stiff), len(form.stiff), form.tangent.ravel()
+
     @outside(owner)
     def add_tangents(w: np.ndarray) -> None:
-        """Add what the laws do by their mean tangents."""
         for s in range(unknowns):
             for k in range(arguments):
                 mean = tangent[s * arguments + k]
@@ -87,6 +114,17 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                             w[of.whole + i * n + j] += by * w[of.of_states + k * n + j]
                         for c in range(values, channels):
                             w[first + c] += by * w[at.of_channels + k * channels + c]
+
+    return add_tangents
+
+
+def _moving_lister(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile list_moving(w): lists the states that move, or stay and are felt.
+
+    Those of the rotations are not among them.
+    """
+    n, channels, arguments = form.states, form.channels, form.arguments
+    rows, of = n + form.outputs, taken_places(form, at.rungs)
 
     @outside(owner)
     def find_moving(w: np.ndarray) -> None:
@@ -119,7 +157,6 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
 
     @outside(owner)
     def list_moving(w: np.ndarray) -> None:
-        """List the states that move, or stay and are felt, but for those of the rotations."""
         can, count = w[of.rates : of.rates + n], 0
         find_moving(w)
         for r in range(int(w[at.rotations])):
@@ -130,14 +167,4 @@ def apart_taker(  # noqa: PLR0915 (kernels that share their layout)
                 count += 1
         w[at.inside] = count
 
-    @outside(owner)
-    def apart(b: np.ndarray, w: np.ndarray) -> bool:
-        if not take_apart(b, w):
-            return False
-        add_tangents(w)
-        if not find_rotations(w):
-            return False
-        list_moving(w)
-        return True
-
-    return apart
+    return list_moving

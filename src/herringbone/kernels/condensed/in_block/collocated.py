@@ -12,7 +12,7 @@ from herringbone.kernels.condensed.correction import correct
 from herringbone.kernels.condensed.in_block.arrays import array_kernels, fixed_arrays
 from herringbone.kernels.condensed.in_block.form import Equations, Form
 from herringbone.kernels.condensed.in_block.places import WorkPlaces
-from herringbone.kernels.condensed.modal import add_chosen, copy
+from herringbone.kernels.condensed.modal import add_chosen, copy, turn
 
 _ITERATIONS = 5
 _TINY = 1e-300
@@ -104,3 +104,31 @@ def doubts(form: Form, at: WorkPlaces, owner: str) -> tuple[Callable, Callable]:
         return worst
 
     return bends, rough
+
+
+def advancing(form: Form, at: WorkPlaces, owner: str) -> Callable:
+    """Compile advance(w, begin, rung): the coordinates at the end of a step that is solved."""
+    degree, count, channels, kinks = form.degree, form.degree + 1, form.channels, form.kinks
+    arguments, rows, places = form.arguments, form.rows, form.nodes
+
+    @inner(owner)
+    def advance(w: np.ndarray, begin: int, rung: int) -> None:
+        modes, rotations = int(w[at.modes]), int(w[at.rotations])
+        q = w[at.q : at.q + 2 * modes + rotations]
+        for r in range(rotations):
+            q[2 * modes + r] += w[at.free + rows + r]
+        real = w[begin + at.turn : begin + at.turn + modes]
+        turn(real, w[begin + at.turn + modes : begin + at.turn + 2 * modes], q)
+        size, chosen = channels * count, integers(w, at.chosen, channels * count)
+        u, v = matrix(w, at.u, channels, count), matrix(w, at.v, channels, count)
+        least = w[at.least : at.least + channels]
+        found = inputs(places, least, u, 0, channels, v, chosen)
+        push = matrix(w, begin + at.push, size, at.q_size)
+        add_chosen(push, w[at.v :], chosen, found, q)
+        copy(w[at.e + degree * kinks : at.e + count * kinks], w[at.e : at.e + kinks])
+        end = at.z + degree * arguments
+        copy(w[end - arguments : end], w[at.start : at.start + arguments])
+        copy(w[at.u : at.u + size], w[at.last : at.last + size])
+        w[at.before] = rung
+
+    return advance
