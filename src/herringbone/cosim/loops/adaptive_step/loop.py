@@ -34,10 +34,11 @@ from herringbone.cosim.loops.adaptive_step.step_choice import (
     too_much,
 )
 from herringbone.cosim.loops.adaptive_step.step_error import (
+    KNOWN,
     ORDER,
     error_so_far,
     step_error,
-    update_scale,
+    update_sizes,
 )
 from herringbone.cosim.loops.common import (
     DONE,
@@ -91,12 +92,12 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    room, covered = adaptive.room, adaptive.covered
-    update_scale(nodes, buffers, adaptive.moments, room, covered, adaptive.memory, h)
+    measured, moments, covered = adaptive.measured, adaptive.moments, adaptive.covered
+    update_sizes(nodes, buffers, measured, moments, covered, adaptive.memory, h)
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, room, covered[0])
+    adaptive.far[0] = error_so_far(measured, moments, adaptive.errors, covered[0])
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
@@ -134,9 +135,12 @@ def _try(
     inner_steps = np.inf
     if adaptive.inner_step > 0.0:
         inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
+    sized = adaptive.covered[0] >= KNOWN * adaptive.memory
+    groups = adaptive.measured.members.size if sized else adaptive.measured.units
     error, culprit = step_error(
-        nodes, buffers, adaptive.held, adaptive.squares, adaptive.room, known, inner_steps
-    )
+        nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
+        groups, known, inner_steps,
+    )  # fmt: skip
     state[CULPRIT] = culprit
     return -1, error
 
