@@ -54,6 +54,8 @@ RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
 MEMORY = 100.0
 """Time over which forces are taken about a straight line, in largest steps."""
+LARGEST_STEP = 2e-4
+"""The largest step [s] where nothing is told; shorter ones, for rows between, leave the memory."""
 
 
 def fitted(known: Mapping[int, np.ndarray], rung: int) -> np.ndarray:
@@ -117,12 +119,11 @@ class PreparedAdaptive(PreparedNodes):
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
-        every = grid.every * TICKS if grid.every > 1 else 0
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
-        return Grid(self._tick, self._last, every)
+        return Grid(self._tick, self._last, grid.every * TICKS)
 
     def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
-        """Rows as the steps come."""
+        """Rows as the steps come, or at equal distances."""
         del grid
         self._record = GrowingRecord(columns, window)
         return self._record
@@ -208,7 +209,7 @@ class PreparedAdaptive(PreparedNodes):
             measured=measured,
             tolerance=self.tolerance,
             last=self._last,
-            memory=MEMORY * TICKS * self._tick,
+            memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
             inner_step=self.inner_step,
             times=self._record.row_times,
             room=room_for(measured.output.size),

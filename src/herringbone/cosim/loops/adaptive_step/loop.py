@@ -26,7 +26,7 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
-from herringbone.cosim.loops.adaptive_step.ladder import fitting_rung
+from herringbone.cosim.loops.adaptive_step.ladder import dividing_rung, fitting_rung
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     TOO_MUCH,
     continued,
@@ -76,7 +76,7 @@ def _record(
 ) -> int:
     """A row, if it is time for one; -1, or the part whose outputs cannot be read."""
     row, t = adaptive.state[ROWS], chunk.t0 + done * chunk.h
-    if done < adaptive.last and t < adaptive.times[row - 1] + (chunk.every - 0.5) * chunk.h:
+    if chunk.every > 0 and done % chunk.every != 0:
         return -1
     for p in range(layout.component.size):
         if get_outputs(layout, history, p, chunk.records, row) > LAST_GOOD:
@@ -179,14 +179,18 @@ def _macro_step(
 ) -> tuple[int, int, int]:  # fmt: skip
     """Try a macro step after `done` ticks: status, ticks made (0 if taken back), and who failed."""
     state = adaptive.state
-    rung = fitting_rung(adaptive.rungs, state[WANTED], adaptive.last - done)
+    left, wanted = adaptive.last - done, state[WANTED]
+    if chunk.every > 0:
+        left = min(left, chunk.every - done % chunk.every)
+        wanted = dividing_rung(adaptive.rungs, wanted, left)
+    rung = fitting_rung(adaptive.rungs, wanted, left)
     state[USED] = rung
     if adaptive.ready[rung] <= NEEDED:
         return REFRESH, 0, -1
     before = buffers.counts[1]
     t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
     failed, error = _try(layout, nodes, buffers, control, adaptive, t, h)
-    smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
+    smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), left) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
     if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
@@ -211,8 +215,8 @@ def run_adaptive(
     """Run macro steps up to a time; the result is that of `loops.stages.run_stages`, in ticks.
 
     Args:
-        chunk: in ticks; ends early when the rows are full. `every` is the least number of ticks
-            between rows.
+        chunk: in ticks; ends early when the rows are full. `every` is the number of ticks between
+            rows, at which steps end; 0: each step ends in a row.
 
     Status REFRESH asks for the correction of the rung `state[USED]`.
     """
