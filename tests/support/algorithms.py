@@ -28,7 +28,7 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
 from support.parts.running import columns, open_in_process, slope
-from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, Ramp, TwoMass
+from support.parts.two_masses import MOTION, TWO_MASS_SYSTEM, Ramp, TwoMass, every_step
 
 
 def variants() -> tuple[Algorithm, ...]:
@@ -68,7 +68,7 @@ DEVIATION = 0.2
 def run(algorithm: Algorithm, h: float, t_end: float = T_END, slow=None, **more) -> Recording:
     """Run the driven masses with new participants, recording every step."""
     parts = [*PROBLEM.parts(**({"acceleration": True} | more)), Ramp("ramp", 1.0)]
-    return simulate(DRIVEN, parts, algorithm, make_grid(t_end, h, h), slow=slow)
+    return simulate(DRIVEN, parts, algorithm, every_step(algorithm, h, t_end), slow=slow)
 
 
 def exact(h: float, count: int) -> np.ndarray:

@@ -28,6 +28,7 @@ from herringbone.running.coupled import Asked
 from herringbone.running.loading import open_parts
 from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.steps.for_tolerance import for_tolerance
+from herringbone.running.steps.suited_step import suited_step
 
 TOLERANCE, PARTING = 1e-3, "separation"
 """Relative error of the runs whose steps follow it, and the scene in which teeth part."""
@@ -97,6 +98,7 @@ class _Case(NamedTuple):
     algorithm: LI
     inner_step: float
     tolerance: float | None
+    step: float
     every: float
 
 
@@ -117,21 +119,22 @@ def _cases() -> Iterator[_Case]:
     system, scene, _ = prepared(SYSTEM, SCENE, Wishes())
     fixed = LI()
     own = f"scene '{SCENE}', {fixed} at {1e6 * fixed.start_step:g} us"
-    yield _Case(own, system, fixed, 0.0, None, scene.record_step)
+    yield _Case(own, system, fixed, 0.0, None, fixed.start_step, scene.record_step)
     for name in (SCENE, PARTING):
         system, scene, _ = prepared(SYSTEM, name, Wishes())
         asked = Asked("native", tolerance=TOLERANCE)
         suited, asked = for_tolerance(system, scene, asked, searched=False)
         if not isinstance(asked.algorithm, LI):
             raise HerringboneError(f"{asked.algorithm}: there is no profile of its steps")
+        step = suited_step(suited, scene, asked.algorithm, asked.algorithm.start_step, None, None)
         yield _Case(
             f"scene '{name}', {asked.algorithm}", suited, asked.algorithm, asked.inner_step,
-            asked.part_tolerance, scene.record_step,
+            asked.part_tolerance, step, scene.record_step,
         )  # fmt: skip
 
 
 def _begun(case: _Case, parts: Sequence[Part], t_end: float) -> Run:
-    grid: Grid = make_grid(t_end, case.algorithm.start_step, case.every)
+    grid: Grid = make_grid(t_end, case.step, case.every)
     run, _ = ready(
         case.system, parts, case.algorithm, grid,
         inner_step=case.inner_step, tolerance=case.tolerance,

@@ -127,7 +127,7 @@ def ready(
         grid = _common(grid, math.lcm(*network.slow.values()))
     prepared = algorithm.prepare(network)
     if isinstance(prepared, PreparedAdaptive):
-        prepared.inner_step = inner_step
+        prepared.inner_step, prepared.channels = inner_step, system.channels
     elif isinstance(prepared, PreparedNodes) and tolerance:
         prepared.suit(tolerance)
     for part, degree in zip(parts, prepared.degree, strict=True):

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 TIME = "time"
 _SPLINE_ROWS = 4
+_SAME = 1e-6
+"""Of the mean distance of records, by which equal ones may differ."""
 _SHOWN = 4
 """Columns that a name may mean, in a message."""
 
@@ -150,10 +152,13 @@ class Result(Facts):
     def uniform(self) -> "Result":
         """The result with equidistant records, as means and spectra take them.
 
-        Those of an adaptive run, which lie where its steps ended, are interpolated by cubic
+        Those of an adaptive run that lie where its steps ended are interpolated by cubic
         splines, as many as there are; others are returned as they are.
         """
         if self.info.steps is None or len(self.data) < _SPLINE_ROWS:
+            return self
+        distances = np.diff(self.data[TIME])
+        if np.ptp(distances) < _SAME * distances.mean():
             return self
         from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
 

@@ -184,14 +184,14 @@ def _coupled(
         if asked.warn:
             lines += _stability_notes(system, parts, algorithm, step, scene.t_end, asked)
         suit(opened, step)
-        grid = make_grid(scene.t_end, step, step if asked.all_points else scene.record_step)
+        points = asked.all_points and not algorithm.adaptive
+        grid = make_grid(scene.t_end, step, step if points else scene.record_step)
         _log.info("%s, scene %s: %s, %s FMUs", system.name, scene.name, algorithm, asked.fmu)
         lines += _record_notes(asked.record_step, algorithm, grid)
-        kind = KIND if asked.fuse else asked.fmu
-        streaming = None
+        kind, streaming = KIND if asked.fuse else asked.fmu, None
         if output is not None:
             start = start_of(system, scene, algorithm, kind, grid, lines)
-            streaming = _streaming(output, start, scene, step, asked)
+            streaming = _streaming(output, start, scene, grid, asked)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
                 exchanging, parts, algorithm, grid, tell, bond_frequency=bond, slow=asked.slow,
@@ -226,10 +226,10 @@ def _opened(system: System, asked: Asked) -> Iterator[tuple[System, list[Part], 
 
 
 def _streaming(
-    output: RunOutput, start: Result, scene: Scene, step: float, asked: Asked
+    output: RunOutput, start: Result, scene: Scene, grid: Grid, asked: Asked
 ) -> Streaming:
     """Where rows go: those that the scene asks for."""
-    every = make_grid(scene.t_end, step, scene.record_step).every if asked.all_points else 1
+    every = make_grid(scene.t_end, grid.step, scene.record_step).every // grid.every
     return output.stream(start, every, keeps_all=asked.all_points)
 
 

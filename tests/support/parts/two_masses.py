@@ -11,6 +11,7 @@ from scipy.linalg import expm
 from support.parts.fakes import OK, CallbackPart
 
 from herringbone.cosim.algorithms import Algorithm
+from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.simulation import make_grid, simulate
 from herringbone.cosim.structure.system import PartSpec, System
@@ -226,7 +227,14 @@ class TwoMass:
 
     def run(self, algorithm: Algorithm, h: float, t_end: float, **more) -> Recording:
         """Run with new participants, recording every step."""
-        return simulate(TWO_MASS_SYSTEM, self.parts(**more), algorithm, make_grid(t_end, h, h))
+        grid = every_step(algorithm, h, t_end)
+        return simulate(TWO_MASS_SYSTEM, self.parts(**more), algorithm, grid)
+
+
+def every_step(algorithm: Algorithm, h: float, t_end: float) -> Grid:
+    """Records where steps end, if these follow a tolerance too."""
+    grid = make_grid(t_end, h, h)
+    return grid._replace(every=0) if algorithm.adaptive else grid
 
 
 TWO_MASS_SYSTEM = System(

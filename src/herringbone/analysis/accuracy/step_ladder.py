@@ -153,10 +153,10 @@ def run_points(
 
 
 def _largest(algorithm: Algorithm, grid: Grid) -> Grid:
-    """As long as a grid, with the largest step of an adaptive algorithm."""
+    """As long as a grid, with an adaptive algorithm's largest step, and records where steps end."""
     t_end = grid.step * grid.count
     step = min(algorithm.start_step, t_end)
-    return make_grid(t_end, step, step)
+    return make_grid(t_end, step, step)._replace(every=0)
 
 
 def _simulated(

@@ -1,6 +1,6 @@
 """A network laid out for `li` with an adaptive macro step."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from herringbone.cosim.layouts.adaptive import (
     new_adaptive,
 )
 from herringbone.cosim.layouts.layout import Chunk
+from herringbone.cosim.layouts.measured import channel_outputs, measured_signals
 from herringbone.cosim.layouts.nodes import Buffers, Control, new_buffers
 from herringbone.cosim.layouts.starts import Starts
 from herringbone.cosim.loops.adaptive_step.ladder import FIRST, FIRST_TOLERANCE, RUNGS, TICKS
@@ -39,8 +40,9 @@ from herringbone.cosim.loops.adaptive_step.step_error import (
     INNER_STEPS,
     LARGEST,
     ORDER,
+    SIZE,
     room_for,
-    update_scale,
+    update_sizes,
 )
 from herringbone.cosim.loops.common import COUPLING_FAILED, DONE
 from herringbone.cosim.loops.nodes import REFRESH
@@ -52,6 +54,8 @@ RESIDUAL_SHARE = 1.0
 """Share of the tolerance that the corrections may leave."""
 MEMORY = 100.0
 """Time over which forces are taken about a straight line, in largest steps."""
+LARGEST_STEP = 2e-4
+"""The largest step [s] where nothing is told; shorter ones, for rows between, leave the memory."""
 
 
 def fitted(known: Mapping[int, np.ndarray], rung: int) -> np.ndarray:
@@ -88,6 +92,7 @@ class PreparedAdaptive(PreparedNodes):
     Attributes:
         inner_step: longest of the bodies' own integration [s], of which the error takes account; 0
             if there is none, or unknown.
+        channels: patterns of the recorded outputs whose errors count, by group.
     """
 
     def __init__(
@@ -110,15 +115,15 @@ class PreparedAdaptive(PreparedNodes):
         self._tick = 0.0
         self._kept, self._missing = tolerance, ""
         self.inner_step = 0.0
+        self.channels: Mapping[str, Sequence[str]] = {}
 
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
-        every = grid.every * TICKS if grid.every > 1 else 0
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS
-        return Grid(self._tick, self._last, every)
+        return Grid(self._tick, self._last, grid.every * TICKS)
 
     def record(self, grid: Grid, columns: int, window: int | None = None) -> GrowingRecord:
-        """Rows as the steps come."""
+        """Rows as the steps come, or at equal distances."""
         del grid
         self._record = GrowingRecord(columns, window)
         return self._record
@@ -157,12 +162,11 @@ class PreparedAdaptive(PreparedNodes):
         if self._adaptive is None or self._buffers is None:
             return None
         covered, errors = self._adaptive.covered[0], self._adaptive.errors
-        group, scale = self.nodes.group, self._buffers.scale
-        if not covered > 0.0 or not group.size:
+        count = self._adaptive.measured.members
+        if not covered > 0.0 or not count.size:
             return None
-        sizes = np.zeros(errors.shape[1])
-        np.add.at(sizes, group, covered * scale**2)
-        parts = np.sqrt(errors / sizes)
+        sizes = self._adaptive.moments[SIZE, : count.size]
+        parts = np.sqrt(errors / (covered * count)) / sizes
         worst = parts[:, np.hypot(*parts).argmax()]
         return ErrorEstimate(self.tolerance, float(worst[COUPLING]), float(worst[INNER_STEPS]))
 
@@ -191,23 +195,31 @@ class PreparedAdaptive(PreparedNodes):
             and self.input_degree(c.target) < nodes.degree
             and not self.layout.at_end[c.target]
         }
+        held = np.array([source in held_by for source in sources], dtype=np.int64)
+        found = channel_outputs(self.network, self.channels)
+        self._downgrades += tuple(
+            f"no part takes anything of '{group}': the step is not measured by these channels"
+            for group, outputs in found.items()
+            if not outputs.size
+        )
+        measured = measured_signals(nodes, held, list(found.values()))
         adaptive = new_adaptive(
             nodes,
             np.array(RUNGS, dtype=np.int64),
-            held=np.array([source in held_by for source in sources], dtype=np.int64),
+            measured=measured,
             tolerance=self.tolerance,
             last=self._last,
-            memory=MEMORY * TICKS * self._tick,
+            memory=MEMORY * max(TICKS * self._tick, LARGEST_STEP),
             inner_step=self.inner_step,
             times=self._record.row_times,
-            room=room_for(int(nodes.group.max(initial=-1)) + 1),
+            room=room_for(measured.output.size),
         )
         first = self._first_rung()
         adaptive.state[[WANTED, USED, ROWS]] = first, first, 1
         adaptive.state[[BEFORE, BEFORE_THAT]] = RUNGS[first]
         buffers.nodes[:] = buffers.history[0]
-        update_scale(
-            nodes, buffers, adaptive.moments, adaptive.room, adaptive.covered, adaptive.memory, 0.0
+        update_sizes(
+            nodes, buffers, measured, adaptive.moments, adaptive.covered, adaptive.memory, 0.0
         )
         return adaptive
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.cosim.layouts.measured import Measured
 from herringbone.cosim.layouts.nodes import NodeLayout
 
 (WANTED, USED, ACCEPTED, ROWS, CULPRIT, BEFORE, BEFORE_THAT, MISSED, MISSED_NOW,
@@ -27,13 +28,13 @@ class Adaptive(NamedTuple):
         ready: NONE ... OWN by rung.
         owed: corrections beyond the first, by rung, since its Jacobian.
         taken, rejected: macro steps by rung.
-        held: 1 for unknowns that a body holds over a step.
+        measured: signals by whose errors a step is measured, and groups of them.
         squares: (2, groups): of the errors of coupling and inner steps in the present step.
         errors: (2, groups): the integrals of these over time.
         far: (1,) error of the run so far.
-        moments, covered: of the forces, and times: see `step_error.update_scale`.
+        moments, covered: of the signals, and times: see `step_error.update_sizes`.
         room: see `step_error.room_for`.
-        memory: time over which the forces are taken about a straight line [s].
+        memory: time over which signals are taken about a straight line [s].
         inner_step: longest of the bodies [s]; 0 if they make none.
         sharpness: (1,) largest error over ticks^order of the last steps.
         state: (10,), see `WANTED`.
@@ -49,7 +50,7 @@ class Adaptive(NamedTuple):
     owed: np.ndarray
     taken: np.ndarray
     rejected: np.ndarray
-    held: np.ndarray
+    measured: Measured
     squares: np.ndarray
     errors: np.ndarray
     far: np.ndarray
@@ -68,7 +69,7 @@ def new_adaptive(
     nodes: NodeLayout,
     rungs: np.ndarray,
     *,
-    held: np.ndarray,
+    measured: Measured,
     tolerance: float,
     last: int,
     memory: float,
@@ -80,9 +81,9 @@ def new_adaptive(
 
     Args:
         nodes: the layout of passes.
-        rungs, held, tolerance, last, memory, inner_step, times, room: see `Adaptive`.
+        rungs, measured, tolerance, last, memory, inner_step, times, room: see `Adaptive`.
     """
-    unknowns, groups = nodes.unknown.size, int(nodes.group.max(initial=-1)) + 1
+    unknowns, groups = nodes.unknown.size, measured.members.size
     size = nodes.degree * unknowns
     return Adaptive(
         tolerance=tolerance,
@@ -93,11 +94,11 @@ def new_adaptive(
         owed=np.zeros(rungs.size, dtype=np.int64),
         taken=np.zeros(rungs.size, dtype=np.int64),
         rejected=np.zeros(rungs.size, dtype=np.int64),
-        held=held,
+        measured=measured,
         squares=np.zeros((2, groups)),
         errors=np.zeros((2, groups)),
         far=np.zeros(1),
-        moments=np.zeros((5, max(unknowns, groups))),
+        moments=np.zeros((5, max(measured.output.size, groups))),
         covered=np.zeros(4),
         room=room,
         memory=memory,

@@ -10,7 +10,7 @@ from herringbone.cosim.energy.nodes import watch_nodes
 from herringbone.cosim.layouts.adaptive import Adaptive
 from herringbone.cosim.layouts.layout import HISTORY, Layout
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
-from herringbone.cosim.loops.adaptive_step.step_error import step_error, update_scale
+from herringbone.cosim.loops.adaptive_step.step_error import step_error, update_sizes
 from herringbone.cosim.loops.calls import do_step, state_call
 from herringbone.cosim.loops.common import get_outputs
 from herringbone.cosim.loops.node_pass import get_to_nodes, save_part, set_from_nodes
@@ -60,11 +60,13 @@ def errors_again(nodes: NodeLayout, buffers: Buffers, adaptive: Adaptive, count:
     total = 0.0
     for _ in range(count):
         error, _ = step_error(
-            nodes, buffers, adaptive.held, adaptive.squares, adaptive.room, HISTORY, 1.0
-        )
-        update_scale(
-            nodes, buffers, adaptive.moments, adaptive.room, adaptive.covered, adaptive.memory, 0.0
-        )
+            nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
+            adaptive.measured.members.size, HISTORY, 1.0,
+        )  # fmt: skip
+        update_sizes(
+            nodes, buffers, adaptive.measured, adaptive.moments, adaptive.covered, adaptive.memory,
+            0.0,
+        )  # fmt: skip
         total += error
     return total
 

@@ -23,7 +23,8 @@ class Grid(NamedTuple):
     Attributes:
         step: communication step size [s]; of an adaptive run the largest.
         count: macro steps.
-        every: macro steps per record.
+        every: macro steps per record; of an adaptive run the largest ones, 0: records lie where
+            steps end.
     """
 
     step: float

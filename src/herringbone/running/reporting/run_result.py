@@ -228,7 +228,7 @@ def twin_error(result: Result, system: System) -> tuple[dict[str, float], str] |
 
 
 def decimated(result: Result, record_step: float) -> Result:
-    """Keep the records that the scene asks for; all of an adaptive run."""
+    """Keep the records that the scene asks for; an adaptive run has no others."""
     if result.info.steps:
         return result
     every = make_grid(result.info.t_end, result.info.communication_step, record_step).every

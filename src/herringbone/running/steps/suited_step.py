@@ -1,5 +1,7 @@
 """The macro step of a run for which none is given, by what is known of the system's parts."""
 
+import math
+
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core.declaring.roles import Role
 from herringbone.cosim.algorithms import Algorithm
@@ -7,6 +9,10 @@ from herringbone.cosim.structure.system import System
 from herringbone.scenes import Scene
 
 _FEWEST_STEPS = 200
+_APART = 1e-4
+"""Records of an adaptive run [s] where no others are asked for. Steps end at them, so that more of
+them cost time: at 1e-3 steps take half of it."""
+_ROUNDING = 1e-9
 _SHARE = 0.5
 """Of the step at which an algorithm errs 0.1 %."""
 
@@ -22,7 +28,8 @@ def suited_step(
     """Macro step [s] if none is given: the algorithm's own, or a longer one for a slow system.
 
     The own one suits gear pairs. Without them, and with a fixed step, the fastest bond decides, by
-    `Algorithm.accurate_step`; there are at least 200 steps.
+    `Algorithm.accurate_step`; there are at least 200 steps. An adaptive step is no longer than
+    records are apart: they lie at equal distances.
 
     Args:
         system, scene: of the run.
@@ -32,7 +39,8 @@ def suited_step(
         record_step: that the caller gave [s].
     """
     if algorithm.adaptive:
-        return min(own, scene.t_end)
+        apart = min(record_step or max(scene.record_step, _APART), scene.t_end)
+        return apart / math.ceil(apart / own - _ROUNDING)
     rule = algorithm.accurate_step
     geared = any(Role.GEAR_PAIR in part.roles for part in anatomy(system).parts.values())
     if not bond or rule is None or geared:

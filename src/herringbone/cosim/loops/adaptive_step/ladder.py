@@ -26,6 +26,24 @@ def _reachable(ticks: int) -> bool:
 
 
 @kernel
+def dividing_rung(rungs: np.ndarray, wanted: int, left: int) -> int:
+    """The largest rung up to `wanted` of which a whole number makes the rest, or else `wanted`.
+
+    Two thirds of the rungs divide the largest one, and each that has been taken leaves a rest that
+    is divided again.
+
+    Args:
+        rungs: steps in ticks, ascending.
+        wanted: rung.
+        left: ticks up to the next row.
+    """
+    for k in range(wanted, -1, -1):
+        if left % rungs[k] == 0:
+            return k
+    return wanted
+
+
+@kernel
 def fitting_rung(rungs: np.ndarray, wanted: int, left: int) -> int:
     """The largest rung up to `wanted` after which the end can still be reached.
 

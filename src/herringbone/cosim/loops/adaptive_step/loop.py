@@ -26,7 +26,7 @@ from herringbone.cosim.layouts.adaptive import (
 )
 from herringbone.cosim.layouts.layout import Chunk, Layout
 from herringbone.cosim.layouts.nodes import Buffers, Control, NodeLayout
-from herringbone.cosim.loops.adaptive_step.ladder import fitting_rung
+from herringbone.cosim.loops.adaptive_step.ladder import dividing_rung, fitting_rung
 from herringbone.cosim.loops.adaptive_step.step_choice import (
     TOO_MUCH,
     continued,
@@ -34,10 +34,11 @@ from herringbone.cosim.loops.adaptive_step.step_choice import (
     too_much,
 )
 from herringbone.cosim.loops.adaptive_step.step_error import (
+    KNOWN,
     ORDER,
     error_so_far,
     step_error,
-    update_scale,
+    update_sizes,
 )
 from herringbone.cosim.loops.common import (
     DONE,
@@ -75,7 +76,7 @@ def _record(
 ) -> int:
     """A row, if it is time for one; -1, or the part whose outputs cannot be read."""
     row, t = adaptive.state[ROWS], chunk.t0 + done * chunk.h
-    if done < adaptive.last and t < adaptive.times[row - 1] + (chunk.every - 0.5) * chunk.h:
+    if chunk.every > 0 and done % chunk.every != 0:
         return -1
     for p in range(layout.component.size):
         if get_outputs(layout, history, p, chunk.records, row) > LAST_GOOD:
@@ -91,12 +92,12 @@ def _accept(
 ) -> None:
     """Book a step that was taken."""
     state, rung = adaptive.state, adaptive.state[USED]
-    room, covered = adaptive.room, adaptive.covered
-    update_scale(nodes, buffers, adaptive.moments, room, covered, adaptive.memory, h)
+    measured, moments, covered = adaptive.measured, adaptive.moments, adaptive.covered
+    update_sizes(nodes, buffers, measured, moments, covered, adaptive.memory, h)
     for row in range(adaptive.errors.shape[0]):
         for g in range(adaptive.errors.shape[1]):
             adaptive.errors[row, g] += h * adaptive.squares[row, g]
-    adaptive.far[0] = error_so_far(nodes, buffers, adaptive.errors, room, covered[0])
+    adaptive.far[0] = error_so_far(measured, moments, adaptive.errors, covered[0])
     for k in range(nodes.degree + 1):
         for i in range(nodes.unknown.size):
             adaptive.before[k, i] = buffers.nodes[k, nodes.unknown[i]]
@@ -134,9 +135,12 @@ def _try(
     inner_steps = np.inf
     if adaptive.inner_step > 0.0:
         inner_steps = max(1.0, np.ceil(h / (nodes.degree * adaptive.inner_step) - 1e-9))
+    sized = adaptive.covered[0] >= KNOWN * adaptive.memory
+    groups = adaptive.measured.members.size if sized else adaptive.measured.units
     error, culprit = step_error(
-        nodes, buffers, adaptive.held, adaptive.squares, adaptive.room, known, inner_steps
-    )
+        nodes, buffers, adaptive.measured, adaptive.moments, adaptive.squares, adaptive.room,
+        groups, known, inner_steps,
+    )  # fmt: skip
     state[CULPRIT] = culprit
     return -1, error
 
@@ -175,14 +179,18 @@ def _macro_step(
 ) -> tuple[int, int, int]:  # fmt: skip
     """Try a macro step after `done` ticks: status, ticks made (0 if taken back), and who failed."""
     state = adaptive.state
-    rung = fitting_rung(adaptive.rungs, state[WANTED], adaptive.last - done)
+    left, wanted = adaptive.last - done, state[WANTED]
+    if chunk.every > 0:
+        left = min(left, chunk.every - done % chunk.every)
+        wanted = dividing_rung(adaptive.rungs, wanted, left)
+    rung = fitting_rung(adaptive.rungs, wanted, left)
     state[USED] = rung
     if adaptive.ready[rung] <= NEEDED:
         return REFRESH, 0, -1
     before = buffers.counts[1]
     t, h = chunk.t0 + done * chunk.h, adaptive.rungs[rung] * chunk.h
     failed, error = _try(layout, nodes, buffers, control, adaptive, t, h)
-    smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), adaptive.last - done) < rung
+    smaller = fitting_rung(adaptive.rungs, max(rung - 1, 0), left) < rung
     if failed >= 0 and not (smaller and buffers.counts[2] == _DISCARDED):
         return PART_FAILED, 0, failed
     if smaller and too_much(adaptive, rung, error, ORDER[nodes.degree]):
@@ -207,8 +215,8 @@ def run_adaptive(
     """Run macro steps up to a time; the result is that of `loops.stages.run_stages`, in ticks.
 
     Args:
-        chunk: in ticks; ends early when the rows are full. `every` is the least number of ticks
-            between rows.
+        chunk: in ticks; ends early when the rows are full. `every` is the number of ticks between
+            rows, at which steps end; 0: each step ends in a row.
 
     Status REFRESH asks for the correction of the rung `state[USED]`.
     """

@@ -21,8 +21,8 @@ _SUDDEN, _TOO_MUCH_AT_ONCE = 6.0, 1.3
 _COARSE = 40.0
 """At a loose tolerance steps are so long that the derivatives which the estimate lacks count, too:
 1.6 to 2.1 times 1e-2 was reached on the test rig without."""
-_LEAST, _MOST = 0.3, 1.6
-"""Times what the step may change."""
+_LEAST, _MOST = 0.3, 2.0
+"""Times what the step may change: from half the way to the next row to all of it."""
 
 
 @inlined

@@ -1,4 +1,4 @@
-"""Error of one macro step, from the differences of the forces that it found: it costs no pass.
+"""Error of one macro step, from the differences of the signals that it found: it costs no pass.
 
 The forces are polynomials through p + 1 nodes of the macro step h. What they miss acts on a body as
 a wrong force. It changes the velocity by its mean over the step, which is the error of the
@@ -14,10 +14,14 @@ h^q f^(q) is q! times the divided difference over the nodes and one (odd p) or t
 communication points before the step. For a body that holds its inputs at their mean, the position
 shifts as under a force that is wrong by h^2 f^(2) / 12: p = 1.
 
-The size of the forces is the standard deviation of all forces of the same unit since the start,
-the sum over channels and time, as in the error of a run against its twin; at least FLOOR of the
-largest one. It is that about the straight line through the values of the last time, with weights
-that fall exponentially: a load that rises is no part of the vibration.
+A linear part makes of the errors of its inputs those of its outputs, and of derivatives the same
+derivatives: a recorded channel, such as the velocity of a seat, is wrong by kappa h^q of its own
+f^(q). So it is measured as a force is, and errs more where it has more of the high frequencies.
+
+The size of a group, of unknowns of one unit or of channels, is the standard deviation since the
+start, the sum over signals and time, as in the error of a run against its twin; at least FLOOR of
+the largest value. It is that about the straight line through the values of the last time, with
+weights that fall exponentially: a load that rises is no part of the vibration.
 
 What the inner steps of the bodies add is of the same kind: the force that their integration gets
 wrong, d^4 f^(4) over the inner step d, which is h over a whole number of them from node to node.
@@ -26,6 +30,7 @@ wrong, d^4 f^(4) over the inner step d, which is h over a whole number of them f
 import numpy as np
 
 from herringbone.cosim.layouts.layout import HISTORY
+from herringbone.cosim.layouts.measured import Measured
 from herringbone.cosim.layouts.nodes import Buffers, NodeLayout
 from herringbone.kernels.compiling.jit import inlined
 
@@ -40,22 +45,28 @@ these inner steps do: 1.6 times what polynomials of degree 3 miss with one inner
 node, as measured on the test rig with macro steps of 40 to 125 us."""
 _INNER_ORDER = 4
 FLOOR = 1e-3
-"""Smallest standard deviation that counts, in units of the largest force."""
+"""Smallest standard deviation that counts, in units of the largest value."""
+LEAST = 1e-9
+"""The same of channels, in SI units: the reference of levels of velocity (ISO 1683), far above what
+rounding leaves of a body at rest."""
+KNOWN = 0.05
+"""Channels count after this share of the memory: what moves from rest has no size before, and what
+it errs then is little of what follows."""
 _MOST_POINTS = 5 + 2
-_PLACES, _OWN, _LINEAR, _FOURTH, _RELATIVE, _COUNT = range(6)
-"""Rows of the room: places and weights of values, sums and numbers of unknowns by group."""
+_PLACES, _OWN, _LINEAR, _FOURTH, _COUPLING, _INNER, _ROWS = range(7)
+"""Rows of the room: places and weights of values; errors of signals."""
 _FLAT = 1e-9
 COUPLING, INNER_STEPS = range(2)
 """Rows of what `step_error` finds."""
-SUM, SUM_T, SQUARES, LARGEST, DEVIATION = range(5)
-"""Rows of the moments. Of each unknown: weighted sums of values, and of values times the time from
-now, which make the line; sum of squared deviations from it. Of each group: the largest value; the
-sum of the mean square deviations."""
+SUM, SUM_T, SQUARES, LARGEST, SIZE = range(5)
+"""Rows of the moments. Of each signal: weighted sums of values, and of values times the time from
+now, which make the line; sum of squared deviations from it. Of each group: the largest value; its
+size."""
 
 
-def room_for(groups: int) -> np.ndarray:
-    """What the functions below work in, for so many groups of unknowns."""
-    return np.zeros((_COUNT + 1, max(_MOST_POINTS, groups)))
+def room_for(signals: int) -> np.ndarray:
+    """What the functions below work in, for so many signals."""
+    return np.zeros((_ROWS, max(_MOST_POINTS, signals)))
 
 
 @inlined
@@ -100,33 +111,16 @@ def _difference(
 
 
 @inlined
-def step_error(
+def _signal_errors(
     nodes: NodeLayout,
     buffers: Buffers,
-    held: np.ndarray,
-    squares: np.ndarray,
+    measured: Measured,
     room: np.ndarray,
     known: int,
     inner_steps: float,
-) -> tuple[float, int]:
-    """Relative error of the forces in the present step, and the unknown that errs most.
-
-    Without enough communication points before the step, a lower derivative stands for f^(q).
-
-    Args:
-        nodes, buffers: as the last pass left them.
-        held: 1 for unknowns that a body holds over the step.
-        squares: (2, groups): of the errors of coupling and inner steps, summed over the unknowns.
-        room: see `room_for`.
-        known: communication points passed, the start included.
-        inner_steps: from node to node; infinite if parts make none.
-    """
+) -> None:
+    """Write the errors of all signals by coupling and inner steps into the room."""
     p = nodes.degree
-    squares[:] = 0.0
-    largest, culprit = 0.0, 0
-    relative, count = room[_RELATIVE], room[_COUNT]
-    relative[:] = 0.0
-    count[:] = 0.0
     points = min(ORDER[p] - p, known - 1, HISTORY - 2)
     points_1 = min(ORDER[1] - 1, known - 1)
     points_4 = min(max(_INNER_ORDER - p, 0), known - 1, HISTORY - 2)
@@ -135,71 +129,106 @@ def step_error(
     _weights(buffers, 1, points_1, room[_PLACES], linear)
     _weights(buffers, p, points_4, room[_PLACES], fourth)
     finer = AMPLIFICATION * INNER / (p * inner_steps) ** _INNER_ORDER
-    for k in range(nodes.unknown.size):
-        i = nodes.unknown[k]
+    for k in range(measured.output.size):
+        i = measured.output[k]
         missing = _difference(buffers, i, own, 1, p, points)
         inner = missing
         if points_4 != points:
             inner = _difference(buffers, i, fourth, 1, p, points_4)
-        inner *= finer
         missing *= _KAPPA[p]
-        if held[k]:
+        if measured.held[k]:
             missing = _KAPPA[1] * _difference(buffers, i, linear, p, 1, points_1)
-        coupling = AMPLIFICATION * abs(missing) + abs(buffers.rest[p - 1, k])
-        error = (coupling / buffers.scale[k]) ** 2 + (inner / buffers.scale[k]) ** 2
+        room[_INNER, k] = finer * inner
+        room[_COUPLING, k] = AMPLIFICATION * abs(missing)
+        if k < nodes.unknown.size:
+            room[_COUPLING, k] += abs(buffers.rest[p - 1, k])
+
+
+@inlined
+def step_error(
+    nodes: NodeLayout,
+    buffers: Buffers,
+    measured: Measured,
+    moments: np.ndarray,
+    squares: np.ndarray,
+    room: np.ndarray,
+    groups: int,
+    known: int,
+    inner_steps: float,
+) -> tuple[float, int]:
+    """Relative error of the worst group in the present step, and the unknown that errs most.
+
+    Without enough communication points before the step, a lower derivative stands for f^(q).
+
+    Args:
+        nodes, buffers: as the last pass left them.
+        measured: signals and groups.
+        moments: their sizes, see `update_sizes`.
+        squares: (2, groups): of the errors of coupling and inner steps, summed over the signals.
+        room: see `room_for`.
+        groups: that count, the first ones.
+        known: communication points passed, the start included.
+        inner_steps: from node to node; infinite if parts make none.
+    """
+    _signal_errors(nodes, buffers, measured, room, known, inner_steps)
+    squares[:] = 0.0
+    largest, culprit = 0.0, 0
+    for m in range(measured.member.size):
+        k, g = measured.member[m], measured.group[m]
+        coupling, inner = room[_COUPLING, k] ** 2, room[_INNER, k] ** 2
+        squares[COUPLING, g] += coupling
+        squares[INNER_STEPS, g] += inner
+        error = np.sqrt(coupling + inner) / moments[SIZE, g]
         if error - error != 0.0:
-            return np.inf, k
-        squares[COUPLING, nodes.group[k]] += coupling * coupling
-        squares[INNER_STEPS, nodes.group[k]] += inner * inner
-        relative[nodes.group[k]] += error
-        count[nodes.group[k]] += 1.0
-        if error > largest:
+            return np.inf, min(k, nodes.unknown.size - 1)
+        if error > largest and k < nodes.unknown.size:
             largest, culprit = error, k
+    return _worst(measured, moments, squares, groups, 1.0), culprit
+
+
+@inlined
+def _worst(
+    measured: Measured, moments: np.ndarray, squares: np.ndarray, groups: int, covered: float
+) -> float:
+    """Relative error of that of the first groups that errs most."""
     worst = 0.0
-    for g in range(squares.shape[1]):
-        worst = max(worst, relative[g] / count[g])
-    return np.sqrt(worst), culprit
+    for g in range(groups):
+        mean = (squares[COUPLING, g] + squares[INNER_STEPS, g]) / (covered * measured.members[g])
+        worst = max(worst, np.sqrt(mean) / moments[SIZE, g])
+    return worst
 
 
 @inlined
 def error_so_far(
-    nodes: NodeLayout, buffers: Buffers, errors: np.ndarray, room: np.ndarray, covered: float
+    measured: Measured, moments: np.ndarray, errors: np.ndarray, covered: float
 ) -> float:
     """Relative error of the run so far, of the group that errs most.
 
     Args:
-        nodes, buffers: after `update_scale`.
+        measured: signals and groups.
+        moments: their sizes.
         errors: (2, groups): integrals of the squares of `step_error` over time.
-        room: see `room_for`.
         covered: time since the start [s].
     """
-    sizes = room[_RELATIVE]
-    sizes[:] = 0.0
-    for k in range(nodes.unknown.size):
-        sizes[nodes.group[k]] += covered * buffers.scale[k] ** 2
-    worst = 0.0
-    for g in range(errors.shape[1]):
-        if sizes[g] > 0.0:
-            worst = max(worst, (errors[COUPLING, g] + errors[INNER_STEPS, g]) / sizes[g])
-    return np.sqrt(worst)
+    return _worst(measured, moments, errors, measured.members.size, covered)
 
 
 @inlined
-def update_scale(
+def update_sizes(
     nodes: NodeLayout,
     buffers: Buffers,
+    measured: Measured,
     moments: np.ndarray,
-    room: np.ndarray,
     times: np.ndarray,
     memory: float,
     h: float,
 ) -> None:
-    """Take the values at the nodes of a step into the size of the forces.
+    """Take the values at the nodes of a step into the sizes of the groups.
 
     Args:
-        nodes, buffers: as the last pass left them; the scale is written.
-        moments: (5, unknowns): see SUM ... DEVIATION.
-        room: see `room_for`.
+        nodes, buffers: as the last pass left them; the scale of the unknowns is written.
+        measured: signals and groups.
+        moments: (5, signals): see SUM ... SIZE.
         times: (4,) [s]: time that the moments cover; of the straight lines, the sums of the weights
             and of the first and second powers of the time before now.
         memory: over which values are taken about a straight line [s].
@@ -215,21 +244,23 @@ def update_scale(
         spread = times[1] * times[3] - times[2] * times[2]
         known = spread > _FLAT * times[1] * times[3]
         mean, slope = (times[3] / spread, times[2] / spread) if known else (0.0, 0.0)
-        for k in range(nodes.unknown.size):
-            value = buffers.nodes[node, nodes.unknown[k]]
+        for k in range(measured.output.size):
+            value = buffers.nodes[node, measured.output[k]]
             moments[SUM_T, k] = kept * (moments[SUM_T, k] - share * moments[SUM, k])
             moments[SUM, k] = kept * moments[SUM, k] + share * value
             if known:
                 line = mean * moments[SUM, k] - slope * moments[SUM_T, k]
                 moments[SQUARES, k] += share * (value - line) ** 2
-            moments[LARGEST, nodes.group[k]] = max(moments[LARGEST, nodes.group[k]], abs(value))
-    moments[DEVIATION, :] = 0.0
-    count = room[_COUNT]
-    count[:] = 0.0
+        for m in range(measured.member.size):
+            size = abs(buffers.nodes[node, measured.output[measured.member[m]]])
+            g = measured.group[m]
+            moments[LARGEST, g] = max(moments[LARGEST, g], size)
+    moments[SIZE, :] = 0.0
+    for m in range(measured.member.size):
+        moments[SIZE, measured.group[m]] += moments[SQUARES, measured.member[m]]
+    for g in range(measured.members.size):
+        deviation = np.sqrt(moments[SIZE, g] / max(times[0], 1e-300) / measured.members[g])
+        least = 1e-300 if g < measured.units else LEAST
+        moments[SIZE, g] = max(deviation, FLOOR * moments[LARGEST, g], least)
     for k in range(nodes.unknown.size):
-        count[nodes.group[k]] += 1.0
-        moments[DEVIATION, nodes.group[k]] += moments[SQUARES, k] / max(times[0], 1e-300)
-    for k in range(nodes.unknown.size):
-        g = nodes.group[k]
-        deviation = np.sqrt(moments[DEVIATION, g] / count[g])
-        buffers.scale[k] = max(deviation, FLOOR * moments[LARGEST, g], 1e-300)
+        buffers.scale[k] = moments[SIZE, nodes.group[k]]
