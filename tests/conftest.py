@@ -1,16 +1,25 @@
 """Fixtures that several test files share, and the order of the files."""
 
 from collections import Counter
+from contextlib import ExitStack
 
 import pytest
 from support.alone import alone
 from threadpoolctl import threadpool_limits
 
 from herringbone.commands import output
+from herringbone.components.registry import COMPONENTS
 from herringbone.core.caching import answers
 from herringbone.cosim.cell.policy import foreign_fmu_policy
 from herringbone.fmi import build_python_fmus
 from herringbone.fmi.native import build_native_fmus, find_compiler, own_platform
+
+
+def pytest_configure(config):
+    """Searching numba's millions of objects, and those of tests, for cycles takes a tenth of it."""
+    around = ExitStack()
+    around.enter_context(output.seldom_collected())
+    config.add_cleanup(around.close)
 
 
 def pytest_collection_modifyitems(items):
@@ -26,13 +35,6 @@ def pytest_collection_modifyitems(items):
 def one_blas_thread():
     """Threads of two test processes would wait for each other: ten times the time."""
     with threadpool_limits(limits=1, user_api="blas"):
-        yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def seldom_collected():
-    """Searching numba's millions of objects for cycles takes a tenth of the time."""
-    with output.seldom_collected():
         yield
 
 
@@ -65,18 +67,32 @@ def python_fmus():
         return build_python_fmus()
 
 
+def _native(order, fmi):
+    """Native FMUs by component; test processes that build them at a time share the work."""
+    found = {}
+    for name in order:
+        with alone(f"native_{name}"):
+            found |= build_native_fmus([name], fmi=fmi)
+    return {name: found[name] for name in COMPONENTS}
+
+
 @pytest.fixture(scope="session")
-def native_fmus():
+def build_order(request):
+    """Components, in another order in every other test process."""
+    worker = getattr(request.config, "workerinput", {}).get("workerid", "gw0")
+    return list(COMPONENTS)[:: -1 if int(worker.removeprefix("gw")) % 2 else 1]
+
+
+@pytest.fixture(scope="session")
+def native_fmus(build_order):
     """Path of the native FMU 2.0 of this platform by component."""
     platform = own_platform()
     if platform is None or find_compiler(platform) is None:
         pytest.skip("no C compiler for native FMUs was found")
-    with alone("native_fmus"):
-        return build_native_fmus()
+    return _native(build_order, fmi=2)
 
 
 @pytest.fixture(scope="session")
-def fmi3_fmus(native_fmus):
+def fmi3_fmus(native_fmus, build_order):
     """Path of the native FMU 3.0 of this platform by component."""
-    with alone("native_fmus"):
-        return build_native_fmus(native_fmus, fmi=3)
+    return _native(build_order, fmi=3)

@@ -32,8 +32,13 @@ def rig():
     return structure
 
 
-def test_it_moves_as_the_twin_does(rig, tmp_path):
-    composite = make_composite(rig)
+@pytest.fixture(scope="module")
+def composite(rig):
+    """The rig as one component; its step is compiled once, which takes ten seconds."""
+    return make_composite(rig)
+
+
+def test_it_moves_as_the_twin_does(rig, composite, tmp_path):
     names = [v.name for v in composite.component.declaration.outputs if v.unit in ("N", "m/s")]
     times = np.linspace(0.0, 1e-3, 11)
     expected = Twin(rig).solve(times, names)
@@ -53,8 +58,8 @@ def test_it_moves_as_the_twin_does(rig, tmp_path):
     assert errors[0] < 3e-5
 
 
-def test_changed_parameters_reach_the_parts(rig, tmp_path):
-    system = _instance(make_composite(rig), tmp_path)
+def test_changed_parameters_reach_the_parts(composite, tmp_path):
+    system = _instance(composite, tmp_path)
     system.step(0.0, 1e-4)
     before = system["gearbox.bearing_supports.shaft.pinion_left.f_y"]
     system.set("gearbox.bearing_supports.pinion.radial_stiffness", 0.0)
@@ -87,9 +92,8 @@ def test_declared_feedthrough_is_what_the_equations_have(outside, tmp_path):
     assert found == {v.name: set(v.feedthrough) for v in d.outputs}
 
 
-def test_state_vectors_are_those_of_the_parts_in_use(rig, tmp_path):
+def test_state_vectors_are_those_of_the_parts_in_use(composite, tmp_path):
     """Each element lies where the part's own equations find it, and so does its number."""
-    composite = make_composite(rig)
     d, system = composite.component.declaration, _instance(composite, tmp_path)
     vectors = {v.name: v for v in d.vectors}
     assert list(vectors) == ["gearbox.modal_housing.q", "der(gearbox.modal_housing.q)"]
@@ -109,9 +113,8 @@ def test_state_vectors_are_those_of_the_parts_in_use(rig, tmp_path):
     assert dx[positions : positions + 60].tolist() == list(range(60))
 
 
-def test_event_indicators_follow_the_states(rig, tmp_path):
+def test_event_indicators_follow_the_states(composite, tmp_path):
     """Of all parts only the mesh has some; no outputs need to be computed before."""
-    composite = make_composite(rig)
     mesh, system = COMPONENTS["gear_mesh"], _instance(composite, tmp_path)
     d, part = composite.component.declaration, Instance(mesh, "gear_mesh")
     for v in mesh.declaration.parameters:
@@ -133,8 +136,7 @@ def test_event_indicators_follow_the_states(rig, tmp_path):
     assert (expected < 0.0).all()
 
 
-def test_a_bad_resource_is_named_with_its_part(rig, tmp_path):
-    composite = make_composite(rig)
+def test_a_bad_resource_is_named_with_its_part(composite, tmp_path):
     _instance(composite, tmp_path)
     cycle = next(n for n in composite.resources if n.startswith("bench_controller/"))
     (tmp_path / cycle).write_text(

@@ -1,11 +1,13 @@
 """A system as one component steps by the condensed core: against other integrators, bit by bit."""
 
 import random
+from functools import partial
 from itertools import cycle, islice, pairwise
 
 import numpy as np
 import pytest
 from fuzz.campaign import last_commit
+from support.rig_as_one import rig_as_one
 
 from herringbone.analysis.twin.block_core.steps import TOLERANCE
 from herringbone.analysis.twin.composite import MICRO_STEP, make_composite
@@ -34,12 +36,11 @@ class Rig:
 
     Args:
         folder: for the resource files.
-        values: of the operating point.
-        kernel: its step, of a rig that is compiled already.
+        values: of the operating point; the step is that of the rig under load.
         scene: of the rig.
     """
 
-    def __init__(self, folder, values=None, kernel=None, scene="loaded"):
+    def __init__(self, folder, values=None, scene="loaded"):
         self.system = prepared("test_rig", scene, Wishes(values=values or {})).system
         composite = make_composite(self.system)
         for name, file in composite.resources.items():
@@ -47,7 +48,7 @@ class Rig:
             (folder / name).write_bytes(file.read_bytes())
         self.instance = Instance(composite.component, "rig", folder)
         self.instance.initialise()
-        self.kernel = kernel or composite.component.kernels.step
+        self.kernel = rig_as_one().component.kernels.step
         self.declaration = composite.component.declaration
         self.groups = Core(self.system).groups()
         self.names = [name for group in self.groups.values() for name in group]
@@ -87,9 +88,7 @@ class Rig:
 @pytest.fixture(scope="module")
 def rig(tmp_path_factory):
     """Makes rigs that share one kernel."""
-    folder = tmp_path_factory.mktemp("rig")
-    kernel = Rig(folder).kernel
-    return lambda values=None, scene="loaded": Rig(folder, values, kernel, scene)
+    return partial(Rig, tmp_path_factory.mktemp("rig"))
 
 
 def odd_times(end):

@@ -9,11 +9,10 @@ from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
 from support.compiler import needs_compiler
 from support.fmi2_host import Fmi2Host
+from support.rig_as_one import rig_as_one
 
-from herringbone.analysis.twin.composite import make_composite
 from herringbone.core import Instance
 from herringbone.running.exporting.system_fmu import export_fmu
-from herringbone.running.prepared import Wishes, prepared
 
 STIFFNESS = "gearbox.bearing_supports.pinion.radial_stiffness"
 CLEARANCE = "gearbox.bearing_supports.pinion.radial_clearance"
@@ -38,7 +37,7 @@ def run(host, count, names, time=0.0):
 
 def test_native_bits_are_those_of_python(rig, tmp_path):
     """With steps of any length, a tolerance, and parameters that are not those of the export."""
-    composite = make_composite(prepared("test_rig", "loaded", Wishes()).system)
+    composite = rig_as_one()
     for name, file in composite.resources.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_bytes(file.read_bytes())

@@ -16,6 +16,7 @@ from herringbone.analysis.hosted.start_places import FlangePlaces, StartPlaces
 
 _KERNELS = """
 
+from herringbone.kernels.compiling.jit import seldom
 from herringbone.kernels.periodic.motion import periodic_motion
 from herringbone.kernels.periodic.places import Body
 from herringbone.kernels.stepping.adaptive import LARGEST
@@ -106,7 +107,7 @@ def vibrating(b: np.ndarray) -> int:
     return status
 
 
-@kernel
+@seldom
 def settle(b: np.ndarray, t: float) -> int:
     blocks = b[{first}:]
     status = SETTLED
