@@ -42,7 +42,7 @@ def _measured(repeats: int, steps: int) -> list[StepPart]:
     found = {
         f"laws at {_STEPS.degree} nodes": lambda: repeated.laws(_AGAIN, arrays, _BEFORE),
         "products of matrices": lambda: repeated.products(
-            _AGAIN, arrays, rungs, given, chosen, laws, rungs.rows.shape[1]
+            _AGAIN, arrays, rungs, given, chosen, laws
         ),
         "arguments of laws inside of the step": lambda: repeated.arguments(_AGAIN, arrays),
         "residuals and their correction": lambda: repeated.corrections(_AGAIN, arrays, rungs),

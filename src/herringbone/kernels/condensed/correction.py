@@ -6,6 +6,7 @@ import numpy as np
 
 from herringbone.kernels.compiling.jit import inlined
 from herringbone.kernels.condensed.collocation import Nodes, Table
+from herringbone.kernels.condensed.lines import aligned
 from herringbone.kernels.condensed.modal import add_product, copy, solve
 
 _SWEPT = 0.1
@@ -35,11 +36,11 @@ def make_room(unknowns: int, inner: int, tangents: int) -> Room:
     """Room for so many unknowns at so many nodes, and so many tangents at each."""
     size = unknowns * inner
     return Room(
-        np.empty((size, size)),
-        np.empty(size),
-        np.empty(size),
-        np.empty(unknowns),
-        np.empty(inner * tangents),
+        aligned(size, size),
+        aligned(size),
+        aligned(size),
+        aligned(unknowns),
+        aligned(inner * tangents),
     )
 
 

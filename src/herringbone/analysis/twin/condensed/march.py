@@ -3,9 +3,16 @@
 import numpy as np
 
 from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State, Work
+from herringbone.analysis.twin.condensed.products import (
+    add_of_inputs,
+    add_of_state,
+    add_push,
+    coordinates,
+)
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.cosim.loops.calls import c_call
-from herringbone.kernels.compiling.jit import allocating, inlined, kernel
+from herringbone.kernels.compiling.jit import inlined, kernel
+from herringbone.kernels.compiling.views import matrix
 from herringbone.kernels.condensed.channels import inputs, predict
 from herringbone.kernels.condensed.collocation import (
     Nodes,
@@ -16,11 +23,13 @@ from herringbone.kernels.condensed.collocation import (
     turned,
 )
 from herringbone.kernels.condensed.correction import Room, correct
-from herringbone.kernels.condensed.modal import add_chosen, add_product, copy, turn
+from herringbone.kernels.condensed.modal import copy, turn
 
 DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
 """Status of a march."""
 MOST_ITERATIONS = 8
+_USUAL = 4
+"""Degree of the polynomials in most runs."""
 STEPS, HALVINGS, EVALUATIONS, BENDS = 0, 1, 2, 3
 """What is counted; bends: shortest steps in which a law bends."""
 BASE, INSIDE, RUNG, LAST, KEPT, TRIED = 0, 1, 2, 3, 4, 5
@@ -98,36 +107,34 @@ def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np
 def _solve_step(
     calls: Calls,
     fixed: Fixed,
-    of_inputs: np.ndarray,
-    along: np.ndarray,
+    rungs: Rungs,
+    rung: int,
     table: Table,
     nodes: Nodes,
     state: State,
     t: float,
     h: float,
-    u: np.ndarray,
-    free: np.ndarray,
-    rows: np.ndarray,
+    work: Work,
     room: Room,
-    v: np.ndarray,
-    chosen: np.ndarray,
 ) -> bool:
-    """Find the laws' inputs of a step from those in `u`; False if the iteration does not end.
+    """Find the laws' inputs of a step from those in `work.u`; False if the iteration does not end.
 
     Args:
-        calls, fixed, table, nodes, state: of the march.
-        of_inputs, along: of the rung.
+        calls, fixed, rungs, table, nodes, state: of the march.
+        rung: of the step.
         t, h: start and length of the step [s].
-        u: (channels, nodes) values of the step.
-        free: rows without the laws' inputs.
-        rows, room, v, chosen: room for the iteration.
+        work: with rows without the laws' inputs.
+        room: for corrections.
     """
     inner, values = len(nodes.z), table.unknown.size
-    z, flat = nodes.z.reshape(nodes.z.size), v.reshape(v.size)
+    channels = table.least.size
+    u, v = matrix(work.u, 0, channels, inner + 1), matrix(work.v, 0, channels, inner + 1)
+    rows, chosen = work.rows, work.chosen
+    z = matrix(nodes.z, 0, 1, nodes.z.size)[0]
     for _ in range(MOST_ITERATIONS):
-        copy(free, rows)
+        copy(work.free, rows)
         given = inputs(fixed.nodes, table.least, u, 0, values, v, chosen)
-        add_chosen(of_inputs, flat, chosen, given, rows)
+        add_of_inputs(rungs, rung, work.v, chosen, given, rows)
         if fixed.lean:
             spread(fixed.sharp, nodes, rows)
         else:
@@ -143,7 +150,7 @@ def _solve_step(
             )
         state.counted[EVALUATIONS] += 1
         residual = residuals(table, nodes, u, room.r)
-        correct(table, nodes, along, room)
+        correct(table, nodes, rungs.along[rung], room)
         for value in range(values):
             row = table.unknown[value]
             if row >= 0:
@@ -163,7 +170,7 @@ def _keep(
     size = state.q.size
     while n < samples.times.size and samples.times[n] < end:
         copy(state.q, samples.held[n, :size])
-        copy(u.reshape(u.size), samples.held[n, size:])
+        copy(u, samples.held[n, size:])
         samples.since[n], samples.length[n] = max(0.0, samples.times[n] - t), h
         n += 1
     return n
@@ -182,64 +189,19 @@ def begin(calls: Calls, table: Table, nodes: Nodes, t: float, u: np.ndarray) -> 
 
 
 @inlined
-def _advance(
-    fixed: Fixed,
-    table: Table,
-    rungs: Rungs,
-    rung: int,
-    free: np.ndarray,
-    u: np.ndarray,
-    v: np.ndarray,
-    chosen: np.ndarray,
-    state: State,
-) -> None:
-    modes, q, flat = rungs.turn.shape[2], state.q, v.reshape(v.size)
-    rotations = rungs.rows.shape[1] - 2 * modes
+def _advance(fixed: Fixed, table: Table, rungs: Rungs, rung: int, work: Work, state: State) -> None:
+    """Write coordinates and inputs at the end of a step that is solved."""
+    modes, q, free, chosen = rungs.turn.shape[2], state.q, work.free, work.chosen
+    rotations = coordinates(rungs) - 2 * modes
     for k in range(rotations):
-        q[2 * modes + k] += free[free.size - rotations + k]
+        growth = free.size - rotations + k
+        q[2 * modes + k] += free[growth] + free[growth - rotations]
     turn(rungs.turn[rung, 0], rungs.turn[rung, 1], q)
-    count = inputs(fixed.nodes, table.least, u, 0, len(u), v, chosen)
-    add_chosen(rungs.push[rung], flat, chosen, count, q)
-    copy(u.reshape(u.size), state.u)
-
-
-@allocating
-def march(
-    calls: Calls,
-    fixed: Fixed,
-    rungs: Rungs,
-    table: Table,
-    nodes: Nodes,
-    room: Room,
-    state: State,
-    samples: Samples,
-    t0: float,
-    steps: int,
-) -> int:
-    """Take base steps until all of them are taken, or every time that is wanted is passed.
-
-    Where a law bends inside a step, or its iteration does not end, the step is halved, down to the
-    last rung; there it is taken with the bend inside.
-
-    Args:
-        calls, fixed, rungs, table, nodes, room: of the system.
-        state: where it stands; changed.
-        samples: filled from the place on that stands in the state.
-        t0: start of base step 0 [s].
-        steps: base steps in all.
-
-    Returns:
-        A status; but after DONE, `state` is at the start of the step. After RUNG_WANTED, go on when
-        the rung at which it stands is made.
-    """
-    work = Work(
-        np.zeros_like(state.u),
-        np.zeros_like(state.u),
-        np.zeros(fixed.offset.size),
-        np.zeros(fixed.offset.size),
-        np.empty(state.u.size, dtype=np.int64),
-    )
-    return march_in(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)
+    channels, nodes = table.least.size, fixed.nodes.size
+    u, v = matrix(work.u, 0, channels, nodes), matrix(work.v, 0, channels, nodes)
+    count = inputs(fixed.nodes, table.least, u, 0, channels, v, chosen)
+    add_push(rungs, rung, work.v, chosen, count, q)
+    copy(work.u, state.u)
 
 
 @inlined
@@ -256,14 +218,72 @@ def march_in(
     t0: float,
     steps: int,
 ) -> int:
-    """As `march`, in a room that is there."""
+    """Take base steps until all of them are taken, or every time that is wanted is passed.
+
+    Where a law bends inside a step, or its iteration does not end, the step is halved, down to the
+    last rung; there it is taken with the bend inside.
+
+    Args:
+        calls, fixed, rungs, table, nodes, room: of the system.
+        state: where it stands; changed.
+        samples: filled from the place on that stands in the state.
+        work: room.
+        t0: start of base step 0 [s].
+        steps: base steps in all.
+
+    Returns:
+        A status; but after DONE, `state` is at the start of the step. After RUNG_WANTED, go on when
+        the rung at which it stands is made.
+    """
+    if len(nodes.z) == _USUAL:
+        known, own = _of_degree(_USUAL, fixed, nodes)
+        return _march(calls, known, rungs, table, own, room, state, samples, work, t0, steps)
+    return _march(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)
+
+
+@inlined
+def _of_degree(degree: int, fixed: Fixed, nodes: Nodes) -> tuple[Fixed, Nodes]:
+    """The same arrays. Loops over the nodes of a step get short where the compiler knows them."""
+    count = degree + 1
+    known = Fixed(
+        fixed.offset,
+        fixed.ahead,
+        matrix(fixed.nodes, 0, 1, count)[0],
+        fixed.one,
+        fixed.close,
+        fixed.lean,
+        fixed.sharp,
+    )
+    own = Nodes(
+        matrix(nodes.z, 0, degree, nodes.z.shape[1]),
+        matrix(nodes.f, 0, degree, nodes.f.shape[1]),
+        matrix(nodes.k, 0, degree, nodes.k.shape[1]),
+        matrix(nodes.e, 0, count, nodes.e.shape[1]),
+        nodes.start,
+    )
+    return known, own
+
+
+@inlined
+def _march(
+    calls: Calls,
+    fixed: Fixed,
+    rungs: Rungs,
+    table: Table,
+    nodes: Nodes,
+    room: Room,
+    state: State,
+    samples: Samples,
+    work: Work,
+    t0: float,
+    steps: int,
+) -> int:
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
     count, values, place = len(nodes.e), table.unknown.size, state.place
-    free, rows, chosen = work.free, work.rows, work.chosen
-    channels = state.u.size // count
-    u, v = work.u.reshape(channels, count), work.v.reshape(channels, count)
-    before = state.u.reshape(channels, count)
+    free, channels = work.free, table.least.size
+    u, v = matrix(work.u, 0, channels, count), matrix(work.v, 0, channels, count)
+    before = matrix(state.u, 0, channels, count)
     while place[BASE] < steps:
         rung = place[RUNG]
         if not rungs.made[rung]:
@@ -276,15 +296,13 @@ def march_in(
                 u[value, 0] = before[value, count - 1]
         else:
             on, apart = place[LAST] >= 0, len(fixed.ahead) // 2
-            predict(fixed.ahead[apart + (rung - place[LAST]) * on], on, values, before, u)
+            first = (apart + (rung - place[LAST]) * on) * count * count
+            predict(matrix(fixed.ahead, first, count, count), on, values, before, u)
         copy(fixed.offset, free)
-        add_product(rungs.rows[rung], state.q[: rungs.rows.shape[1]], free)
-        given = inputs(fixed.nodes, table.least, u, values, channels, v, chosen)
-        add_chosen(rungs.of_inputs[rung], v.reshape(v.size), chosen, given, free)
-        solved = _solve_step(
-            calls, fixed, rungs.of_inputs[rung], rungs.along[rung], table, nodes, state, t, h,
-            u, free, rows, room, v, chosen,
-        )  # fmt: skip
+        add_of_state(rungs, rung, state.q[: coordinates(rungs)], free)
+        given = inputs(fixed.nodes, table.least, u, values, channels, v, work.chosen)
+        add_of_inputs(rungs, rung, work.v, work.chosen, given, free)
+        solved = _solve_step(calls, fixed, rungs, rung, table, nodes, state, t, h, work, room)
         bent = solved and turned(nodes)
         if rung < last and (bent or not solved):
             place[RUNG], place[LAST] = rung + 1, -1 if not solved else place[LAST]
@@ -298,10 +316,10 @@ def march_in(
         end = t0 + (place[BASE] * per_step + place[INSIDE] + size) * shortest
         if place[BASE] == steps - 1 and place[INSIDE] + size == per_step:
             end = np.inf
-        place[KEPT] = _keep(samples, place[KEPT], state, u, t, h, end)
+        place[KEPT] = _keep(samples, place[KEPT], state, work.u, t, h, end)
         if place[KEPT] == samples.times.size:  # the next one may lie in this step, too
             return DONE
-        _advance(fixed, table, rungs, rung, free, u, v, chosen, state)
+        _advance(fixed, table, rungs, rung, work, state)
         if not np.isfinite(state.q[0]):
             return NOT_FINITE
         copy(nodes.e[count - 1], nodes.e[0])
@@ -313,3 +331,21 @@ def march_in(
         while place[RUNG] > 0 and place[INSIDE] % (1 << (last - place[RUNG] + 1)) == 0:
             place[RUNG] -= 1
     return DONE
+
+
+@kernel
+def march(
+    calls: Calls,
+    fixed: Fixed,
+    rungs: Rungs,
+    table: Table,
+    nodes: Nodes,
+    room: Room,
+    state: State,
+    samples: Samples,
+    work: Work,
+    t0: float,
+    steps: int,
+) -> int:
+    """As `march_in`, called from Python."""
+    return march_in(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)

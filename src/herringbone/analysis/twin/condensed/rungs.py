@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.twin.condensed.modes import Modes
+from herringbone.kernels.condensed.lines import aligned, padded
 
 _INNER = [math.sqrt((7.0 + s * 2.0 * math.sqrt(7.0)) / 21.0) for s in (1.0, -1.0)]
 LOBATTO = {
@@ -21,7 +22,6 @@ LOBATTO = {
     5: (0.0, *(0.5 - 0.5 * x for x in _INNER), *(0.5 + 0.5 * x for x in reversed(_INNER)), 1.0),
 }
 """Nodes of a step by the degree of the polynomials through them."""
-_LINE = 8  # reals
 _SERIES = 18  # terms, for arguments up to 1
 
 
@@ -34,6 +34,7 @@ class Shape(NamedTuple):
         directions: (tangents, arguments) of all laws.
         sharp: (n, arguments) directions of what is taken at all nodes, if lean.
         stiff: the laws' values that are unknowns.
+        short: matrices that give arguments are in single precision, see `Rungs`.
     """
 
     degree: int
@@ -41,6 +42,7 @@ class Shape(NamedTuple):
     directions: np.ndarray
     sharp: np.ndarray
     stiff: tuple[int, ...]
+    short: bool
 
     def rows(self, full: np.ndarray) -> np.ndarray:
         """What is wanted of arguments at all nodes, (..., nodes - 1, arguments)."""
@@ -51,19 +53,6 @@ class Shape(NamedTuple):
         return np.concatenate([inner, full[..., -1, :]], axis=-1)
 
 
-def padded(count: int) -> int:
-    """A count of reals that fills whole lines of the cache."""
-    return -(-count // _LINE) * _LINE
-
-
-def aligned(*shape: int) -> np.ndarray:
-    """Zeros that begin with a line of the cache."""
-    size = math.prod(shape)
-    room = np.zeros(size + _LINE)
-    first = (-room.ctypes.data // room.itemsize) % _LINE
-    return room[first : first + size].reshape(shape)
-
-
 class Rungs(NamedTuple):
     """By rung; rows: (nodes - 1) x arguments, or see `Fixed.lean`; q: as of `State`.
 
@@ -72,15 +61,25 @@ class Rungs(NamedTuple):
     Of each channel, the first input stands for its value at the start, the last one for its rise
     along a straight line, and the others for what it is above that line at the other nodes.
 
+    If they are `short`, rows over modes and of_inputs are in single precision, which waits for half
+    of the memory. What it errs by (6e-8) shifts the laws' arguments, most of it once for all. But
+    angles that grow would drift by it: rows over them stay in double precision, and their growth
+    has two columns, the first for what the second one lacks. And means of outputs, thousands of
+    times what alternates, follow from values at starts by `push`: what short_push lacks of it at a
+    reference is added, see `refer`.
+
     Attributes:
         made: (rungs,) 1 where there are matrices, which are made when they are asked for.
         turn: (rungs, 2, modes) factors of the coordinates, real and imaginary.
         rows: (rungs, q, rows) what is wanted at the nodes, of the state at the start; the last ones
-            are the growth of the angles.
+            are the growth of the angles, those before what it lacks.
         of_inputs: (rungs, inputs, rows) the same of the inputs.
         push: (rungs, inputs, q) state at the end of the inputs.
         along: (rungs, unknowns x (nodes - 1), (nodes - 1) x tangents), see `correction.correct`.
         lengths: (rungs,) [s].
+        short_rows, short_of_inputs, short_push: the same in single precision; empty, or over the
+            modes, whose rows are then not in `rows`, the inputs, for of_inputs, and beside `push`.
+        still: (rungs, q) what short_push lacks.
     """
 
     made: np.ndarray
@@ -90,6 +89,10 @@ class Rungs(NamedTuple):
     push: np.ndarray
     along: np.ndarray
     lengths: np.ndarray
+    short_rows: np.ndarray
+    short_of_inputs: np.ndarray
+    short_push: np.ndarray
+    still: np.ndarray
 
 
 def powers(rates: np.ndarray, t: np.ndarray | float, degree: int) -> np.ndarray:
@@ -166,18 +169,24 @@ def _of_inputs(matrix: np.ndarray, nodes: Sequence[float]) -> np.ndarray:
 def empty_rungs(modes: Modes, lengths: Sequence[float], shape: Shape) -> Rungs:
     """Room for matrices of steps of some lengths [s]; see `make_rung`."""
     m, k, degree = modes.rates.size, len(modes.turns), shape.degree
-    rungs, size = len(lengths), 2 * m + k
+    rungs, q = len(lengths), padded(2 * m + k)
     inputs = modes.inputs.shape[1] * (degree + 1)
-    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size + k)
+    rows = padded(shape.rows(np.zeros((degree, len(modes.arguments)))).size + 2 * k)
     unknowns = len(shape.stiff) * degree
+    of_long, of_short = (0, rungs) if shape.short else (rungs, 0)
+    modal = 2 * m if shape.short else 0
     return Rungs(
         np.zeros(rungs, dtype=np.int64),
         np.zeros((rungs, 2, m)),
-        aligned(rungs, size, rows),
-        aligned(rungs, inputs, rows),
-        aligned(rungs, inputs, padded(size)),
-        np.zeros((rungs, unknowns, degree * len(shape.directions))),
+        aligned(rungs, 2 * m + k - modal, rows),
+        aligned(of_long, inputs, rows),
+        aligned(rungs, inputs, q),
+        aligned(rungs, unknowns, degree * len(shape.directions)),
         np.array(lengths, dtype=float),
+        aligned(of_short, modal, rows, dtype=np.float32),
+        aligned(of_short, inputs, rows, dtype=np.float32),
+        aligned(of_short, inputs, q, dtype=np.float32),
+        aligned(of_short, q),
     )
 
 
@@ -211,13 +220,26 @@ def make_rung(rungs: Rungs, rung: int, modes: Modes, shape: Shape) -> None:
     rungs.turn[rung] = np.exp(modes.rates * h).real, np.exp(modes.rates * h).imag
     at_nodes = shape.rows(parts(np.stack(rows, axis=1)))
     count, size = at_nodes.shape[1], ends.shape[2]
-    rungs.rows[rung, : 2 * m, :count] = at_nodes
-    of_angles = np.broadcast_to(modes.of_angles.T[:, None], (len(modes.turns), degree, arguments))
-    rungs.rows[rung, 2 * m :, :count] = shape.rows(of_angles)
-    rungs.of_inputs[rung, :, :count] = _of_inputs(shape.rows(inputs), nodes)
+    of_modes = (rungs.short_rows if shape.short else rungs.rows)[rung, : 2 * m]
+    of_modes[:, :count] = at_nodes
+    turns, width = len(modes.turns), of_modes.shape[1]
+    of_angles = np.broadcast_to(modes.of_angles.T[:, None], (turns, degree, arguments))
+    rungs.rows[rung, rungs.rows.shape[1] - turns :, :count] = shape.rows(of_angles)
+    of_inputs = rungs.short_of_inputs if shape.short else rungs.of_inputs
+    of_inputs[rung, :, :count] = _of_inputs(shape.rows(inputs), nodes)
     angles = parts((modes.turns * growth).T)
-    rungs.rows[rung, : 2 * m, rungs.rows.shape[2] - angles.shape[1] :] = angles
+    of_modes[:, width - turns :] = angles
+    of_modes[:, width - 2 * turns : width - turns] = angles - of_modes[:, width - turns :]
     rungs.push[rung, :, :size] = _of_inputs(ends, nodes)
+    rungs.short_push[rung : rung + 1] = rungs.push[rung]
     along = inputs[list(shape.stiff), 1:] @ shape.directions.T
     rungs.along[rung] = along.reshape(rungs.along.shape[1:])
     rungs.made[rung] = 1
+
+
+def refer(rungs: Rungs, rung: int, reference: np.ndarray) -> None:
+    """Let single precision be exact where all channels keep a value, (channels,)."""
+    if len(rungs.short_push):
+        starts = slice(None, None, rungs.push.shape[1] // reference.size)
+        off = rungs.push[rung, starts] - rungs.short_push[rung, starts]
+        rungs.still[rung] = reference @ off

@@ -13,17 +13,22 @@ from herringbone.analysis.twin.condensed.march import (
     begin,
     march,
 )
-from herringbone.analysis.twin.condensed.march_arrays import Arrays, Fixed, Samples, State
+from herringbone.analysis.twin.condensed.march_arrays import (
+    Arrays,
+    Fixed,
+    Samples,
+    State,
+    Work,
+)
 from herringbone.analysis.twin.condensed.rungs import (
     LOBATTO,
     Rungs,
     Shape,
-    aligned,
     coefficients,
     continued,
     make_rung,
-    padded,
     powers,
+    refer,
     twice,
 )
 from herringbone.analysis.twin.condensed.system import Condensed
@@ -31,6 +36,7 @@ from herringbone.core import HerringboneError
 from herringbone.core.declaring.variable import NODES
 from herringbone.kernels.condensed.collocation import Nodes, Sharp
 from herringbone.kernels.condensed.correction import make_room
+from herringbone.kernels.condensed.lines import aligned, padded
 
 HALVINGS = 7
 """Rungs below the base step."""
@@ -39,7 +45,8 @@ CLOSE = 1e-8
 
 Every correction makes it a thousand times smaller, or more, wherever no law bends."""
 COARSE = 0.1
-"""Such a residual from which on errors of 1e-3 are wanted: fine directions are left out then."""
+"""Such a residual from which on errors of 1e-3 are wanted: fine directions are left out then, and
+single precision is enough for matrices."""
 _LEAN_AHEAD = 2
 """Degree of the prediction over long steps, where a higher one goes farther off."""
 _NEGLIGIBLE = 1e-5
@@ -72,6 +79,7 @@ class Solution:
 
     Attributes:
         state: where it stands.
+        work: room of the march.
     """
 
     def __init__(
@@ -82,22 +90,22 @@ class Solution:
         self._calls = calls = system.calls()
         self._table = system.table(calls)
         self._nodes = Nodes(
-            np.zeros((degree, calls.argument[-1])),
-            np.zeros((degree, calls.value[-1])),
-            np.zeros((degree, calls.tangent[-1])),
+            aligned(degree, calls.argument[-1]),
+            aligned(degree, calls.value[-1]),
+            aligned(degree, calls.tangent[-1]),
             np.ones((degree + 1, calls.indicator[-1])),
-            np.zeros(calls.argument[-1]),
+            aligned(calls.argument[-1]),
         )
         self._corrections = make_room(len(system.stiff), degree, calls.tangent[-1])
         channels = system.equations.channels
         self._size = 2 * modes.rates.size + modes.angles.size
-        sharp = system.sharp
-        if close < COARSE:
+        sharp, coarse = system.sharp, close >= COARSE
+        if not coarse:
             sharp = np.concatenate([sharp, system.fine])
-        self._shape = Shape(degree, lean, system.directions, sharp, system.stiff)
+        self._shape = Shape(degree, lean, system.directions, sharp, system.stiff, lean and coarse)
         turned = np.broadcast_to(modes.of_angles @ modes.angles, (degree, calls.argument[-1]))
         self._fixed = Fixed(
-            _filled(np.append(self._shape.rows(turned), np.zeros_like(modes.angles))),
+            _filled(np.append(self._shape.rows(turned), np.zeros(2 * modes.angles.size))),
             _ahead(degree, _LEAN_AHEAD if lean else degree),
             np.array(LOBATTO[degree]),
             float(np.any(modes.inputs[:, -1]) or np.any(modes.of_channels[:, -1])),
@@ -112,13 +120,16 @@ class Solution:
         start = modes.start
         self.state = State(
             _filled(np.concatenate([start.real, start.imag, np.zeros_like(modes.angles)])),
-            np.zeros(channels * (degree + 1)),
+            aligned(channels * (degree + 1)),
             np.zeros((len(system.equations.signals), 2 + NODES)),
             np.array([0, 0, 0, -1, 0, 0]),
             np.zeros(4, dtype=np.int64),
         )
+        self._reference = np.zeros(channels)
+        self.work = _room_of(self._fixed, self.state)
         self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
         self._rungs: dict[float, Rungs] = {}
+        self._shared: dict[float, Rungs] = {}
 
     @property
     def arrays(self) -> Arrays:
@@ -135,12 +146,14 @@ class Solution:
         """Go on from there."""
         for name, array in self._remembered().items():
             array[...] = saved[name]
+        self._refer()
 
     def _remembered(self) -> dict[str, np.ndarray]:
         nodes = self._nodes
         table = {"scale": self._table.scale, "least": self._table.least}
         return {
-            **self.state._asdict(), **table, "indicators": nodes.e[0], "arguments": nodes.start
+            **self.state._asdict(), **table, "indicators": nodes.e[0], "arguments": nodes.start,
+            "reference": self._reference,
         }  # fmt: skip
 
     def enter(self, t0: float, t1: float) -> None:
@@ -198,7 +211,7 @@ class Solution:
                 self.make(rungs, int(self.state.place[RUNG]))
                 status = march(
                     self._calls, self._fixed, rungs, self._table, self._nodes, self._corrections,
-                    self.state, samples, t0, round((t1 - t0) / h),
+                    self.state, samples, self.work, t0, round((t1 - t0) / h),
                 )  # fmt: skip
             if status != DONE:
                 self._fail(status, t0, rungs)
@@ -208,13 +221,25 @@ class Solution:
         """Matrices of steps of a length [s], and of shorter ones; see `make`."""
         if h not in self._rungs:
             lengths = [h / 2**k for k in range(HALVINGS + 1)]
-            self._rungs[h] = self._system.rungs(lengths, self._shape)
+            self._shared[h] = shared = self._system.rungs(lengths, self._shape)
+            own = np.zeros_like(shared.made), np.zeros_like(shared.still)
+            self._rungs[h] = shared._replace(made=own[0], still=own[1])
         return self._rungs[h]
 
     def make(self, rungs: Rungs, rung: int) -> None:
         """Fill in the matrices of a rung."""
         if not rungs.made[rung]:
-            make_rung(rungs, rung, self._modes, self._shape)
+            shared = self._shared[float(rungs.lengths[0])]
+            if not shared.made[rung]:
+                make_rung(shared, rung, self._modes, self._shape)
+            refer(rungs, rung, self._reference)
+            rungs.made[rung] = 1
+
+    def _refer(self) -> None:
+        """Let all matrices that are made be exact about the reference."""
+        for rungs in self._rungs.values():
+            for rung in np.flatnonzero(rungs.made):
+                refer(rungs, int(rung), self._reference)
 
     def _begin(self, t: float) -> None:
         """The laws' inputs and indicators at the start of a piece, as if a step had ended there."""
@@ -231,6 +256,11 @@ class Solution:
         )
         self._nodes.start[:] = self._nodes.z[0]
         begin(calls, self._table, self._nodes, t, state.u)
+        self._reference[:] = channels
+        self._reference[: calls.value[-1]] = state.u.reshape(channels.size, -1)[
+            : calls.value[-1], -1
+        ]
+        self._refer()
         if self._fixed.lean:
             self._neglect()
 
@@ -314,6 +344,13 @@ def _filled(values: np.ndarray) -> np.ndarray:
     found = aligned(padded(values.size))
     found[: values.size] = values
     return found
+
+
+def _room_of(fixed: Fixed, state: State) -> Work:
+    rows, inputs = fixed.offset.size, state.u.size
+    return Work(
+        aligned(inputs), aligned(inputs), aligned(rows), aligned(rows), np.zeros(inputs, np.int64)
+    )
 
 
 def _ahead(degree: int, of: int) -> np.ndarray:

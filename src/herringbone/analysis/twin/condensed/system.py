@@ -84,7 +84,7 @@ class Condensed:
 
         Those of the last few lengths are kept, filled as far as some march has needed them.
         """
-        key = (shape.degree, shape.lean, len(shape.sharp), *lengths)
+        key = (shape.degree, shape.lean, shape.short, len(shape.sharp), *lengths)
         if key not in self._kept:
             while len(self._kept) >= _KEPT:
                 del self._kept[next(iter(self._kept))]

@@ -64,13 +64,13 @@ _KINDS: dict[type, str] = {
     State: "f1 f1 f2 i1 i1",
     Samples: "f1 f2 f1 f1",
     Work: "f1 f1 f1 f1 i1",
-    Rungs: "i1 f3 f3 f3 f3 f3 f1",
+    Rungs: "i1 f3 f3 f3 f3 f3 f1 s3 s3 s3 f2",
     Shown: "f1 i1 i1 i1 i1 f1 i1 i1",
     Signals: "f1 f1 f2 f1 f1 f1 f4 i2 f2 f2 f1 f1 f1 f1 i1",
 }
-"""Of each field: reals or integers and its dimensions, a number, or a tuple."""
-_TYPES = {"f": np.dtype(np.float64), "i": np.dtype(np.int64)}
-_WRITTEN = {"f": "np.float64", "i": "np.int64"}
+"""Of each field: reals, integers or short reals and its dimensions, a number, or a tuple."""
+_TYPES = {"f": np.dtype(np.float64), "i": np.dtype(np.int64), "s": np.dtype(np.float32)}
+_WRITTEN = {letter: f"np.{kind}" for letter, kind in _TYPES.items()}
 _SIMPLE = {"real": "f0", "flag": "f0"}
 
 

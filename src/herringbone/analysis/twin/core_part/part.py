@@ -9,7 +9,7 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.march import BENDS, EVALUATIONS, STEPS
 from herringbone.analysis.twin.condensed.march import HALVINGS as HALVED
-from herringbone.analysis.twin.condensed.march_arrays import Samples, Work
+from herringbone.analysis.twin.condensed.march_arrays import Samples
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.analysis.twin.core_part import answers, calls, stepping
 from herringbone.analysis.twin.core_part.memory import SIZE, Signals, write
@@ -116,13 +116,7 @@ class CorePart:
         )  # fmt: skip
         for key, tuple_ in arrays._asdict().items():
             write(self._memory, key, tuple_, self._kept)
-        width = arrays.fixed.offset.size
-        u = arrays.state.u
-        work = Work(
-            np.zeros_like(u), np.zeros_like(u), np.zeros(width), np.zeros(width),
-            np.zeros(u.size, np.int64),
-        )  # fmt: skip
-        write(self._memory, "work", work, self._kept)
+        write(self._memory, "work", run.work, self._kept)
         write(self._memory, "sent", self._sent.shown, self._kept)
         write(self._memory, "others", self._others.shown, self._kept)
         write(self._memory, "signals", self._signals, self._kept)

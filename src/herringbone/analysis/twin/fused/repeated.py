@@ -4,12 +4,17 @@ import numpy as np
 
 from herringbone.analysis.twin.condensed.march import call_laws
 from herringbone.analysis.twin.condensed.march_arrays import Arrays
+from herringbone.analysis.twin.condensed.products import (
+    add_of_inputs,
+    add_of_state,
+    add_push,
+    coordinates,
+)
 from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.kernels.compiling.jit import allocating
 from herringbone.kernels.condensed.channels import inputs
 from herringbone.kernels.condensed.collocation import residuals, spread
 from herringbone.kernels.condensed.correction import correct
-from herringbone.kernels.condensed.modal import add_chosen, add_product
 
 
 @allocating
@@ -40,14 +45,13 @@ def products(
     given: np.ndarray,
     chosen: np.ndarray,
     laws: int,
-    coordinates: int,
 ) -> None:
     """Rows of the coordinates and of the laws' inputs, and the coordinates at the end."""
     rows, q = np.zeros(rungs.rows.shape[2]), np.zeros(rungs.push.shape[2])
     for _ in range(count):
-        add_product(rungs.rows[0], arrays.state.q[:coordinates], rows)
-        add_chosen(rungs.of_inputs[0], given, chosen, laws, rows)
-        add_chosen(rungs.push[0], given, chosen, chosen.size, q)
+        add_of_state(rungs, 0, arrays.state.q[: coordinates(rungs)], rows)
+        add_of_inputs(rungs, 0, given, chosen, laws, rows)
+        add_push(rungs, 0, given, chosen, chosen.size, q)
 
 
 @allocating
