@@ -1,7 +1,7 @@
 """What trial steps tell of a part."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -96,6 +96,17 @@ class Signature:
             passed = (name for name, value in zip(self.inputs, row, strict=True) if value != 0.0)
             found[output] = frozenset(passed) if known else None
         return found
+
+    def with_silent(self, outputs: Sequence[str], why: str) -> "Signature":
+        """With further outputs that answer nothing, and a line first."""
+        shape = len(outputs), len(self.inputs)
+        return replace(
+            self,
+            outputs=(*self.outputs, *outputs),
+            feedthrough=np.vstack([self.feedthrough, np.zeros(shape)]),
+            delay=np.vstack([self.delay, np.full(shape, -1)]),
+            notes=(why, *self.notes),
+        )
 
 
 @dataclass
