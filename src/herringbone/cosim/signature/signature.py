@@ -70,6 +70,8 @@ class Signature:
         tick: time between changes of a sampled part [s]; 0: not sampled.
         given: for each input which value the part is given for a step, see `rotation`.
         rate_inputs: for each input the number of its rate; -1 if it has none.
+        speeds: for each input that is an angle, at what speed what is behind its shaft turns at the
+            start, see `inner_speeds`; nan for others.
         notes: lines on what is unknown, and why.
     """
 
@@ -86,6 +88,7 @@ class Signature:
     tick: float = 0.0
     given: tuple[InputRule, ...] = ()
     rate_inputs: tuple[int, ...] = ()
+    speeds: tuple[float, ...] = ()
     notes: tuple[str, ...] = ()
 
     def dependencies(self) -> Mapping[str, frozenset[str] | None]:
