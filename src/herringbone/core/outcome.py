@@ -10,6 +10,7 @@ class OutcomeKind(StrEnum):
     COMPLETED = "completed"
     PART_LOST_AT_END = "completed_part_lost"
     PART_MAKES_ENERGY = "completed_part_makes_energy"
+    WITH_NAN = "completed_with_nan"
     ENDED = "ended_by_part"
     INTERRUPTED = "interrupted"
     UNSTABLE = "unstable"
@@ -24,6 +25,7 @@ EXIT_CODES = {
     OutcomeKind.ENDED: 0,
     OutcomeKind.PART_LOST_AT_END: 1,
     OutcomeKind.PART_MAKES_ENERGY: 1,
+    OutcomeKind.WITH_NAN: 1,
     OutcomeKind.UNSTABLE: 1,
     OutcomeKind.DIVERGED: 1,
     OutcomeKind.PART_FAILED: 1,
@@ -37,6 +39,7 @@ _REACHED_END = {
     OutcomeKind.UNSTABLE,
     OutcomeKind.PART_LOST_AT_END,
     OutcomeKind.PART_MAKES_ENERGY,
+    OutcomeKind.WITH_NAN,
 }
 
 

@@ -41,6 +41,30 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
     return (f"{part.name}.{bad}", value) if bad else ("", 0.0)
 
 
+def broken_output(network: Network) -> str | None:
+    """The output `instance.variable` that is not finite where what its part was given is.
+
+    Parts that refuse such values, or pass them on, are not where it began. None if there is none.
+    """
+    bad: dict[int, str] = {}
+    for c in network.connections:
+        source = network.parts[c.source]
+        try:
+            (value,) = source.get([c.output])
+        except HerringboneError:
+            continue
+        if not np.isfinite(value):
+            bad.setdefault(c.source, f"{source.name}.{c.output}")
+    fed = {c.target for c in network.connections if c.source in bad}
+    return next((name for p, name in bad.items() if p not in fed), next(iter(bad.values()), None))
+
+
+def first_nan(times: np.ndarray, values: np.ndarray) -> dict[int, float]:
+    """When columns (n, m) are no number for the first time [s], by the number of the column."""
+    nan = np.isnan(values)
+    return {int(k): float(times[nan[:, k].argmax()]) for k in np.flatnonzero(nan.any(axis=0))}
+
+
 def is_sudden(read: Callable[[], Iterable[np.ndarray]]) -> bool:
     """True if records end without having grown: then a part, and not the coupling, ends them so.
 

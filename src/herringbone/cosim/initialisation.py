@@ -1,7 +1,9 @@
 """Initialisation of a system: signals reach all parts before the first step."""
 
+import math
 from collections.abc import Sequence
 
+from herringbone.core import FmuError, HerringboneError
 from herringbone.core.declaring.declaration import node_name
 from herringbone.cosim.algebraic_loop import AlgebraicLoop, measure_loop, solve_loop
 from herringbone.cosim.energy.watch import EnergyWatch
@@ -54,8 +56,17 @@ def initialise(
 def _propagate(network: Network) -> None:
     for target in (*network.elements, *network.bodies, *network.slow):
         for c in network.inputs(target):
-            value = network.parts[c.source].get([c.output])[0]
-            network.parts[target].set(c.input, value)
+            source = network.parts[c.source]
+            value = source.get([c.output])[0]
+            try:
+                network.parts[target].set(c.input, value)
+            except HerringboneError as error:
+                if math.isfinite(value):
+                    raise
+                raise FmuError(
+                    f"{source.name}.{c.output} is not finite when the run starts ({value}), and "
+                    f"{network.parts[target].name} takes it: set start values of {source.name}"
+                ) from error
 
 
 def _hold_unconnected_inputs(network: Network, degrees: Sequence[int]) -> None:

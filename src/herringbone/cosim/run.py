@@ -11,7 +11,7 @@ from herringbone.core.energy_report import Verdict
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
 from herringbone.cosim.algorithms.base import PreparedRun
 from herringbone.cosim.checkpoint.checkpoints import Checkpoints
-from herringbone.cosim.divergence import diverged
+from herringbone.cosim.divergence import broken_output, diverged
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.interrupt import InterruptFlag
 from herringbone.cosim.layouts.layout import HISTORY, Chunk, connected_outputs
@@ -40,6 +40,8 @@ _PROBLEMS = {
 }
 _REFUSED = -1
 """Status of a run in which a part refuses a value of another type than real."""
+_BEGUN = 8
+"""Macro steps of which nobody can say whether something has grown."""
 Progress = Callable[[float, float], None]
 """Called with the simulated time reached and its end [s]."""
 
@@ -178,30 +180,49 @@ class Run:
             return Outcome(OutcomeKind.PART_FAILED, reached, self.others.asked, message)
         if (end := self._ended(status, culprit)) is not None:
             return Outcome(end.kind, max(end.time, reached), end.culprit, end.message)
-        if status in _PROBLEMS:
-            return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         return self._failure(done, status, culprit)
 
     def _failure(self, done: int, status: int, culprit: int) -> Outcome:
         """A part refused its step, or its values have diverged."""
         reached = done * self.grid.step
+        if (broken := broken_output(self.network)) is not None:
+            return self._not_finite(done, broken)
+        if status in _PROBLEMS:
+            return Outcome(_PROBLEMS[status], reached, self.prepared.culprit, self.prepared.problem)
         part = self.network.parts[culprit]
         part.failed()
         said = "; ".join(part.messages())
         where, value = diverged(self.network, culprit)
+        if where and not math.isfinite(value):
+            return self._not_finite(done, where)
         if status == NOT_FINITE or where:
-            where = where or part.name
-            how = "grows beyond all bounds" if math.isfinite(value) else "is not finite"
-            if not math.isfinite(value) and self.rows.are_sudden(done):
-                message = f"{where} {how} at {reached:g} s, and nothing has grown before"
-                return Outcome(OutcomeKind.PART_FAILED, reached, where, message)
-            message = (
-                f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
-                f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
-            )
-            return Outcome(OutcomeKind.DIVERGED, reached, where, message)
+            return self._diverged(done, where or part.name, "grows beyond all bounds")
         message = f"{part.name} refused its step at {reached:g} s" + (f": {said}" if said else "")
         return Outcome(OutcomeKind.PART_FAILED, reached, part.name, message)
+
+    def _not_finite(self, done: int, where: str) -> Outcome:
+        """A value is not finite: the part's doing, unless something has grown before."""
+        reached, how = done * self.grid.step, "is not finite"
+        if self.rows.are_sudden(done):
+            why = ", and nothing has grown before"
+        elif done <= _BEGUN:
+            why = (
+                ", as soon as the run has begun: look into that part and its start values, or use "
+                "a shorter step"
+            )
+        else:
+            return self._diverged(done, where, how)
+        message = f"{where} {how} at {reached:g} s{why}"
+        return Outcome(OutcomeKind.PART_FAILED, reached, where, message)
+
+    def _diverged(self, done: int, where: str, how: str) -> Outcome:
+        """Values have grown until they are beyond all bounds."""
+        reached = done * self.grid.step
+        message = (
+            f"{where} {how} at {reached:g} s; the coupling or the model is unstable: "
+            f"use a step below {self._step(done):g} s or an algorithm with a higher limit"
+        )
+        return Outcome(OutcomeKind.DIVERGED, reached, where, message)
 
     def _ended(self, status: int, culprit: int) -> Outcome | None:
         """The end that a part asked for; None if none did."""
@@ -217,7 +238,7 @@ class Run:
         """Completed, unless the coupling was seen to add energy without end."""
         energy = self.watch.report()
         if energy is None or energy.verdict is not Verdict.UNSTABLE:
-            return Outcome(OutcomeKind.COMPLETED, reached)
+            return self._outcome_of_rows(reached)
         bond = energy.bond or ""
         message = (
             f"ran to the end, but the coupling is unstable from {energy.time:.4g} s, most of all "
@@ -225,6 +246,14 @@ class Run:
             "higher limit"
         )
         return Outcome(OutcomeKind.UNSTABLE, reached, bond, message)
+
+    def _outcome_of_rows(self, reached: float) -> Outcome:
+        """Completed, with or without outputs that are no numbers."""
+        if (found := self.rows.first_nan(self.grid.count)) is None:
+            return Outcome(OutcomeKind.COMPLETED, reached)
+        where, since = found
+        message = f"{where} is NaN from {since:g} s on; no part takes it, and all else is complete"
+        return Outcome(OutcomeKind.WITH_NAN, reached, where, message)
 
     def _recording(self, done: int, outcome: Outcome, wall: float, cpu: float) -> Recording:
         kept, record_step = self.rows.finish(done, outcome)

@@ -17,7 +17,7 @@ from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.run import Progress, Run
-from herringbone.cosim.start_speeds import unlike_speeds
+from herringbone.cosim.start_speeds import unlike_inside, unlike_speeds
 from herringbone.cosim.start_values import start_offsets
 from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
@@ -136,7 +136,8 @@ def ready(
     watch = EnergyWatch(network, prepared, grid.step, bond_frequency)
     others = OtherSignals(network)
     loop = initialise(network, prepared.degree, grid.step * grid.count, watch, others, tolerance)
-    notes = [*settle_derivatives(network, prepared), *others.notes, *unlike_speeds(network)]
+    notes = [*settle_derivatives(network, prepared), *others.notes]
+    notes += [*unlike_speeds(network), *unlike_inside(network)]
     run = Run(network, prepared, grid, watch, notes, others, streaming)
     run.start_offsets = start_offsets(network)
     if loop is None:

@@ -1,12 +1,16 @@
 """Shafts that a coupling joins and that turn unlike when a run starts: a blow that nobody meant."""
 
+import math
 from collections.abc import Iterator
 
 from herringbone.core.part import Part
+from herringbone.cosim.approached_part import ApproachedPart
 from herringbone.cosim.structure.connection import Connection
 from herringbone.cosim.structure.network import Network
 
 _SPEED, _TORQUE = "rad/s", "N.m"
+_ROTATION = {_SPEED, None, ""}
+"""Units of an input that may be a speed: foreign parts declare none, or this."""
 _UNLIKE = 0.05
 """Of the faster shaft: a smaller difference is one of twist that settles."""
 _SLOW = 1.0
@@ -27,8 +31,7 @@ def unlike_speeds(network: Network) -> Iterator[str]:
         if len(joined) != 2:
             continue
         first, second = (network.parts[c.source].get([c.output])[0] for c in joined)
-        faster = max(abs(first), abs(second))
-        if faster < _SLOW or abs(first - second) < _UNLIKE * faster:
+        if not _unlike(first, second):
             continue
         torque = _torque(network, target)
         if torque > 0.0:
@@ -41,6 +44,52 @@ def unlike_speeds(network: Network) -> Iterator[str]:
                 f"{_TORQUE} at once; set start values that turn alike, or begin at rest on both "
                 "sides"
             )
+
+
+def unlike_inside(network: Network) -> Iterator[str]:
+    """A line for each part whose own shaft joins a turning one to what turns unlike behind it.
+
+    Args:
+        network: its parts are initialised; those with a signature were tried at their start.
+    """
+    for target in network.bodies:
+        part = network.parts[target]
+        signature = getattr(part, "signature", None)
+        if signature is None or _was_stepped(part):
+            continue
+        fed = {c.input: c for c in network.inputs(target)}
+        for number, inside in enumerate(signature.speeds):
+            name = signature.inputs[signature.rate_inputs[number]]
+            if math.isnan(inside) or name not in fed or _unit(part, fed[name]) not in _ROTATION:
+                continue
+            source = network.parts[fed[name].source]
+            (outside,) = source.get([fed[name].output])
+            if _unlike(inside, outside):
+                yield (
+                    f"{part.name}: what is behind its shaft at {signature.inputs[number]} turns at "
+                    f"{_round(inside)} {_SPEED} at the start, and meets {source.name}."
+                    f"{fed[name].output} = {outside:.5g} {_SPEED}, a jump; set the start value of "
+                    f"its speed (--set {part.name}.NAME={outside:.5g}), or begin at rest on both "
+                    "sides"
+                )
+
+
+def _was_stepped(part: Part) -> bool:
+    """True if a part was stepped to the start of the run, and is not as it was tried."""
+    inner: Part | None = part
+    while inner is not None and not isinstance(inner, ApproachedPart):
+        inner = getattr(inner, "part", None)
+    return inner is not None
+
+
+def _round(speed: float) -> str:
+    """A speed that trials tell to a share of what counts as alike."""
+    return f"{speed:.3g}" if abs(speed) >= _SLOW else "0"
+
+
+def _unlike(first: float, second: float) -> bool:
+    faster = max(abs(first), abs(second))
+    return faster >= _SLOW and abs(first - second) >= _UNLIKE * faster
 
 
 def _unit(part: Part, c: Connection) -> str | None:

@@ -18,14 +18,10 @@ from herringbone.running.operating.lean import refuse_lean
 from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import compared
+from herringbone.running.steps.error_by_steps import can_be_verified, verified_by_other_steps
 from herringbone.running.steps.for_tolerance import for_tolerance
 from herringbone.running.steps.step_search import searched, searched_tolerance
-from herringbone.running.steps.verification import (
-    can_be_verified,
-    check_fixed_step,
-    verified,
-    verified_by_longer_steps,
-)
+from herringbone.running.steps.verification import check_fixed_step, verified
 from herringbone.scenes import Scene
 
 
@@ -114,7 +110,7 @@ def coupled_run(
     if verify and not found.recording.outcome.unstable:
         result = verified(result, system, scene, found, asked, progress)
     elif can_be_verified(system, result, found, asked):
-        result = verified_by_longer_steps(result, system, scene, found, asked)
+        result = verified_by_other_steps(result, system, scene, found, asked)
     return _explained(result, system, found)
 
 

@@ -11,12 +11,12 @@ def fail_at(when, status=ERROR):
     return lambda part, t: status if t > when - 1e-9 else OK
 
 
-def spoil_at(when, value=math.nan):
-    """Misbehaviour: a velocity that is not finite from `when` on."""
+def spoil_at(when, value=math.nan, output="flange.v"):
+    """Misbehaviour: an output that is not finite from `when` on."""
 
     def spoil(part, t):
         if t > when - 1e-9:
-            part["flange.v"] = value
+            part[output] = value
         return OK
 
     return spoil

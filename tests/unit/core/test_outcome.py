@@ -9,6 +9,7 @@ EXPECTED = {  # completed, reached its end, unstable, exit code
     K.COMPLETED: (True, True, False, 0),
     K.PART_LOST_AT_END: (False, True, False, 1),
     K.PART_MAKES_ENERGY: (False, True, False, 1),
+    K.WITH_NAN: (False, True, False, 1),
     K.ENDED: (False, False, False, 0),
     K.INTERRUPTED: (False, False, False, 130),
     K.UNSTABLE: (False, True, True, 1),

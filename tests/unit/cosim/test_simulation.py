@@ -160,6 +160,38 @@ def test_values_that_are_not_finite(algorithm, value):
     assert recording.values.tobytes() == whole.values[:10].tobytes()
 
 
+@pytest.mark.parametrize("algorithm", STAGED, ids=str)
+def test_values_that_are_not_finite_in_the_first_steps(algorithm):
+    """Whether something has grown cannot be seen; the part that began it is named all the same."""
+    outcome = PROBLEM.run(algorithm, 0.1, 2.0, misbehave=spoil_at(0.2)).outcome
+    assert outcome.kind is OutcomeKind.PART_FAILED
+    assert outcome.culprit == "left.flange.v"
+    assert "is not finite at 0.2 s, as soon as the run has begun" in outcome.message
+
+
+def test_an_output_that_is_no_number_and_that_nothing_takes():
+    """The run is complete, but no success; a failure later keeps all rows before it."""
+
+    def run(misbehave, streaming=None):
+        parts = PROBLEM.parts(misbehave=misbehave)
+        parts[0]._add("gauge", "output", frozenset())
+        return simulate(
+            TWO_MASS_SYSTEM, parts, Jacobi(order=2), make_grid(2.0, 0.1, 0.1), streaming=streaming
+        )
+
+    gauge, velocity = spoil_at(0.5, output="gauge"), spoil_at(1.5)
+    found = run(gauge)
+    assert found.outcome.kind is OutcomeKind.WITH_NAN
+    assert found.outcome.culprit == "left.gauge"
+    assert found.outcome.message.startswith("left.gauge is NaN from 0.5 s on")
+    assert found.time[-1] == pytest.approx(2.0)
+    assert run(gauge, Streaming(Folder(np.empty((0, 7))))).outcome == found.outcome
+    both = run(lambda part, t: max(gauge(part, t), velocity(part, t)))
+    assert both.outcome.kind is OutcomeKind.PART_FAILED
+    assert both.outcome.culprit == "left.flange.v"
+    assert both.time[-1] == pytest.approx(1.4)
+
+
 def test_values_that_are_not_finite_after_growth():
     """The coupling may be to blame: rows that grow tenfold from the first half on tell so."""
     growing = np.exp(np.linspace(0.0, 2.0 * np.log(10.1), 21))[:, None] * np.ones(3)

@@ -1,8 +1,13 @@
 """Shafts that turn unlike where a coupling joins them at the start."""
 
+import math
+from types import SimpleNamespace
+
 import pytest
+from support.parts.fakes import FakePart
 
 import herringbone as hb
+from herringbone.cosim.start_speeds import unlike_inside
 from herringbone.cosim.structure.system import PartSpec, System
 
 STIFFNESS, DAMPING = 1e4, 5.0
@@ -37,3 +42,31 @@ def test_a_turning_rotor_meets_one_at_rest():
 @pytest.mark.parametrize("speeds", [(FAST, FAST), (FAST, 0.99 * FAST), (0.0, 0.0)])
 def test_shafts_that_turn_alike(speeds):
     assert not lines_of(*speeds)
+
+
+def lines_inside(inside, outside, unit="rad/s"):
+    """Of a part with a rotor behind its shaft, on a gear (both speeds [rad/s])."""
+    part = FakePart("fly").real("flange.phi", "input", "rad").real("flange.w", "input", unit)
+    part.signature = SimpleNamespace(
+        inputs=("flange.phi", "flange.w"), rate_inputs=(1, -1), speeds=(inside, math.nan)
+    )
+    gear = FakePart("gear").real("w", "output", "rad/s")
+    gear.get = lambda names: [outside]
+    joined = SimpleNamespace(source=1, output="w", target=0, input="flange.w")
+    network = SimpleNamespace(parts=[part, gear], bodies=[0, 1], inputs=lambda p: [joined][p:])
+    gear.signature = None
+    return list(unlike_inside(network))
+
+
+def test_a_rotor_at_rest_inside_a_part_meets_a_gear_that_turns():
+    """The line names both, with speeds, and the value to set."""
+    (line,) = lines_inside(0.01, FAST)
+    assert line.startswith("fly: what is behind its shaft at flange.phi turns at 0 rad/s")
+    assert "gear.w = 104.7 rad/s" in line
+    assert "--set fly.NAME=104.7" in line
+
+
+@pytest.mark.parametrize("inside", [FAST, 0.97 * FAST, math.nan])
+def test_a_rotor_that_turns_alike_or_is_not_known(inside):
+    assert not lines_inside(inside, FAST)
+    assert not lines_inside(0.0, FAST, unit="1/min")

@@ -22,7 +22,7 @@ def system(tmp_path_factory):
 
 
 def test_error_of_a_run(system):
-    """Told by longer steps, within a factor of 3, against a tenth of the step."""
+    """Told by other steps, within a factor of 3, against a tenth of the step."""
     run = hb.run(system, step=1e-3, in_process=False, **ASKED)
     true = apart(run, hb.run(system, step=1e-4, in_process=False, **ASKED)).groups
     for group, told in run.verification.groups.items():

@@ -110,8 +110,8 @@ class PreparedNodes(PreparedRun):
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run
         """Downgrades; and, after a run, a residual that the corrections did not remove."""
         left = float(self._buffers.worst[0]) if self._buffers else 0.0
-        if not self.newton or left <= self.rest:
-            return self._downgrades
+        if not self.newton or left <= self.rest or not math.isfinite(left):
+            return self._downgrades  # of values that are not finite the outcome tells
         return (
             *self._downgrades,
             f"after {self.most} corrections the forces still differed by up to {left:.2g} of the "

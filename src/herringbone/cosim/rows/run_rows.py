@@ -6,7 +6,7 @@ from herringbone.core import Outcome, OutcomeKind
 from herringbone.core.part import column
 from herringbone.core.run_table import KeptRows
 from herringbone.cosim.algorithms.base import PreparedRun
-from herringbone.cosim.divergence import is_sudden
+from herringbone.cosim.divergence import first_nan, is_sudden
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.other_signals import OtherSignals
@@ -46,6 +46,7 @@ class RunRows:
         self.recorded = [part.variables[n] for part, names in named for n in names]
         columns = len(self.names)
         self.record = prepared.record(grid, columns, streaming and streaming.window(columns))
+        self._taken = np.unique(prepared.layout.output_record)
         self._keeps_all = streaming is None or streaming.keeps_all
         self.stream = streaming and Stream(
             streaming, self.record, others, self.names, self.recorded
@@ -69,9 +70,22 @@ class RunRows:
         stream = self.stream
         if stream is None or self._keeps_all:
             rows = self.record.values[: self.record.complete(done)]
-            return is_sudden(lambda: [rows])
+            return is_sudden(lambda: [rows[:, self._taken]])
         stream.flush(done)  # all rows of the run, those before it was resumed too
-        return is_sudden(lambda: (values for _, values in stream.sink.read()))
+        return is_sudden(lambda: (values[:, self._taken] for _, values in stream.sink.read()))
+
+    def first_nan(self, done: int) -> tuple[str, float] | None:
+        """The first column that is no number in some row, and from when on [s]; None: none is."""
+        if self.stream and not self._keeps_all:
+            self.stream.flush(done)
+            found = self.stream.nan
+        else:
+            times = self.record.times(done)
+            found = first_nan(times, self.record.values[: times.size])
+        if not found:
+            return None
+        first = min(found, key=found.__getitem__)
+        return self.names[first], found[first]
 
     def flush_in_time(self, done: int) -> None:
         """Let complete rows go, now and then; raises HerringboneError."""
@@ -92,7 +106,7 @@ class RunRows:
             if between:
                 self.stream.append(outcome.time, self._last_row())
             elif failed:
-                self.stream.cut_diverged()
+                self.stream.cut_diverged(self._taken)
         if self.stream and not self._keeps_all:
             return self.stream.sink.kept(), self.record.step(self.stream.last, self.stream.rows)
         times = self.record.times(done)
@@ -100,7 +114,7 @@ class RunRows:
         if between:
             times, values = np.append(times, outcome.time), np.vstack([values, self._last_row()])
         elif failed:
-            rows = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
+            rows = int((np.abs(values[:, self._taken]) < BOUND).all(axis=1).cumprod().sum())
             times, values = times[:rows], values[:rows]
         if self._others.recorded:
             times, values = times[: self._others.rows], values[: self._others.rows]

@@ -8,6 +8,7 @@ import numpy as np
 
 from herringbone.core.part import PartVariable
 from herringbone.core.run_table import RowSink, TableColumns
+from herringbone.cosim.divergence import first_nan
 from herringbone.cosim.loops.common import BOUND
 from herringbone.cosim.other_signals import OtherSignals
 from herringbone.cosim.rows.record import Record, window_rows
@@ -50,6 +51,7 @@ class Stream:
     Attributes:
         rows: of the run that were handed on.
         last: time of the last one [s].
+        nan: when columns were no number for the first time [s], by their number.
     """
 
     def __init__(
@@ -62,6 +64,7 @@ class Stream:
     ) -> None:
         self._to, self._record, self._others, self._recorded = streaming, record, others, recorded
         self.rows, self.last, self._flushed = 0, 0.0, time.perf_counter()
+        self.nan: dict[int, float] = {}
         types = {name: kind.name for name, kind in others.types.items()}
         units = tuple(own_unit(v) for v in recorded)
         columns = TableColumns(tuple(names), units, types, others.units)
@@ -100,6 +103,7 @@ class Stream:
     def _append(self, times: np.ndarray, values: np.ndarray, others: Sequence) -> None:
         self.sink.append(times, in_own_units(self._recorded, values), others)
         self.last = float(times[-1])
+        self.nan = first_nan(times, values) | self.nan
 
     def append(self, time: float, values: np.ndarray) -> None:
         """Hand on a row (columns,) between the records, of which others has a row already."""
@@ -107,11 +111,15 @@ class Stream:
         self._append(np.array([time]), values[None], others)
         self.rows += 1
 
-    def cut_diverged(self) -> None:
-        """Take back the rows from the first value on that is beyond all bounds."""
+    def cut_diverged(self, taken: np.ndarray) -> None:
+        """Take back the rows from the first value on that is beyond all bounds.
+
+        Args:
+            taken: numbers of the columns that count: those that parts take.
+        """
         rows = 0
         for _, values in self.sink.read():
-            good = int((np.abs(values) < BOUND).all(axis=1).cumprod().sum())
+            good = int((np.abs(values[:, taken]) < BOUND).all(axis=1).cumprod().sum())
             rows += good
             if good < len(values):
                 break

@@ -36,6 +36,7 @@ class Laboratory:
         why: what is wrong with either, "" if nothing.
         seconds: that a step takes [s].
         start_outputs: (m,) before the first step.
+        not_finite: outputs that are not, at the start or in the first steps.
         instances: how many were made so far.
     """
 
@@ -59,6 +60,7 @@ class Laboratory:
         self.why = ""
         self.seconds, self.instances = 0.0, 0
         self.start_outputs = np.empty(0)
+        self.not_finite: tuple[str, ...] = ()
 
     def __enter__(self) -> Self:
         """Make the first instance, and test whether it repeats.
@@ -186,12 +188,14 @@ class Laboratory:
         begun = perf_counter()
         first = self._steps(self._trial)
         self.seconds = (perf_counter() - begun) / _TESTED_STEPS
+        finite = np.isfinite(np.vstack([self.start_outputs, first])).all(axis=0)
+        self.not_finite = tuple(n for n, ok in zip(self.outputs, finite, strict=True) if not ok)
         if saved is not None:
             try:
                 self._trial.restore(saved)
                 again = self._steps(self._trial)
                 self._trial.restore(saved)
-                self.restores = bool(np.array_equal(first, again))
+                self.restores = bool(np.array_equal(first, again, equal_nan=True))
                 self.why = "" if self.restores else self._differs(first, again, "after a restore")
             except Refused as error:
                 self.restores, self.why = False, str(error)
@@ -217,7 +221,7 @@ class Laboratory:
         except FmuError as error:
             raise FmuError(f"no second instance for trials: {error}") from error
         again = self._steps(self._trial)
-        self.repeats = bool(np.array_equal(first, again))
+        self.repeats = bool(np.array_equal(first, again, equal_nan=True))
         if not self.repeats:
             self.why = self._differs(first, again, "in a second instance")
 

@@ -7,6 +7,7 @@ import numpy as np
 from herringbone.core.part import PartVariable
 from herringbone.cosim.signature.amplitudes import RATIO, amplitude
 from herringbone.cosim.signature.feedthrough import SAME, feedthrough_of, runs_on
+from herringbone.cosim.signature.inner_speeds import inner_speeds
 from herringbone.cosim.signature.laboratory import Laboratory
 from herringbone.cosim.signature.later import later_feedthrough
 from herringbone.cosim.signature.memory import Pulses, pulses
@@ -100,6 +101,7 @@ def _by_trials(
         tick=tick,
         given=given,
         rate_inputs=rate,
+        speeds=inner_speeds(lab, feedthrough, given, rate),
     )
 
 

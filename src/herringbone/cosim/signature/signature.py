@@ -1,7 +1,7 @@
 """What trial steps tell of a part."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -70,6 +70,8 @@ class Signature:
         tick: time between changes of a sampled part [s]; 0: not sampled.
         given: for each input which value the part is given for a step, see `rotation`.
         rate_inputs: for each input the number of its rate; -1 if it has none.
+        speeds: for each input that is an angle, at what speed what is behind its shaft turns at the
+            start, see `inner_speeds`; nan for others.
         notes: lines on what is unknown, and why.
     """
 
@@ -86,6 +88,7 @@ class Signature:
     tick: float = 0.0
     given: tuple[InputRule, ...] = ()
     rate_inputs: tuple[int, ...] = ()
+    speeds: tuple[float, ...] = ()
     notes: tuple[str, ...] = ()
 
     def dependencies(self) -> Mapping[str, frozenset[str] | None]:
@@ -96,6 +99,17 @@ class Signature:
             passed = (name for name, value in zip(self.inputs, row, strict=True) if value != 0.0)
             found[output] = frozenset(passed) if known else None
         return found
+
+    def with_silent(self, outputs: Sequence[str], why: str) -> "Signature":
+        """With further outputs that answer nothing, and a line first."""
+        shape = len(outputs), len(self.inputs)
+        return replace(
+            self,
+            outputs=(*self.outputs, *outputs),
+            feedthrough=np.vstack([self.feedthrough, np.zeros(shape)]),
+            delay=np.vstack([self.delay, np.full(shape, -1)]),
+            notes=(why, *self.notes),
+        )
 
 
 @dataclass

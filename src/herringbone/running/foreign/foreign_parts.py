@@ -4,7 +4,7 @@ Parts with known feedthrough are given polynomial signals (`cosim.nodal`). Of ot
 structure is used, and a line says why.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 
@@ -116,14 +116,35 @@ def signature_of(part: Part, make: Callable[[], Part], step: float) -> Signature
         return _unknown(inputs, outputs, step, "it declares that its steps cannot vary: no trials")
     if not inputs and any(v.causality == "input" for v in part.variables.values()):
         return _unknown(inputs, outputs, step, "its inputs are no reals: no trials")
+    return _tried(part, make, inputs, outputs, step)
+
+
+def _tried(
+    part: Part, make: Callable[[], Part], inputs: list[str], outputs: list[str], step: float
+) -> Signature:
+    """See `signature_of`; outputs that are not finite in trials are left out of them."""
     try:
         start = start_inputs(make(), inputs)
         with Laboratory(make, inputs, outputs, start, step) as lab:
+            silent = lab.not_finite
             if part.once and not lab.repeats:
                 return _unknown(inputs, outputs, step, f"{_LEFT}: {lab.why}: no trials")
-            return find_signature(lab, part.variables)
+            if not silent:
+                return find_signature(lab, part.variables)
+        with Laboratory(make, inputs, _others(outputs, silent), start, step) as lab:
+            found = find_signature(lab, part.variables)
     except FmuError as error:
         return _unknown(inputs, outputs, step, f"no trials: {error}")
+    why = f"{', '.join(silent)}: not finite in trials, and taken to depend on nothing"
+    return found.with_silent(silent, why)
+
+
+def _others(outputs: Sequence[str], silent: Collection[str]) -> list[str]:
+    """Outputs that trials show; raises FmuError if there are none."""
+    found = [name for name in outputs if name not in silent]
+    if not found:
+        raise FmuError(f"{', '.join(silent)}: not finite")
+    return found
 
 
 def _reals(part: Part, causality: str) -> list[str]:

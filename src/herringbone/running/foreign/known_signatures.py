@@ -60,6 +60,7 @@ def _signature(plain: dict) -> Signature:
         rates=rates,
         given=tuple(InputRule(rule) for rule in plain.pop("given")),
         rate_inputs=tuple(plain.pop("rate_inputs")),
+        speeds=tuple(plain.pop("speeds")),
         notes=tuple(plain.pop("notes")),
         **plain,
     )

@@ -43,7 +43,7 @@ _USUAL_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 5e-4, 2e-3, 5e-3, 2e-4, 0.1)
 
 _INSTEAD = (
     "this holds for all algorithms, with --simulate, too; 'herringbone run' with --step tells of a "
-    "step by its outcome and by its error by steps, at twice and four times the step"
+    "step by its outcome and by its error by steps, at half and twice the step"
 )
 
 

@@ -124,7 +124,11 @@ def judged(result: Result, system: System, bond_frequency: float | None) -> Resu
         found, budget = misfits(even), error_budget(even, bond_frequency or 0.0)
     except ResourceError as error:  # no reason to lose a run that has ended
         found, budget = (f"no error budget: {error}",), ()
-    notes = (*result.info.notes, *found, *unsettled(even))
+    if result.outcome.failed:  # how far it may be off, and whether it settles, is no question then
+        budget = ()
+    else:
+        found = (*found, *unsettled(even))
+    notes = (*result.info.notes, *found)
     return replace(result, info=replace(result.info, notes=notes), budget=budget)
 
 
