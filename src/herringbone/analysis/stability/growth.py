@@ -63,7 +63,7 @@ class Growth:
         return share * self.fast_change < _SLOW
 
 
-def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, unknown: float = 0.0) -> Growth:
+def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, missed: float = 0.0) -> Growth:
     """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
 
     Args:
@@ -71,33 +71,36 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, unknown: floa
         step: its length [s].
         noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
             out like 1 itself.
-        unknown: distance from 1 up to which nothing is known of eigenvalues; they are left out.
+        missed: share of what a step changes by which models of foreign parts may miss it, as noise.
     """
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
-        found = _fastest(_moving(eigenvalues, unknown), step)
+        found = _fastest(_moving(eigenvalues), step)
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
         if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
         scaled = dgebal(matrix, scale=1)[0]
-        if _is_sure(scaled, _eigenvalue(found, step), noise):
+        even = noise * float(np.linalg.norm(scaled, 2)) / np.sqrt(len(scaled))
+        errors = np.hypot(even, missed * np.abs(scaled - np.eye(len(scaled))))
+        if _is_sure(scaled, _eigenvalue(found, step), errors):
             return found
-        error = noise * float(np.linalg.norm(scaled, 2))
-        pair = _grows_as_a_pair(scaled, eigenvalues, error)
-        eigenvalues, known = _with_errors(scaled, error)
+        pair = _grows_as_a_pair(scaled, eigenvalues, errors)
+        eigenvalues, known = _with_errors(scaled, errors)
     if pair is not None:
         known[np.argsort(np.abs(eigenvalues - 1.0))[:2]] = 0.0 if pair else np.inf
-    return _fastest(_moving(eigenvalues, np.maximum(known, unknown)), step)
+    return _fastest(_moving(eigenvalues, known), step)
 
 
-def _moving(eigenvalues: np.ndarray, unknown: np.ndarray | float) -> np.ndarray:
-    """Those that are not the free rotation of the shafts, and of which something is known."""
-    return eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, unknown)]
+def _moving(eigenvalues: np.ndarray, known: np.ndarray | float = 0.0) -> np.ndarray:
+    """Those that are not the free rotation of the shafts, as far as they are known."""
+    return eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)]
 
 
-def _grows_as_a_pair(scaled: np.ndarray, eigenvalues: np.ndarray, error: float) -> bool | None:
+def _grows_as_a_pair(
+    scaled: np.ndarray, eigenvalues: np.ndarray, errors: np.ndarray
+) -> bool | None:
     """False if the two motions nearest to 1 may be free rotation, which errors have split.
 
     A double eigenvalue goes by the square root of an error, but its mean, and what makes it a
@@ -105,28 +108,33 @@ def _grows_as_a_pair(scaled: np.ndarray, eigenvalues: np.ndarray, error: float) 
 
         1 + m 1 + p S + q J,    S a reflection, J a quarter turn, eigenvalues 1 + m +- sqrt(p2 - q2)
 
-    and does not grow if m <= 0 and p <= sqrt(q2 + m2): free rotation has m = 0 and p = q. An error E
-    of the whole matrix changes that in the plane by |P| |E| at most, to first order, P the
-    projector onto it (G. W. Stewart, SIAM Review 15, 1973, 727-764), if it is random by that over
-    the root of n. None if the two are not apart from a third.
+    and does not grow if m <= 0 and p <= sqrt(q2 + m2): free rotation has m = 0 and p = q. To first
+    order an error E of the whole matrix is L E R in the plane, R and L the bases of its right and
+    left invariant subspaces, L R = 1 (G. W. Stewart, SIAM Review 15, 1973, 727-764). None if the
+    two are not apart from a third.
     """
     distances = np.append(np.sort(np.abs(eigenvalues - 1.0)), np.inf)
     if len(distances) < 3 or distances[2] <= distances[1]:
         return None
     within = min(np.sqrt(distances[1] * distances[2]), 2.0 * distances[1])
-    whole, _, count = schur(
+    whole, basis, count = schur(
         scaled, output="real", sort=lambda real, imag: np.hypot(real - 1.0, imag) <= within
     )
     if count != 2:
         return None
     plane, beside = whole[:2, :2] - np.eye(2), whole[2:, 2:] - np.eye(len(whole) - 2)
-    across = solve_sylvester(plane, -beside, -whole[:2, 2:]) if beside.size else np.zeros((2, 1))
-    projector = np.hypot(1.0, np.linalg.norm(across, 2))
+    across = solve_sylvester(plane, -beside, -whole[:2, 2:])
+    right, left = basis[:, :2], basis[:, :2].T - across @ basis[:, 2:].T
     mean = 0.5 * np.trace(plane)
     reflection = 0.5 * np.hypot(plane[0, 0] - plane[1, 1], plane[0, 1] + plane[1, 0])
     turn = 0.5 * (plane[1, 0] - plane[0, 1])
     above = max(mean, 0.0) + max(reflection - np.hypot(turn, mean), 0.0)
-    return bool(above > _MARGIN * projector * error / np.sqrt(len(scaled)))
+    return bool(above > _MARGIN * _scatter(left, errors, right))
+
+
+def _scatter(left: np.ndarray, errors: np.ndarray, right: np.ndarray) -> float:
+    """Size of left @ E @ right, the entries of E random and independent, of these sizes."""
+    return float(np.sqrt((np.abs(left) ** 2 @ errors**2 @ np.abs(right) ** 2).sum()))
 
 
 def _eigenvalue(found: Growth, step: float) -> complex:
@@ -139,11 +147,11 @@ def _is_far(found: Growth, step: float) -> bool:
     return abs(_eigenvalue(found, step) - 1.0) > _SLOW
 
 
-def _is_sure(scaled: np.ndarray, value: complex, noise: float) -> bool:
+def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
     """True if an eigenvalue's condition alone tells that errors do not move it from 1.
 
-    With right and left vectors v, w of length 1 an error of size e moves it by e / |w v| at most,
-    to first order; a margin is left for what is of higher order. Double ones have w v = 0.
+    With right and left vectors v, w of length 1 an error E moves it by w E v / (w v), to first
+    order; a margin is left for what is of higher order. Double ones have w v = 0.
     """
     shifted = scaled - value * (1.0 + _ASIDE) * np.eye(len(scaled))
     factors = lu_factor(shifted, check_finite=False)
@@ -152,9 +160,9 @@ def _is_sure(scaled: np.ndarray, value: complex, noise: float) -> bool:
         right = lu_solve(factors, right, check_finite=False)
         left = lu_solve(factors, left, trans=2, check_finite=False)
         right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
-    missed = np.linalg.norm(scaled @ right - value * right)
-    error = max(noise * float(np.linalg.norm(scaled)), float(missed))
-    return bool(_MARGIN * error < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
+    residual = float(np.linalg.norm(scaled @ right - value * right))
+    moved = max(_scatter(left, errors, right), residual)
+    return bool(_MARGIN * moved < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 
 def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
@@ -178,8 +186,8 @@ def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
     )
 
 
-def _with_errors(scaled: np.ndarray, error: float) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues, and how far errors of a size move each: as far as random ones.
+def _with_errors(scaled: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, and how far errors of these sizes move each: as far as random ones.
 
     Double eigenvalues go by the square root of an error, which no condition number tells. A turn of
     everything that the matrix leaves as it is, is left so by its errors, too.
@@ -188,9 +196,8 @@ def _with_errors(scaled: np.ndarray, error: float) -> tuple[np.ndarray, np.ndarr
     rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _EXACT].real)[0]
     random = np.random.default_rng(0)
     moved = np.zeros(len(values))
-    size = error / np.sqrt(len(values))
     for _ in range(_SAMPLES):
-        change = size * random.standard_normal(scaled.shape)
+        change = errors * random.standard_normal(scaled.shape)
         other = np.linalg.eigvals(scaled + change - change @ rigid @ rigid.T)
         moved = np.maximum(moved, np.abs(values[:, None] - other).min(axis=1))
     return values, _MARGIN * moved
