@@ -40,6 +40,9 @@ NOISE = 1e-8
 _EVEN = 1e-3
 _TURNED = 0.02
 """Of slow growth: largest growth, and angle [rad], in a step."""
+_HALF, _FALLS = 0.5, 0.35
+"""At half the step less than this share of the growth is left, if it is that of held values: 1/4
+where it goes with the step's square. By time alone it is 1/2."""
 _ROWS = HISTORY - 1
 _PER_SECOND = 1e3
 """Differences of rates over those of the outputs [1/s]."""
@@ -135,9 +138,20 @@ class Amplification:
         found = growth_of(matrix, step, self._noise)
         turned = 2.0 * np.pi * found.frequency * step
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
-            # Models of foreign parts know little of what hardly changes in a step.
-            return growth_of(matrix, step, self._noise, min(self.residual, 1.0))
+            residual = min(self.residual, 1.0)
+            if not self._of_coupling(found, step):
+                return growth_of(matrix, step, self._noise, residual)
         return found
+
+    def _of_coupling(self, found: Growth, step: float) -> bool:
+        """False if slow growth may be free rotation, of which models of foreign parts know little.
+
+        What they miss makes a motion grow in time whatever the step, growth by held values goes
+        with a power of the step.
+        """
+        matrix = self._shorter(self.matrix(_HALF * step))
+        half = growth_of(matrix, _HALF * step, self._noise)
+        return half.radius - 1.0 < _FALLS * (found.radius - 1.0)
 
     def _shorter(self, matrix: np.ndarray) -> np.ndarray:
         """The matrix without what follows from states, which has the eigenvalue 0."""

@@ -103,13 +103,11 @@ def _grows_as_a_pair(
 ) -> bool | None:
     """False if the two motions nearest to 1 may be free rotation, which errors have split.
 
-    A double eigenvalue goes by the square root of an error, but its mean, and what makes it a
-    double one, by the error itself. In the plane of both motions the matrix is
-
-        1 + m 1 + p S + q J,    S a reflection, J a quarter turn, eigenvalues 1 + m +- sqrt(p2 - q2)
-
-    and does not grow if m <= 0 and p <= sqrt(q2 + m2): free rotation has m = 0 and p = q. To first
-    order an error E of the whole matrix is L E R in the plane, R and L the bases of its right and
+    A double eigenvalue goes by the square root of an error, but its mean and the entry that splits
+    it by the error itself. In the plane of both motions, turned so that the diagonal is even, the
+    matrix is 1 + [[m, b], [c, m]], |b| >= |c|, with eigenvalues 1 + m +- sqrt(b c). It does not
+    grow if m <= 0 and b c <= m2; free rotation, an angle that grows by a speed, has m = c = 0. To
+    first order an error E of the whole matrix is L E R there, R and L the bases of its right and
     left invariant subspaces, L R = 1 (G. W. Stewart, SIAM Review 15, 1973, 727-764). None if the
     two are not apart from a third.
     """
@@ -125,16 +123,19 @@ def _grows_as_a_pair(
     plane, beside = whole[:2, :2] - np.eye(2), whole[2:, 2:] - np.eye(len(whole) - 2)
     across = solve_sylvester(plane, -beside, -whole[:2, 2:])
     right, left = basis[:, :2], basis[:, :2].T - across @ basis[:, 2:].T
-    mean = 0.5 * np.trace(plane)
-    reflection = 0.5 * np.hypot(plane[0, 0] - plane[1, 1], plane[0, 1] + plane[1, 0])
-    turn = 0.5 * (plane[1, 0] - plane[0, 1])
-    above = max(mean, 0.0) + max(reflection - np.hypot(turn, mean), 0.0)
-    return bool(above > _MARGIN * _scatter(left, errors, right))
+    angle = 0.5 * np.arctan2(plane[1, 1] - plane[0, 0], plane[0, 1] + plane[1, 0])
+    turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    plane = turned.T @ plane @ turned
+    order = [0, 1] if abs(plane[0, 1]) >= abs(plane[1, 0]) else [1, 0]
+    (mean, b), (c, _) = plane[np.ix_(order, order)]
+    scatter = _scatter((turned.T @ left)[order], errors, (right @ turned)[:, order])
+    above_mean = mean - _MARGIN * 0.5 * np.hypot(scatter[0, 0], scatter[1, 1])
+    return bool(above_mean > 0.0 or b * c - mean**2 > _MARGIN * abs(b) * scatter[1, 0])
 
 
-def _scatter(left: np.ndarray, errors: np.ndarray, right: np.ndarray) -> float:
-    """Size of left @ E @ right, the entries of E random and independent, of these sizes."""
-    return float(np.sqrt((np.abs(left) ** 2 @ errors**2 @ np.abs(right) ** 2).sum()))
+def _scatter(left: np.ndarray, errors: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Sizes of left @ E @ right, the entries of E random and independent, of these sizes."""
+    return np.sqrt(np.abs(left) ** 2 @ errors**2 @ np.abs(right) ** 2)
 
 
 def _eigenvalue(found: Growth, step: float) -> complex:
@@ -161,7 +162,7 @@ def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
         left = lu_solve(factors, left, trans=2, check_finite=False)
         right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
     residual = float(np.linalg.norm(scaled @ right - value * right))
-    moved = max(_scatter(left, errors, right), residual)
+    moved = max(float(_scatter(left, errors, right)), residual)
     return bool(_MARGIN * moved < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 
