@@ -151,8 +151,8 @@ def _is_far(found: Growth, step: float) -> bool:
 def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
     """True if an eigenvalue's condition alone tells that errors do not move it from 1.
 
-    With right and left vectors v, w of length 1 an error E moves it by w E v / (w v), to first
-    order; a margin is left for what is of higher order. Double ones have w v = 0.
+    With right and left vectors v, w of length 1 an error of size e moves it by e / |w v| at most,
+    to first order; a margin is left for what is of higher order. Double ones have w v = 0.
     """
     shifted = scaled - value * (1.0 + _ASIDE) * np.eye(len(scaled))
     factors = lu_factor(shifted, check_finite=False)
@@ -161,9 +161,9 @@ def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
         right = lu_solve(factors, right, check_finite=False)
         left = lu_solve(factors, left, trans=2, check_finite=False)
         right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
-    residual = float(np.linalg.norm(scaled @ right - value * right))
-    moved = max(float(_scatter(left, errors, right)), residual)
-    return bool(_MARGIN * moved < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
+    missed = np.linalg.norm(scaled @ right - value * right)
+    error = max(float(np.linalg.norm(errors)), float(missed))
+    return bool(_MARGIN * error < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 
 def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:

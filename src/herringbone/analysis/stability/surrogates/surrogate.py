@@ -100,7 +100,7 @@ class Surrogate:
         self._given, self._rates = _rules(signature, lab.inputs)
         pairs = zip(lab.inputs, lab.start, strict=True)
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
-        self._rate = 0.0  # seconds that a simulated second takes
+        self._rate = np.inf  # seconds that a simulated second takes, the least that was seen
         self._residuals, self._steps = dict[tuple[float, int], float](), dict[float, Step]()
         self._loudness = dict[float, float]()
         self.model: LinearModel | None = None
@@ -254,7 +254,7 @@ class Surrogate:
             return size == 1.0
         rest = self._run(np.zeros((self._trial_steps, len(self.amplitudes))), h)
         inputs = np.zeros((self._trial_steps, len(self.amplitudes)))
-        inputs[0] = 1.0
+        inputs[:_FRESH_STEPS] = _stirring(len(self.amplitudes))[: len(inputs)]
         sizes = size / _LOUD, size
         small, large = ((self._run(inputs * factor, h) - rest) / factor for factor in sizes)
         off = np.abs(small - large).max(axis=0)
@@ -335,9 +335,9 @@ class Surrogate:
         """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
         begun = perf_counter()
         found = self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
-        # A step's own time: a run may have begun with a new instance.
+        # A step's own time: a run may have begun with a new instance, or have waited for others.
         spent = (perf_counter() - begun) / len(inputs)
-        self._rate = min(spent / h, self._lab.seconds / self._lab.step)
+        self._rate = min(self._rate, spent / h, self._lab.seconds / self._lab.step)
         if not np.isfinite(found).all():
             raise Refused("its outputs are not finite")
         return found
