@@ -34,6 +34,8 @@ PROMISED = 0.01
 """Residual on trials that were not fitted, above which nothing is promised."""
 _GOOD, _ENOUGH = 1e-8, 3.0
 """The order is the smallest whose residual is this small, or at most so many times the least."""
+_LONG = 1e-6
+"""Residual up to which the longest trials are the best: short ones tell nothing of slow motions."""
 _TRIED_STEPS, _FRESH_STEPS = 8, 24
 _FAST, _SLOW, _AIM = 2.2, 0.2, 1.0
 """Largest change of a motion in a step: base steps with more or less than this are changed."""
@@ -41,7 +43,9 @@ _SHORTER, _LONGER = 0.25, 64.0
 _SHORTEST, _LONGEST = 1e-7, 1.0
 """Base steps [s] that are tried."""
 _LOUD = 1024.0
-"""Larger changes, of parts that answer them alike: their answers stand higher above rounding."""
+"""Larger changes, of parts that answer them alike: their answers stand higher above rounding.
+Smaller ones, by the same factor, of parts that answer unlike already to changes as they are.
+"""
 _ALIKE = 1e-7
 _QUIET = 1e-9
 """Answers below this share of an output are rounding."""
@@ -96,9 +100,9 @@ class Surrogate:
         self._given, self._rates = _rules(signature, lab.inputs)
         pairs = zip(lab.inputs, lab.start, strict=True)
         self.amplitudes = np.array([amplitude(variables[name], float(x)) for name, x in pairs])
-        self._loud = 1.0
-        self._rate = 0.0  # seconds that a simulated second takes
+        self._rate = np.inf  # seconds that a simulated second takes, the least that was seen
         self._residuals, self._steps = dict[tuple[float, int], float](), dict[float, Step]()
+        self._loudness = dict[float, float]()
         self.model: LinearModel | None = None
         self.base = lab.step
         self.orders, self.rated, self._follows = 0, gives_rates, True
@@ -186,7 +190,7 @@ class Surrogate:
 
     def _missed_signals(self, h: float, orders: int) -> float:
         """Of the model, on inputs with derivatives up to an order, and by rates if it has them."""
-        signals = self._signals(h, orders, self._loud)
+        signals = self._signals(h, orders, self._loudest(h))
         rest = self._signals(h, orders, 0.0)
         found, unmoved = (self._lab.run_signals(x, h, rated=self.rated) for x in (signals, rest))
         inputs = np.zeros((len(signals), self.width[0]))
@@ -195,8 +199,7 @@ class Surrogate:
 
     def _identify(self, asked: float) -> None:
         """Look for the base step that resolves the motions, and meets steps of a length [s]."""
-        h, best, tried = asked, None, set[float]()
-        self._loud = self._loudest(h)
+        h, found, tried = asked, list[_Fit](), set[float]()
         for _ in range(_TRIED_STEPS):
             if h in tried or not _SHORTEST <= h <= _LONGEST:
                 break
@@ -205,15 +208,18 @@ class Surrogate:
             if fit is not None and h != asked:
                 missed = self._missed(fit.model.over(asked), asked)
                 fit = replace(fit, residual=max(fit.residual, missed))
-            if fit is not None and (best is None or fit.residual < best.residual):
-                best = fit
+            if fit is not None:
+                found.append(fit)
             h, before = self._affordable(h, next_step), h
             if h == before:
                 break
-        if best is None:
+        if not found:
             if self.model is None:
                 self.why = "its answers to pulses are those of no linear system in continuous time"
             return
+        least = min(fit.residual for fit in found)
+        accurate = [fit for fit in found if fit.residual <= max(_LONG, least)]
+        best = max(accurate, key=lambda fit: fit.base)
         self.model, self.base = best.model, best.base
         if self.orders:
             self._see_what_it_follows(asked)
@@ -231,22 +237,35 @@ class Surrogate:
         if wanted <= h:
             return wanted
         count = len(self._lab.inputs)
-        steps = (1 + count) * (1 + sum(blocks(count, len(self._lab.outputs))))
+        steps = (1 + count) * self._trial_steps
         longest = _SECONDS / max(steps * self._rate, 1e-300)
         return min(wanted, longest) if longest > _WORTH * h else h
 
     def _loudest(self, h: float) -> float:
-        """How much larger changes may be that are answered alike."""
+        """How large changes may be that are answered alike in trials with steps of h [s]."""
+        if h not in self._loudness:
+            alike = (size for size in (_LOUD, 1.0) if self._is_alike(size, h))
+            self._loudness[h] = next(alike, 1.0 / _LOUD)
+        return self._loudness[h]
+
+    def _is_alike(self, size: float, h: float) -> bool:
+        """True if changes of a size, and much smaller ones, are answered alike."""
         if not self._lab.inputs:
-            return 1.0
-        rest = self._run(np.zeros((4, len(self.amplitudes))), h)
-        inputs = np.zeros((4, len(self.amplitudes)))
-        inputs[0] = 1.0
-        small, large = ((self._run(inputs * size, h) - rest) / size for size in (1.0, _LOUD))
+            return size == 1.0
+        rest = self._run(np.zeros((self._trial_steps, len(self.amplitudes))), h)
+        inputs = np.zeros((self._trial_steps, len(self.amplitudes)))
+        inputs[:_FRESH_STEPS] = _stirring(len(self.amplitudes))[: len(inputs)]
+        sizes = size / _LOUD, size
+        small, large = ((self._run(inputs * factor, h) - rest) / factor for factor in sizes)
         off = np.abs(small - large).max(axis=0)
-        rounding = _QUIET * np.abs(rest).max(axis=0)
+        rounding = _QUIET * np.abs(rest).max(axis=0) / sizes[0]
         alike = off <= _ALIKE * np.abs(large).max(axis=0) + rounding
-        return _LOUD if alike.all() else 1.0
+        return bool(alike.all())
+
+    @property
+    def _trial_steps(self) -> int:
+        """Of the trials that a model is made of."""
+        return 1 + sum(blocks(len(self._lab.inputs), len(self._lab.outputs)))
 
     def _fitted(self, h: float) -> tuple[_Fit | None, float]:
         """The best model of trials with steps of h [s], and the step to be tried next."""
@@ -285,15 +304,15 @@ class Surrogate:
     def _markov(self, h: float) -> np.ndarray:
         """(steps, m, n) answers to pulses of the amplitudes, over the outputs' sizes."""
         count = len(self._lab.inputs)
-        steps = 1 + sum(blocks(count, len(self._lab.outputs)))
+        loud, steps = self._loudest(h), self._trial_steps
         rest = self._run(np.zeros((steps, count)), h)
         found = np.empty((steps, len(self._lab.outputs), count))
         for number in range(count):
             inputs = np.zeros((steps, count))
-            inputs[0, number] = self._loud
-            found[:, :, number] = (self._run(inputs, h) - rest) / self._loud
+            inputs[0, number] = loud
+            found[:, :, number] = (self._run(inputs, h) - rest) / loud
         sizes = np.abs(found).max(axis=(0, 2), initial=0.0)
-        quiet = sizes * self._loud <= _QUIET * np.abs(rest).max(axis=0, initial=0.0)
+        quiet = sizes * loud <= _QUIET * np.abs(rest).max(axis=0, initial=0.0)
         found[:, quiet] = 0.0
         self._sizes = np.where(quiet | (sizes == 0.0), 1.0, sizes)
         return found / self._sizes[:, None]
@@ -301,8 +320,8 @@ class Surrogate:
     def _fresh(self, h: float) -> tuple[np.ndarray, np.ndarray]:
         """Inputs (steps, n) in amplitudes that are fitted nowhere, and outputs over their sizes."""
         inputs = _stirring(len(self._lab.inputs))[: self._fresh_steps(h)]
-        rest = self._run(np.zeros_like(inputs), h)
-        return inputs, (self._run(self._loud * inputs, h) - rest) / self._loud / self._sizes
+        loud, rest = self._loudest(h), self._run(np.zeros_like(inputs), h)
+        return inputs, (self._run(loud * inputs, h) - rest) / loud / self._sizes
 
     def _fresh_steps(self, h: float) -> int:
         affordable = _SECONDS / max(2.0 * h * self._rate, 1e-300)
@@ -316,7 +335,9 @@ class Surrogate:
         """(steps, m) outputs on changes (steps, n), in amplitudes; raises Refused."""
         begun = perf_counter()
         found = self._lab.run(list(self.start + inputs * self.amplitudes), h)[1:]
-        self._rate = (perf_counter() - begun) / (len(inputs) * h)
+        # A step's own time: a run may have begun with a new instance, or have waited for others.
+        spent = (perf_counter() - begun) / len(inputs)
+        self._rate = min(self._rate, spent / h, self._lab.seconds / self._lab.step)
         if not np.isfinite(found).all():
             raise Refused("its outputs are not finite")
         return found
