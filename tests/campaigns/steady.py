@@ -1,16 +1,17 @@
 """Steady states of drawn pairs with real teeth against marches until they have settled.
 
-    python -m campaigns.steady [COUNT [SEED [TOLERANCE]]]
+    python -m campaigns.steady [COUNT [SEED [TOLERANCE [DRAW ...]]]]
 
-in tests/; the seed is the last commit's. Each draw is a pair of `TEETH` of a class from 5 to 8 in
-the test rig at a drawn speed and torque, a third of them so small that teeth may separate. A line
-for each: what was found, by which solver, in how much CPU time; and by how much a march of finer
-steps differs from it, over the alternating part of the worst group of channels: one that goes on
-from the state for two periods ("stays"), and one from equilibrium that has gone on for 0.5 s, and
-until it repeats ("comes"). The first has to stay within the tolerance. The second tells whether
-there is another motion. Where the state says that teeth rattle and never repeat, the march must not
-repeat, either: two marches beside each other part as the state says, by a rate per mesh, and levels
-over its periods are the same, both within `DOUBTS`.
+in tests/; the seed is the last commit's, and where draws are named, these alone are looked at.
+Each draw is a pair of `TEETH` of a class from 5 to 8 in the test rig at a drawn speed and torque,
+a third of them so small that teeth may separate. A line for each: what was found, by which solver,
+in how much CPU time; and by how much a march of finer steps differs from it, over the alternating
+part of the worst group of channels: one that goes on from the state for two periods ("stays"), and
+one from equilibrium that has gone on for 0.5 s, and until it repeats ("comes"). The first has to
+stay within the tolerance. The second tells whether there is another motion. Where the state says
+that teeth rattle and never repeat, the march must not repeat, either: two marches beside each other
+part as the state says, by a rate per mesh, and levels over its periods are the same, both within
+`DOUBTS`.
 """
 
 import sys
@@ -264,17 +265,17 @@ def judged(gear: Path, speed: float, torque: float, tolerance: float) -> tuple[s
     ), stays <= tolerance
 
 
-def main(count: int, seed: str, tolerance: float) -> int:
-    """Print a line for each draw; the number of those that are not as they should be."""
+def main(draws: Sequence[int], seed: str, tolerance: float) -> int:
+    """Print a line for each draw, from 1 on; the number of those that are not as they should be."""
     tell(f"seed {seed}, tolerance {tolerance:g}")
     bad = 0
     with tempfile.TemporaryDirectory() as folder:
-        for k in range(count):
-            random = np.random.default_rng([int(seed[:12], 16), k])
+        for number in draws:
+            random = np.random.default_rng([int(seed[:12], 16), number - 1])
             line, good = draw(random, Path(folder), tolerance)
             bad += not good
-            tell(f"{k + 1}: {line}")
-    tell(f"{count - bad} of {count}")
+            tell(f"{number}: {line}")
+    tell(f"{len(draws) - bad} of {len(draws)}")
     return bad
 
 
@@ -282,4 +283,5 @@ if __name__ == "__main__":
     given = sys.argv[1:]
     wanted = int(given[0]) if given else 20
     name = given[1] if len(given) > 1 else last_commit()
-    sys.exit(bool(main(wanted, name, float(given[2]) if len(given) > 2 else 1e-4)))
+    close = float(given[2]) if len(given) > 2 else 1e-4
+    sys.exit(bool(main([int(text) for text in given[3:]] or range(1, wanted + 1), name, close)))

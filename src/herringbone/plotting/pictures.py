@@ -13,7 +13,7 @@ from herringbone.analysis.asked import by_half, column_of, shaft_side
 from herringbone.analysis.figures.operating_point import run_mesh_frequency, steady_part
 from herringbone.analysis.figures.radiated_power import LABEL, level_db
 from herringbone.analysis.figures.radiated_power import radiated_power as power_of
-from herringbone.analysis.figures.standstill import stands_still
+from herringbone.analysis.figures.standstill import has_pictures
 from herringbone.analysis.gearboxes import by_gearbox
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.core.declaring.roles import GEARS, Quantity, Role
@@ -247,7 +247,7 @@ def write_pictures(result: Result, folder: str | Path, highest: float | None = N
         drawn["spectra"] = partial(spectra, highest=highest)
         drawn["run_up"] = partial(run_up, highest=highest)
     files: list[Path] = []
-    if len(result.data) < 2 or stands_still(result):
+    if not has_pictures(result):
         return files
     for box, seen in by_gearbox(result).items():
         for name, draw in drawn.items():

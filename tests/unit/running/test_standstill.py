@@ -1,5 +1,6 @@
 """A run in which nothing turns says so and what to set, and shows no figures of rounding."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from herringbone.core.declaring.roles import Quantity
 from herringbone.cosim.structure.system_file import read_system
 from herringbone.plotting.pictures import write_pictures
 from herringbone.running.reporting.physical import physical_results
+from herringbone.running.reporting.report import write_report
 from herringbone.running.reporting.run_result import judged
 from herringbone.running.reporting.summary import summary_text
 
@@ -68,6 +70,13 @@ def test_what_programs_and_pictures_show(still, tmp_path):
     assert physical_results(still)["standstill"]
     assert set(figures) == {"gear_pairs", "bearing_force_N", "seat_velocity_m_s"}
     assert not write_pictures(still, tmp_path)
+
+
+def test_a_report_without_pictures_loads_nothing_that_draws(still, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "herringbone.plotting", None)  # its import is an error
+    written = write_report(still, tmp_path)
+    assert written.files
+    assert not list(tmp_path.glob("*.png"))
 
 
 def test_the_note_tells_what_to_set(still):

@@ -11,7 +11,7 @@ from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
 
 TOLERANCE = 1e-3
-PER_MESH, STEP = 64, 5e-6
+PER_MESH, STEP = 128, 5e-6
 PAIR = """[gear_pair]
 number_of_teeth = [20, 64]
 normal_module = "4.5 mm"
@@ -67,10 +67,12 @@ def test_a_march_stays_on_what_a_march_has_come_to(tmp_path):
     assert state.bends
     assert state.settled is not None
     assert state.settled.change <= 0.1 * TOLERANCE
+    places = PER_MESH * state.meshes
     for group in ("bearing_force", "seat_velocity"):
         columns = state.chosen(group)
         found = state.harmonics(columns)
-        expected = in_time(found.coefficients, found.orders, PER_MESH * state.meshes)
+        told = found.orders < places // 2  # lines beyond would be taken for lower ones
+        expected = in_time(found.coefficients[:, told], found.orders[told], places)
         alternating = expected - expected.mean(axis=1, keepdims=True)
         error = np.linalg.norm(later(state, columns) - expected) / np.linalg.norm(alternating)
         assert error < TOLERANCE

@@ -9,11 +9,12 @@ from threadpoolctl import threadpool_limits
 
 import herringbone as hb
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
-from herringbone.analysis.steady.marching.marched import start_of
+from herringbone.analysis.steady.marching.marched import Following, start_of
 from herringbone.analysis.steady.sensitivities.assumed import assumed
 from herringbone.analysis.steady.sensitivities.sensitivity import sensitivities
 from herringbone.analysis.steady.set_points import Point
 from herringbone.analysis.steady.solver import SteadySolver
+from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.fused.core import Steps
 from herringbone.components.registry import COMPONENTS
 from herringbone.core import ParameterError
@@ -109,6 +110,25 @@ def test_laws_along_a_state_are_its_own(solver):
     assert other.orbit.places == state.orbit.places
     assert np.array_equal(state.orbit.samples.f, before)
     assert not np.array_equal(other.orbit.samples.f, before)
+
+
+def test_halved_steps_of_a_march_meet_knots_as_before(solver, monkeypatch):
+    """Marches by 1, 2, 4, 8 steps of a place; by 7, errors of what bends came anew, and larger."""
+    lengths, piece = [], Solution.piece
+
+    def told(self, begin, end, step, times):
+        lengths.append(step)
+        return piece(self, begin, end, step, times)
+
+    state = solver.solve(Point(speed=192.0))
+    way = Following(state.structure, state.motion, state.orbit, places=16)
+    monkeypatch.setattr(Solution, "piece", told)
+    for _ in range(4):
+        way.on(16, 1)
+        way.halve()
+    gap = state.period / 16
+    assert 70e-6 < gap < 80e-6
+    assert lengths == pytest.approx([gap, gap / 2, gap / 4, gap / 8], rel=1e-6)
 
 
 def test_an_iteration_that_ran_away_is_no_state(solver, monkeypatch):

@@ -20,6 +20,11 @@ def stands_still(result: Result) -> bool:
     return bool(names) and bool(np.abs(rows[names].to_numpy()).max(initial=0.0) <= STANDSTILL)
 
 
+def has_pictures(result: Result) -> bool:
+    """True if a run has pictures: it has two records at least, and something turns."""
+    return len(result.data) > 1 and not stands_still(result)
+
+
 def what_to_set(system: System) -> str:
     """A line on a system in which nothing turns: what sets its speed and torque."""
     options, others = [], []

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+from herringbone.analysis.figures.standstill import has_pictures
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.run_table import TableColumns
 from herringbone.result.folder.names import (
@@ -100,8 +101,6 @@ def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = 
     Raises:
         HerringboneError: a file cannot be written.
     """
-    from herringbone.plotting import write_pictures  # noqa: PLC0415 (matplotlib: lazy)
-
     folder, table = store.folder, store.table
     names = [TABLE, *([PARQUET] if parquet else []), TEXT, SUMMARY, RUN, ROWS, UNITS]
     names += [OTHERS] if table.others else []
@@ -117,6 +116,10 @@ def finish_report(store: Store, result: Result, shown: Path, *, parquet: bool = 
             write_parquet(stream, table.pieces())
     result = replace(result, files=tuple(str(shown / name) for name in names))
     write_summary(result, folder, store.run)
+    if not has_pictures(result):
+        return result
+    from herringbone.plotting import write_pictures  # noqa: PLC0415 (matplotlib: lazy)
+
     with one_blas_thread():
         drawn = [str(shown / picture.name) for picture in write_pictures(result, folder)]
     return replace(result, files=(*result.files, *drawn))

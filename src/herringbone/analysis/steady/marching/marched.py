@@ -181,7 +181,7 @@ class Following:
         own = start_of(begin)
         self._run.state.q[: own.size] = own
         self._late, self._turn = structure.late, np.copysign(motion.turn, begin.response.speed)
-        self.places, self.period, self.time, self._longest = places, begin.period, 0.0, _LONGEST
+        self.places, self.period, self.time, self._parts = places, begin.period, 0.0, 1
 
     @property
     def _theta(self) -> float:
@@ -190,8 +190,8 @@ class Following:
         return float(self._run.state.q[2 * rates.size]) if angles.size else 0.0
 
     def halve(self) -> None:
-        """Go on with steps of half the length."""
-        self._longest *= 0.5
+        """Go on with steps of half the length: they still meet knots of tables as they did."""
+        self._parts *= 2
 
     def on(self, places: int, kept: int, inside: int = 1) -> March:
         """Go on for some places, and keep the last ones.
@@ -207,7 +207,7 @@ class Following:
         gap, begin, theta = self.period / self.places, self._late + self.time, self._theta
         end = begin + places * gap
         times = end + (np.arange(kept * inside) / inside - kept) * gap
-        step = gap / np.ceil(gap / self._longest)
+        step = gap / (np.ceil(gap / _LONGEST) * self._parts)
         series, angles = [np.zeros((self._values, 0))], [np.zeros(0)]
         for part in self._run.piece(begin, end, step, times):
             series.append(laws_values(self._run, part)[: self._values])

@@ -19,8 +19,11 @@ from herringbone.analysis.steady.structure import Structure
 
 _STEPS, _NEUTRAL = 256, 1e-3
 """Steps of a mesh period in which deviations are followed; growth that is rounding of these."""
-_FALLS, _HALVED = 0.95, 4
+_FALLS, _HALVED = 0.95, 6
 """By what an error falls at least with four times the harmonics; how often steps are halved."""
+_SHARED, _OF_HARMONICS = 2, 0.5
+"""Halvings from which on harmonics may leave out that part of the tolerance: steps have the rest.
+"""
 _SETTLED = 0.1
 """Change from one period of a march to the next that counts as none, over the tolerance."""
 
@@ -101,7 +104,8 @@ def by_marching(
         if halved:
             now.way.halve()
             now = now.finer(1)
-        found = _in_harmonics(structure, motion, now.times, tolerance, values)
+        close = _left_out(tolerance, halved)
+        found = _in_harmonics(structure, motion, now.times, close, values)
         return found._replace(by=Settled(now.way.time, now.change))
 
     return _with_steps(structure, stepped, tolerance), now
@@ -135,7 +139,8 @@ def by_shooting(
         x, period, rounds = shot.begin, shot.period, rounds + shot.rounds
         shot = shot._replace(rounds=rounds)
         values = partial(_values_of, shooting, shot, meshes)
-        return _in_harmonics(structure, motion, times, tolerance, values)._replace(by=shot)
+        close = _left_out(tolerance, halved)
+        return _in_harmonics(structure, motion, times, close, values)._replace(by=shot)
 
     return _with_steps(structure, stepped, tolerance)
 
@@ -164,6 +169,11 @@ def _with_steps(
         if before.good(tolerance):
             break
     return before
+
+
+def _left_out(tolerance: float, halved: int) -> float:
+    """What harmonics may leave out of a motion whose steps were halved so many times."""
+    return tolerance if halved < _SHARED else _OF_HARMONICS * tolerance
 
 
 def _values_of(shooting: Shooting, shot: Shot, meshes: int, per_mesh: int) -> np.ndarray:
