@@ -44,7 +44,8 @@ def diverged(network: Network, culprit: int) -> tuple[str, float]:
 def broken_output(network: Network) -> str | None:
     """The output `instance.variable` that is not finite where what its part was given is.
 
-    Parts that refuse such values, or pass them on, are not where it began. None if there is none.
+    Parts that refuse such values, or pass them on, are not where it began; in a circle elements
+    pass on at once what bodies give. None if there is none.
     """
     bad: dict[int, str] = {}
     for c in network.connections:
@@ -56,7 +57,8 @@ def broken_output(network: Network) -> str | None:
         if not np.isfinite(value):
             bad.setdefault(c.source, f"{source.name}.{c.output}")
     fed = {c.target for c in network.connections if c.source in bad}
-    return next((name for p, name in bad.items() if p not in fed), next(iter(bad.values()), None))
+    first = sorted(bad, key=lambda p: (p in fed, p not in network.bodies))
+    return bad[first[0]] if first else None
 
 
 def first_nan(times: np.ndarray, values: np.ndarray) -> dict[int, float]:
