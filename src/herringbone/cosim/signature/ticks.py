@@ -41,4 +41,4 @@ def _changes(lab: Laboratory, changes: np.ndarray, h: float, steps: int) -> np.n
     rise = unlike(changes) / steps
     inputs = [lab.start + (k + 1.0) * rise for k in range(steps)]
     path = lab.run(inputs, h)
-    return np.flatnonzero(np.any(np.diff(path, axis=0) != 0.0, axis=1))
+    return np.flatnonzero(np.any(path[1:] != path[:-1], axis=1))
