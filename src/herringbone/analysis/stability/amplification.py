@@ -39,7 +39,6 @@ NOISE = 1e-8
 """Error of a matrix with foreign parts in it, over its size: of models, and of differences."""
 _EVEN = 1e-3
 _TURNED = 0.02
-"""Of slow growth: largest growth, and angle [rad], in a step."""
 _HALF, _FALLS = 0.5, 0.35
 """At half the step less than this share of the growth is left, if it is that of held values: 1/4
 where it goes with the step's square. By time alone it is 1/2."""
@@ -140,7 +139,7 @@ class Amplification:
         if self._noise and 0.0 < found.radius - 1.0 - GROWTH < _TURNED > turned:
             residual = min(self.residual, 1.0)
             if not self._of_coupling(found, step):
-                return growth_of(matrix, step, self._noise, residual)
+                return growth_of(matrix, step, max(self._noise, residual))
         return found
 
     def _of_coupling(self, found: Growth, step: float) -> bool:

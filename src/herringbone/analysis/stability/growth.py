@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve, schur, solve_sylvester
+from scipy.linalg import lu_factor, lu_solve
 from scipy.linalg.lapack import dgebal
 
 from herringbone.core.one_thread import one_blas_thread
@@ -13,6 +13,10 @@ GROWTH = 1e-6
 RIGID = 1e-5
 """Eigenvalues this close to 1 are the free rotation of the shafts (a double one is known to the
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
+_SPLIT, _EVENLY = 9e-4, 0.05
+"""Errors of what stands for foreign parts split a double eigenvalue evenly, by so much at most: its
+mean stays where it was, while what the coupling adds moves both, or one of them.
+"""
 NEAR_MIRROR = 1.1
 """Steps longer by so much at most bring a motion of `Growth.near_mirror` to half the rate."""
 _SLOW = 0.3
@@ -63,7 +67,7 @@ class Growth:
         return share * self.fast_change < _SLOW
 
 
-def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, missed: float = 0.0) -> Growth:
+def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0) -> Growth:
     """The fastest growing motion of one macro step [s], from the eigenvalues of its matrix.
 
     Args:
@@ -71,71 +75,31 @@ def growth_of(matrix: np.ndarray, step: float, noise: float = 0.0, missed: float
         step: its length [s].
         noise: error of the matrix over its size; eigenvalues that it may have moved from 1 are left
             out like 1 itself.
-        missed: share of what a step changes by which models of foreign parts may miss it, as noise.
     """
     if matrix.size == 0:
         return Growth(0.0, 0.0, 0.0)
     with one_blas_thread():
         eigenvalues = np.linalg.eigvals(matrix)
-        found = _fastest(_moving(eigenvalues), step)
+        found = _fastest(eigenvalues[~_free(eigenvalues, noise)], step)
         # Errors can only make it less; and they bring nothing here from 1 that is so far away.
         if noise == 0.0 or found.radius <= 1.0 + GROWTH or _is_far(found, step):
             return found
-        scaled = dgebal(matrix, scale=1)[0]
-        even = noise * float(np.linalg.norm(scaled, 2)) / np.sqrt(len(scaled))
-        errors = np.hypot(even, missed * np.abs(scaled - np.eye(len(scaled))))
-        if _is_sure(scaled, _eigenvalue(found, step), errors):
+        if _is_sure(matrix, _eigenvalue(found, step), noise):
             return found
-        pair = _grows_as_a_pair(scaled, eigenvalues, errors)
-        eigenvalues, known = _with_errors(scaled, errors)
-    if pair is not None:
-        known[np.argsort(np.abs(eigenvalues - 1.0))[:2]] = 0.0 if pair else np.inf
-    return _fastest(_moving(eigenvalues, known), step)
+        eigenvalues, known = _with_errors(matrix, noise)
+    moving = (np.abs(eigenvalues - 1.0) > known) & ~_free(eigenvalues, noise)
+    return _fastest(eigenvalues[moving], step)
 
 
-def _moving(eigenvalues: np.ndarray, known: np.ndarray | float = 0.0) -> np.ndarray:
-    """Those that are not the free rotation of the shafts, as far as they are known."""
-    return eigenvalues[np.abs(eigenvalues - 1.0) > np.maximum(RIGID, known)]
-
-
-def _grows_as_a_pair(
-    scaled: np.ndarray, eigenvalues: np.ndarray, errors: np.ndarray
-) -> bool | None:
-    """False if the two motions nearest to 1 may be free rotation, which errors have split.
-
-    A double eigenvalue goes by the square root of an error, but its mean and the entry that splits
-    it by the error itself. In the plane of both motions, turned so that the diagonal is even, the
-    matrix is 1 + [[m, b], [c, m]], |b| >= |c|, with eigenvalues 1 + m +- sqrt(b c). It does not
-    grow if m <= 0 and b c <= m2; free rotation, an angle that grows by a speed, has m = c = 0. To
-    first order an error E of the whole matrix is L E R there, R and L the bases of its right and
-    left invariant subspaces, L R = 1 (G. W. Stewart, SIAM Review 15, 1973, 727-764). None if the
-    two are not apart from a third.
-    """
-    distances = np.append(np.sort(np.abs(eigenvalues - 1.0)), np.inf)
-    if len(distances) < 3 or distances[2] <= distances[1]:
-        return None
-    within = min(np.sqrt(distances[1] * distances[2]), 2.0 * distances[1])
-    whole, basis, count = schur(
-        scaled, output="real", sort=lambda real, imag: np.hypot(real - 1.0, imag) <= within
-    )
-    if count != 2:
-        return None
-    plane, beside = whole[:2, :2] - np.eye(2), whole[2:, 2:] - np.eye(len(whole) - 2)
-    across = solve_sylvester(plane, -beside, -whole[:2, 2:])
-    right, left = basis[:, :2], basis[:, :2].T - across @ basis[:, 2:].T
-    angle = 0.5 * np.arctan2(plane[1, 1] - plane[0, 0], plane[0, 1] + plane[1, 0])
-    turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    plane = turned.T @ plane @ turned
-    order = [0, 1] if abs(plane[0, 1]) >= abs(plane[1, 0]) else [1, 0]
-    (mean, b), (c, _) = plane[np.ix_(order, order)]
-    scatter = _scatter((turned.T @ left)[order], errors, (right @ turned)[:, order])
-    above_mean = mean - _MARGIN * 0.5 * np.hypot(scatter[0, 0], scatter[1, 1])
-    return bool(above_mean > 0.0 or b * c - mean**2 > _MARGIN * abs(b) * scatter[1, 0])
-
-
-def _scatter(left: np.ndarray, errors: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Sizes of left @ E @ right, the entries of E random and independent, of these sizes."""
-    return np.sqrt(np.abs(left) ** 2 @ errors**2 @ np.abs(right) ** 2)
+def _free(eigenvalues: np.ndarray, noise: float) -> np.ndarray:
+    """(n,) True for the free rotation of the shafts."""
+    off = eigenvalues - 1.0
+    found = np.abs(off) <= RIGID
+    pair = np.argsort(np.abs(off))[:2]
+    largest = np.abs(off[pair]).max(initial=0.0)
+    if noise and len(pair) == 2 and largest < _SPLIT and abs(off[pair].mean()) < _EVENLY * largest:
+        found[pair] = True
+    return found
 
 
 def _eigenvalue(found: Growth, step: float) -> complex:
@@ -148,12 +112,13 @@ def _is_far(found: Growth, step: float) -> bool:
     return abs(_eigenvalue(found, step) - 1.0) > _SLOW
 
 
-def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
+def _is_sure(matrix: np.ndarray, value: complex, noise: float) -> bool:
     """True if an eigenvalue's condition alone tells that errors do not move it from 1.
 
     With right and left vectors v, w of length 1 an error of size e moves it by e / |w v| at most,
     to first order; a margin is left for what is of higher order. Double ones have w v = 0.
     """
+    scaled = dgebal(matrix, scale=1)[0]
     shifted = scaled - value * (1.0 + _ASIDE) * np.eye(len(scaled))
     factors = lu_factor(shifted, check_finite=False)
     right = left = np.random.default_rng(0).standard_normal(len(scaled)).astype(complex)
@@ -162,7 +127,7 @@ def _is_sure(scaled: np.ndarray, value: complex, errors: np.ndarray) -> bool:
         left = lu_solve(factors, left, trans=2, check_finite=False)
         right, left = right / np.linalg.norm(right), left / np.linalg.norm(left)
     missed = np.linalg.norm(scaled @ right - value * right)
-    error = max(float(np.linalg.norm(errors)), float(missed))
+    error = max(noise * float(np.linalg.norm(scaled)), float(missed))
     return bool(_MARGIN * error < abs(np.vdot(left, right)) * abs(value - 1.0) / _MARGIN)
 
 
@@ -187,18 +152,20 @@ def _fastest(eigenvalues: np.ndarray, step: float) -> Growth:
     )
 
 
-def _with_errors(scaled: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues, and how far errors of these sizes move each: as far as random ones.
+def _with_errors(matrix: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, and how far errors of the matrix move each: as far as random ones of the size.
 
     Double eigenvalues go by the square root of an error, which no condition number tells. A turn of
     everything that the matrix leaves as it is, is left so by its errors, too.
     """
+    scaled = dgebal(matrix, scale=1)[0]
     values, vectors = np.linalg.eig(scaled)
     rigid = np.linalg.qr(vectors[:, np.abs(values - 1.0) < _EXACT].real)[0]
     random = np.random.default_rng(0)
     moved = np.zeros(len(values))
+    size = noise * np.linalg.norm(scaled, 2) / np.sqrt(len(values))
     for _ in range(_SAMPLES):
-        change = errors * random.standard_normal(scaled.shape)
-        other = np.linalg.eigvals(scaled + change - change @ rigid @ rigid.T)
+        error = size * random.standard_normal(scaled.shape)
+        other = np.linalg.eigvals(scaled + error - error @ rigid @ rigid.T)
         moved = np.maximum(moved, np.abs(values[:, None] - other).min(axis=1))
     return values, _MARGIN * moved
