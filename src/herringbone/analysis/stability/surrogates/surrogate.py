@@ -244,23 +244,29 @@ class Surrogate:
     def _loudest(self, h: float) -> float:
         """How large changes may be that are answered alike in trials with steps of h [s]."""
         if h not in self._loudness:
-            alike = (size for size in (_LOUD, 1.0) if self._is_alike(size, h))
-            self._loudness[h] = next(alike, 1.0 / _LOUD)
+            self._loudness[h] = self._largest_alike(h)
         return self._loudness[h]
 
-    def _is_alike(self, size: float, h: float) -> bool:
-        """True if changes of a size, and much smaller ones, are answered alike."""
+    def _largest_alike(self, h: float) -> float:
+        """The largest of three sizes that is answered as much smaller changes are, or the least."""
         if not self._lab.inputs:
-            return size == 1.0
-        rest = self._run(np.zeros((self._trial_steps, len(self.amplitudes))), h)
+            return 1.0
         inputs = np.zeros((self._trial_steps, len(self.amplitudes)))
+        rest = self._run(inputs, h)
         inputs[:_FRESH_STEPS] = _stirring(len(self.amplitudes))[: len(inputs)]
-        sizes = size / _LOUD, size
-        small, large = ((self._run(inputs * factor, h) - rest) / factor for factor in sizes)
-        off = np.abs(small - large).max(axis=0)
-        rounding = _QUIET * np.abs(rest).max(axis=0) / sizes[0]
-        alike = off <= _ALIKE * np.abs(large).max(axis=0) + rounding
-        return bool(alike.all())
+
+        def answers(size: float) -> np.ndarray:
+            return (self._run(inputs * size, h) - rest) / size
+
+        large = answers(_LOUD)
+        for size, smaller in ((_LOUD, 1.0), (1.0, 1.0 / _LOUD)):
+            small = answers(smaller)
+            off = np.abs(small - large).max(axis=0)
+            rounding = _QUIET * np.abs(rest).max(axis=0) / smaller
+            if np.all(off <= _ALIKE * np.abs(large).max(axis=0) + rounding):
+                return size
+            large = small
+        return 1.0 / _LOUD
 
     @property
     def _trial_steps(self) -> int:
