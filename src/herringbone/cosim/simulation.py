@@ -7,9 +7,7 @@ from herringbone.core import ParameterError, StructureError
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
 from herringbone.core.part import Part
 from herringbone.cosim.algebraic_loop import AlgebraicLoop
-from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, check_multirate
-from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.energy.watch import EnergyWatch
 from herringbone.cosim.initialisation import initialise
 from herringbone.cosim.other_signals import OtherSignals
@@ -126,10 +124,7 @@ def ready(
         check_multirate(algorithm)
         grid = _common(grid, math.lcm(*network.slow.values()))
     prepared = algorithm.prepare(network)
-    if isinstance(prepared, PreparedAdaptive):
-        prepared.inner_step, prepared.channels = inner_step, system.channels
-    elif isinstance(prepared, PreparedNodes) and tolerance:
-        prepared.suit(tolerance)
+    prepared.suit(tolerance, inner_step, system.channels)
     for part, degree in zip(parts, prepared.degree, strict=True):
         if INTERFACE_DEGREE in part.variables:
             part.set(INTERFACE_DEGREE, float(degree))

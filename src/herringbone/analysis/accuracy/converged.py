@@ -10,9 +10,8 @@ import numpy as np
 
 from herringbone.analysis.accuracy.error import relative_error
 from herringbone.core import HerringboneError
-from herringbone.core.names import matches_any
 from herringbone.core.part import Part, closing_all
-from herringbone.core.places.part_path import endings
+from herringbone.core.places.part_path import in_groups
 from herringbone.cosim.algorithms import LI, Algorithm, Jacobi
 from herringbone.cosim.rows.record import Grid
 from herringbone.cosim.rows.recording import Recording
@@ -54,11 +53,8 @@ class Converged:
                 dict.fromkeys(f"{parts[c.source].name}.{c.output}" for c in network.connections)
             )
         self._algorithm: Algorithm = LI(degree=4) if repeats else Jacobi(order=2)
-        self.groups = {
-            group: [n for n in names if matches_any(endings(system.paths, n), patterns)]
-            for group, patterns in system.channels.items()
-        }
-        self.groups = {group: columns for group, columns in self.groups.items() if columns}
+        found = in_groups(system.paths, names, system.channels)
+        self.groups = {group: columns for group, columns in found.items() if columns}
         self.groups = self.groups or {_ALL: names}
         most = max(grid.count for grid in grids)
         common = math.lcm(*(grid.count for grid in grids))

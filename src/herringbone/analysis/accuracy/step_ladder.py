@@ -14,9 +14,8 @@ from herringbone.analysis.accuracy.error import relative_error
 from herringbone.analysis.accuracy.work_precision import REFUSED, Point
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import HerringboneError, OutcomeKind, ParameterError
-from herringbone.core.names import matches_any
 from herringbone.core.part import Part, closing_all
-from herringbone.core.places.part_path import endings
+from herringbone.core.places.part_path import in_groups
 from herringbone.cosim.algorithms import ALGORITHMS, Algorithm
 from herringbone.cosim.layouts.layout import record_names
 from herringbone.cosim.rows.record import Grid
@@ -81,11 +80,8 @@ class Reference:
             for part, own in zip(twin.network.parts, record_names(twin.network), strict=True)
             for name in own
         ]
-        self.groups = {
-            group: [n for n in names if matches_any(endings(system.paths, n), patterns)]
-            for group, patterns in system.channels.items()
-        }
-        self.groups = {group: columns for group, columns in self.groups.items() if columns}
+        found = in_groups(system.paths, names, system.channels)
+        self.groups = {group: columns for group, columns in found.items() if columns}
         if not self.groups:
             raise ParameterError(
                 f"system '{system.name}' has no channels to measure errors on; "

@@ -5,12 +5,12 @@ A part of the system itself is `gear_mesh`; one of the nested system `gearbox` i
 any ending of it that is not ambiguous.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Self
 
 from herringbone.core.errors import ParameterError, StructureError
-from herringbone.core.names import check_path, meant, shown
+from herringbone.core.names import check_path, matches_any, meant, shown
 
 
 class PartPath(str):
@@ -111,3 +111,20 @@ def endings(parts: Iterable[PartPath], column: str) -> tuple[str, ...]:
     for segment in scope.split(".") if scope else ():
         names.append(names[-1][len(segment) + 1 :])
     return tuple(names)
+
+
+def in_groups(
+    parts: Sequence[PartPath], columns: Sequence[str], groups: Mapping[str, Sequence[str]]
+) -> dict[str, list[str]]:
+    """Columns of each group, in their order; empty where none matches.
+
+    Args:
+        parts: whose variables they are.
+        columns: `part.variable`.
+        groups: patterns by group.
+    """
+    called = {name: endings(parts, name) for name in columns}
+    return {
+        group: [name for name, own in called.items() if matches_any(own, patterns)]
+        for group, patterns in groups.items()
+    }

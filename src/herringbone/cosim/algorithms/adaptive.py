@@ -117,6 +117,13 @@ class PreparedAdaptive(PreparedNodes):
         self.inner_step = 0.0
         self.channels: Mapping[str, Sequence[str]] = {}
 
+    def suit(
+        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+    ) -> None:
+        """Measure steps by inner steps and channels, too; the tolerance is the algorithm's own."""
+        del tolerance
+        self.inner_step, self.channels = inner_step, channels
+
     def grid(self, grid: Grid) -> Grid:
         """The same end and records in ticks; the grid's step is the largest."""
         self._tick, self._last = grid.step / TICKS, grid.count * TICKS

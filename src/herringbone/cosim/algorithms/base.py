@@ -154,6 +154,18 @@ class PreparedRun(ABC):
     nodes: NodeLayout | None = None
     predicts: bool = False
 
+    def suit(
+        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+    ) -> None:
+        """Take account of what the run is asked for; most algorithms need none of it.
+
+        Args:
+            tolerance: that parts are told [1]; None: none.
+            inner_step: longest of the parts' own integration [s]; 0 if there is none, or unknown.
+            channels: patterns of the recorded outputs whose errors count, by group.
+        """
+        del tolerance, inner_step, channels
+
     @property
     def inner_outputs(self) -> bool:
         """True if outputs are wanted inside the macro step, not only at its end."""

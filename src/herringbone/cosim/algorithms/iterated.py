@@ -1,7 +1,7 @@
 """What `fixed_point` and `li` share: a network laid out for passes with rollback."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -102,9 +102,13 @@ class PreparedNodes(PreparedRun):
         self._corrected = False
         self.problem = ""
 
-    def suit(self, tolerance: float) -> None:
-        """Take account of the tolerance that parts are told."""
-        self.rest = max(REST, REST_SHARE * tolerance)
+    def suit(
+        self, tolerance: float | None, inner_step: float, channels: Mapping[str, Sequence[str]]
+    ) -> None:
+        """Let corrections leave a share of the tolerance that parts are told."""
+        del inner_step, channels
+        if tolerance:
+            self.rest = max(REST, REST_SHARE * tolerance)
 
     @property
     def notes(self) -> tuple[str, ...]:  # type: ignore[override]  # it depends on the run

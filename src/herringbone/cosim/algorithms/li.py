@@ -20,7 +20,7 @@ with inner nodes.
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from herringbone.cosim.algorithms.adaptive import PreparedAdaptive
+from herringbone.cosim.algorithms.adaptive import LARGEST_STEP, PreparedAdaptive
 from herringbone.cosim.algorithms.base import Algorithm, option
 from herringbone.cosim.algorithms.iterated import PreparedNodes
 from herringbone.cosim.structure.network import Network
@@ -53,7 +53,7 @@ class LI(Algorithm):
     name: ClassVar[str] = "li"
     needs: ClassVar[frozenset[str]] = frozenset({"rollback", "nodes"})
     default_step: ClassVar[float] = 4e-5
-    default_largest_step: ClassVar[float] = 2e-4
+    default_largest_step: ClassVar[float] = LARGEST_STEP
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from herringbone.core.names import matches_any
 from herringbone.core.part import column
-from herringbone.core.places.part_path import PartPath, endings
+from herringbone.core.places.part_path import PartPath, in_groups
 from herringbone.cosim.layouts.layout import connected_outputs
 from herringbone.cosim.layouts.nodes import NodeLayout
 from herringbone.cosim.structure.network import Network
@@ -75,9 +74,9 @@ def channel_outputs(
         for part, own in zip(network.parts, connected_outputs(network), strict=True)
         for name in own
     ]
-    paths = [PartPath(part.name) for part in network.parts]
-    called = [endings(paths, name) for name in names]
+    place = {name: i for i, name in enumerate(names)}
+    found = in_groups([PartPath(part.name) for part in network.parts], names, channels)
     return {
-        group: np.array([i for i, own in enumerate(called) if matches_any(own, patterns)], np.int64)
-        for group, patterns in channels.items()
+        group: np.array([place[name] for name in own], dtype=np.int64)
+        for group, own in found.items()
     }
