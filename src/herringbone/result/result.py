@@ -64,6 +64,10 @@ class Result(Facts):
     budget: tuple[BudgetRow, ...] = ()
     whole: pd.DataFrame | None = None
 
+    def noted(self, *notes: str) -> "Result":
+        """The same result with further notes."""
+        return replace(self, info=replace(self.info, notes=(*self.info.notes, *notes)))
+
     @property
     def over_time(self) -> pd.DataFrame:
         """What shows the whole run: the table; of a long run `whole`."""

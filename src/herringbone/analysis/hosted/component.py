@@ -95,8 +95,8 @@ def make_hosted(system: System, wanted: Wanted) -> Composite:
     scratch = count + max(
         newton_scratch(unknowns), radius_scratch(count), periodic_scratch(count, len(found))
     )
-    first = adaptive_work(count, _inputs(boundary))
     inputs = _inputs(boundary)
+    first = adaptive_work(count, inputs)
     without_core = _without_core(boundary, parts)
     form = None if without_core else core_form(parts, inputs, LENGTHS, _ROUGH)
     work = work_places(form, first).end if form else first

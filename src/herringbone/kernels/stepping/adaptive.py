@@ -5,10 +5,6 @@ formula of order 3 costs nothing: with the stages k1 ... k4 and k5 = f(x(t + h))
 (1/6, 1/3, 1/3, 1/15, 1/10) fulfil its conditions (E. Hairer, S. P. Norsett, G. Wanner, Solving
 Ordinary Differential Equations I, 1993, section II.4); the estimate is h (k4 - k5) / 10.
 
-The estimate of a state counts by the largest one of its kind, those of the same unit and usual
-size, or by that size if it is larger: a velocity that passes zero needs no better. An angle that
-grows counts by its usual size alone, and a state vector by its largest element.
-
 No inner step is longer than the longest one that the caller keeps in the block: beyond the
 stability limit, 2.8 over the largest eigenvalue (Hairer and Wanner, Solving Ordinary Differential
 Equations II, 1996, section IV.2), an error is seen only when it has grown.
@@ -39,7 +35,7 @@ estimate; what a step errs there grows with the square of its length."""
 
 def adaptive_work(state_count: int, input_count: int) -> int:
     """Length of the work space that the stepper needs."""
-    return 7 * state_count + 1 + (STRIDE + 1) * input_count
+    return Slots.of(state_count).known + 1 + (STRIDE + 1) * input_count
 
 
 @kernel

@@ -1,4 +1,9 @@
-"""The error of an inner step of Runge-Kutta, by the sizes of the states, and the step after it."""
+"""The error of an inner step of Runge-Kutta, by the sizes of the states, and the step after it.
+
+The estimate of a state counts by the largest one of its kind, those of the same unit and usual
+size, or by that size if it is larger: a velocity that passes zero needs no better. An angle that
+grows counts by its usual size alone, and a state vector by its largest element.
+"""
 
 import math
 from collections.abc import Callable

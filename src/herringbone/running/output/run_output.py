@@ -128,8 +128,7 @@ class RunOutput:
             f"figures are taken from {since:.6g} s on, the last {rows} of {table.rows} records; "
             f"{self.shown} has all"
         )
-        info = replace(result.info, notes=(*result.info.notes, note))
-        return replace(result, info=info, whole=table.overview())
+        return replace(result.noted(note), whole=table.overview())
 
     def write(self, result: Result) -> None:
         """Write all files; a better run replaces the one before.

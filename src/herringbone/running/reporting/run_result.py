@@ -128,8 +128,7 @@ def judged(result: Result, system: System, bond_frequency: float | None) -> Resu
         budget = ()
     else:
         found = (*found, *unsettled(even))
-    notes = (*result.info.notes, *found)
-    return replace(result, info=replace(result.info, notes=notes), budget=budget)
+    return replace(result.noted(*found), budget=budget)
 
 
 def with_remarks(result: Result, remarks: Sequence[Remark]) -> Result:
@@ -158,8 +157,7 @@ def compared(result: Result, every: Result, system: System) -> Result:
     if found is None:
         return with_coupling_row(result)
     error, how = found
-    info = replace(result.info, notes=(*result.info.notes, how))
-    return with_coupling_row(replace(result, error=error, info=info))
+    return with_coupling_row(replace(result.noted(how), error=error))
 
 
 def with_coupling_row(result: Result) -> Result:

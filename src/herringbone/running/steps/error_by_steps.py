@@ -62,18 +62,16 @@ def verified_by_other_steps(
         asked: how it was asked for.
     """
     if found.once:
-        return _with_note(
-            result,
+        return result.noted(
             "the error is not known: an FMU can be instantiated once only, and runs in this "
-            "process; in child processes (on Linux, without --in-process) it is told",
+            "process; in child processes (on Linux, without --in-process) it is told"
         )
     others = _Others(result, system, scene, found, asked)
     twice = others.run(2.0)
     verification = others.by_half(twice) or others.by_longer(twice)
     if verification is None:
-        return _with_note(
-            result,
-            "the error is not known: with half the step and with twice the step no run ends well",
+        return result.noted(
+            "the error is not known: with half the step and with twice the step no run ends well"
         )
     return with_coupling_row(replace(result, verification=verification))
 
@@ -204,7 +202,3 @@ def _by_falls(longer: Apart, falls: Mapping[str, float], step: float, how: str) 
 def _share(fall: float) -> float:
     """Error over the difference from the run with twice the step."""
     return 1.0 / (fall - 1.0) if fall >= _LEAST else _LEAST / max(fall, _SAME)
-
-
-def _with_note(result: Result, note: str) -> Result:
-    return replace(result, info=replace(result.info, notes=(*result.info.notes, note)))

@@ -31,14 +31,28 @@ def add_of_state(rungs: Rungs, rung: int, q: np.ndarray, to: np.ndarray) -> None
 
 
 @inlined
+def _add_of_rung(
+    long: np.ndarray,
+    short: np.ndarray,
+    rung: int,
+    v: np.ndarray,
+    chosen: np.ndarray,
+    count: int,
+    to: np.ndarray,
+) -> None:
+    """Add by the short matrices, if there are any."""
+    if len(short) > 0:
+        add_chosen(short[rung], v, chosen, count, to)
+    else:
+        add_chosen(long[rung], v, chosen, count, to)
+
+
+@inlined
 def add_of_inputs(
     rungs: Rungs, rung: int, v: np.ndarray, chosen: np.ndarray, count: int, to: np.ndarray
 ) -> None:
     """Add the same of the first `count` chosen inputs."""
-    if len(rungs.of_inputs) > 0:
-        add_chosen(rungs.of_inputs[rung], v, chosen, count, to)
-    else:
-        add_chosen(rungs.short_of_inputs[rung], v, chosen, count, to)
+    _add_of_rung(rungs.of_inputs, rungs.short_of_inputs, rung, v, chosen, count, to)
 
 
 @inlined
@@ -46,10 +60,8 @@ def add_push(
     rungs: Rungs, rung: int, v: np.ndarray, chosen: np.ndarray, count: int, q: np.ndarray
 ) -> None:
     """Add what the first `count` chosen inputs do to the state at the end."""
-    if len(rungs.short_push) > 0:
-        add_chosen(rungs.short_push[rung], v, chosen, count, q)
+    _add_of_rung(rungs.push, rungs.short_push, rung, v, chosen, count, q)
+    if len(rungs.still) > 0:
         still = rungs.still[rung]
         for k in range(q.size):
             q[k] += still[k]
-    else:
-        add_chosen(rungs.push[rung], v, chosen, count, q)
