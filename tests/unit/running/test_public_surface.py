@@ -54,12 +54,23 @@ def test_names_are_listed_and_there():
     assert herringbone.__version__
 
 
+def test_static_names_are_those_at_run_time():
+    tree = ast.parse(Path(herringbone.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    names = {
+        (alias.asname, alias.name)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    assert names == {(name, name) for name in herringbone.__all__}
+
+
 def test_star_import():
     assert python("-c", "from herringbone import *; print(run.__name__, LI.__name__)") == "run LI\n"
 
 
 def test_unknown_name_is_refused():
-    with pytest.raises(AttributeError, match="attribute rnu"):
+    with pytest.raises(AttributeError, match="No herringbone attribute rnu"):
         _ = herringbone.rnu
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.rig_as_one import rig_as_one
 
 from herringbone.analysis.twin.composite import Composite, make_composite
 from herringbone.analysis.twin.monolithic import Twin
@@ -33,9 +34,9 @@ def rig():
 
 
 @pytest.fixture(scope="module")
-def composite(rig):
-    """The rig as one component; its step is compiled once, which takes ten seconds."""
-    return make_composite(rig)
+def composite():
+    """The rig as one component."""
+    return rig_as_one()
 
 
 def test_it_moves_as_the_twin_does(rig, composite, tmp_path):
