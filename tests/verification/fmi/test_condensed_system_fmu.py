@@ -166,3 +166,16 @@ def test_a_micro_step_beyond_its_limit_is_named(rig, tmp_path):
     steady = Fmi2Host(rig, tmp_path / "b", values={"micro_step": 0.95 * limit})
     assert np.abs(run(steady, 40, SOME)).max() < 1e4
     assert not any("micro_step = " in m for m in steady.messages)
+
+
+def test_a_parameter_that_the_start_does_not_suit_is_told(rig, tmp_path):
+    """By its name, but not where it is a matter of integration or the host gives a state."""
+    given = {STIFFNESS: 1e8, "drive_motor.speed": 100.0}
+    cases = ({}, {"micro_step": 1e-6}, given, {STIFFNESS: 1e8})
+    told = []
+    for number, values in enumerate(cases):
+        host = Fmi2Host(rig, tmp_path / str(number), values=values)
+        told.append([m for m in host.messages if "the states start as this FMU was made" in m])
+    *silent, (line,) = told
+    assert silent == [[], [], []]
+    assert f"{STIFFNESS} is set to 1e+08, but" in line

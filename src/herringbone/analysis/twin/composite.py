@@ -41,6 +41,7 @@ from herringbone.analysis.twin.source import twin_source
 from herringbone.core import Asked, Component, Declaration, Instance, Kernels, Variable, parameter
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.declaring.declaration import INTERFACE_DEGREE
+from herringbone.core.declaring.roles import Quantity
 from herringbone.core.declaring.variable import Causality
 from herringbone.cosim.structure.system import System
 from herringbone.kernels import steppers
@@ -187,6 +188,7 @@ def _micro_step_parameter(system: System, parts: Parts, steps: Stepping | None) 
         _micro_step(parts) if chosen or not steps else 0.0,
         minimum=0.0 if steps else 1e-9,
         maximum=_LONGEST_MICRO_STEP,
+        quantity=Quantity.MICRO_STEP,
     )
 
 

@@ -8,7 +8,8 @@ from herringbone.components.resources.loader import ResourceLoader
 from herringbone.core import Component, Declaration, Text, Variable
 from herringbone.core.caching.keys import sources_key
 from herringbone.core.declaring.component import unbounded, unchanged
-from herringbone.core.declaring.declaration import node_name
+from herringbone.core.declaring.declaration import INTERFACE_DEGREE, node_name
+from herringbone.core.declaring.roles import Quantity
 from herringbone.core.declaring.variable import NODES, Causality, Variability
 from herringbone.fmi import interface
 from herringbone.fmi.model_description import identifier
@@ -95,7 +96,7 @@ def _entries(
         "first_table": declaration.first_table,
         "size": declaration.size,
         "work": max(declaration.work, 1),
-        "degree": declaration.index["interface_degree"],
+        "degree": declaration.index[INTERFACE_DEGREE],
         "reals": "reals",
         "names": "names",
         "units": "units",
@@ -118,6 +119,7 @@ def _entries(
         "remark": "hb_remark" if by_tolerance else "NULL",
         "tolerance": declaration.index[by_tolerance.tolerance] if by_tolerance else 0,
         "watch": "&hb_watch" if hosting else "NULL",
+        "start_made": "hb_start_made" if _starts_as_made(component) else "NULL",
         "runs_on_count": len(hosting.runs_on) if hosting else 0,
         "runs_on": "runs_on",
         "load_scratch": loader.scratch if loader else 0,
@@ -174,7 +176,8 @@ def _number(value: float) -> str:
 
 def _real(variable: Variable, node: int) -> str:
     numbers = (variable.start, variable.minimum, variable.maximum, variable.nominal)
-    kinds = int(variable.whole), node, int(bool(variable.items))
+    method = variable.quantity is Quantity.MICRO_STEP or variable.name == INTERFACE_DEGREE
+    kinds = int(variable.whole), node, int(bool(variable.items)), int(method)
     return f"{{{', '.join([*map(_number, numbers), *map(str, kinds)])}}}"
 
 
@@ -183,6 +186,11 @@ def _block(used: UsedStates) -> list[Variable | None]:
     declaration = used.component.declaration
     reals = interface.every_real(declaration) | used.scalars()
     return [reals.get(i) for i in range(declaration.first_table)]
+
+
+def _starts_as_made(component: Component) -> bool:
+    """Tells if states begin anywhere but at 0, and nothing looks for them when the FMU starts."""
+    return not component.hosting and any(v.start for v in component.declaration.states)
 
 
 def _runs_on(component: Component) -> Iterable[str]:
@@ -215,7 +223,7 @@ def _reals(declaration: Declaration, block: list[Variable | None]) -> Iterable[s
     nodes = _nodes(declaration)
     for index, variable in enumerate(block):
         node = nodes.get(index, 0)
-        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0, 0}"
+        yield _real(variable, node) if variable else "{0.0, 0.0, 0.0, 1.0, 0, 0, 0, 0}"
 
 
 def _access(

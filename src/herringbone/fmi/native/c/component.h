@@ -37,6 +37,7 @@ typedef struct {
     uint8_t whole;  /* a parameter that takes whole numbers only */
     uint8_t node;   /* number of a signal's node, 1 ...; 0: the variable itself */
     uint8_t choice; /* an Enumeration for FMI, whole from 0; no real */
+    uint8_t method; /* a parameter that tells how the component is integrated, not what it is */
 } HbReal;
 
 /* A column of a resource file. */
@@ -96,6 +97,9 @@ typedef struct {
     bool (*blame)(struct Instance *instance, double step_size);
 } HbWatch;
 extern const HbWatch hb_watch;
+
+/* Warns if the host has set a parameter, and none of the states that an FMU was made with to suit it. */
+void hb_start_made(struct Instance *instance);
 
 /* What is logged once, as soon as it holds; the format is as that of a refusal. */
 typedef struct {
@@ -165,6 +169,8 @@ typedef struct {
     int32_t (*remark)(double *b, double *w, int32_t which, double *report);
     uint32_t tolerance; /* index of the local that has the host's tolerance; 0: there is none */
     const HbWatch *watch; /* NULL: nothing is kept of the inputs, and the linker leaves it out */
+    /* When initialisation ends: hb_start_made, if states start as the FMU was made. */
+    void (*start_made)(struct Instance *instance);
     uint32_t runs_on_count;
     const HbRunsOn *runs_on;
     uint32_t load_scratch;

@@ -187,6 +187,8 @@ Status instance_exit_initialisation(Instance *instance) {
                       hb_component.not_settled[instance->not_settled - 1]);
         log_write(&instance->log, STATUS_WARNING, &message);
     }
+    if (hb_component.start_made)
+        hb_component.start_made(instance);
     if (hb_component.tolerance && !instance->model_exchange) /* the first step is not longer then */
         step_of_no_length(instance);
     if (!instance->model_exchange)
