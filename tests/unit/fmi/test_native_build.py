@@ -21,6 +21,7 @@ from herringbone.fmi.native import (
     build,
     build_native_fmus,
     compiler,
+    objects,
     own_platform,
     symbols,
 )
@@ -126,6 +127,17 @@ def test_gate_refuses_a_young_libc(compiled, monkeypatch):
     monkeypatch.setattr(symbols, "_NEWEST_GLIBC", (2, 0))
     with pytest.raises(FmuError, match="would need GLIBC_2"):
         symbols.check_library(data, OWN, "part")
+
+
+def test_a_kind_of_processor_is_optimised_for_once(monkeypatch):
+    """Whichever platforms are asked for together, each gets the same code."""
+    found, whole = [], objects._whole
+    monkeypatch.setattr(objects, "_whole", lambda k, p: found.append(p.name) or whole(k, p))
+    part = COMPONENTS["shaft_coupling"]
+    together = objects.object_code(part, PLATFORMS.values())
+    assert found == ["x86_64-linux", "aarch64-linux", "x86_64-darwin"]
+    for platform, code in together.items():
+        assert objects.object_code(part, [platform]) == {platform: code}
 
 
 @pytest.mark.slow
