@@ -241,7 +241,7 @@ def _of_platforms(
     of_kinds: dict[Platform, list[Platform]] = {}
     for platform in platforms:
         of_kinds.setdefault(platform.optimised_as, []).append(platform)
-    found = {}
+    found: dict[Platform, bytes] = {}
     for like, alike in of_kinds.items():
         whole = _whole(kernels, like)  # which becomes another one when machine code is made of it
         codes = {p: whole if p == like else whole.clone() for p in alike}
