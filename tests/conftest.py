@@ -69,10 +69,7 @@ def python_fmus():
 
 def _native(order, fmi):
     """Native FMUs by component; test processes that build them at a time share the work."""
-    found = {}
-    for name in order:
-        with alone(f"native_{name}"):
-            found |= build_native_fmus([name], fmi=fmi)
+    found = build_native_fmus(order, fmi=fmi)
     return {name: found[name] for name in COMPONENTS}
 
 

@@ -23,6 +23,6 @@ def code_that_reads(array):
 
 
 def test_an_array_with_gaps_is_refused():
-    assert objects._of_platform(code_that_reads(PLAIN), LINUX)
+    assert objects._of_platforms(code_that_reads(PLAIN), [LINUX])[LINUX]
     with pytest.raises(StructureError, match="an array that is not contiguous"):
-        objects._of_platform(code_that_reads(WITH_GAPS), LINUX)
+        objects._of_platforms(code_that_reads(WITH_GAPS), [LINUX])

@@ -1,8 +1,10 @@
 """Building native FMUs: reproducible, cached, small, and nothing of Python inside."""
 
+import fcntl
 import importlib.util
 import shutil
 import subprocess
+import threading
 import zipfile
 from pathlib import Path
 
@@ -21,6 +23,7 @@ from herringbone.fmi.native import (
     build,
     build_native_fmus,
     compiler,
+    objects,
     own_platform,
     symbols,
 )
@@ -126,6 +129,44 @@ def test_gate_refuses_a_young_libc(compiled, monkeypatch):
     monkeypatch.setattr(symbols, "_NEWEST_GLIBC", (2, 0))
     with pytest.raises(FmuError, match="would need GLIBC_2"):
         symbols.check_library(data, OWN, "part")
+
+
+def test_who_builds_what_another_one_is_building_waits_for_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(build, "cache_folder", lambda kind: tmp_path / kind)
+    lock, asked, builders = fcntl.flock, [], []
+
+    def ask(descriptor, operation):
+        asked.append(descriptor)
+        if len(asked) == 2:
+            waits.set()
+        lock(descriptor, operation)
+
+    def built(*_):
+        builders.append(threading.current_thread())
+        if len(builders) == 1:
+            other.start()
+            assert waits.wait(10.0)
+        return b"an FMU"
+
+    waits = threading.Event()
+    other = threading.Thread(target=build_native_fmus, args=(["shaft_coupling"],))
+    monkeypatch.setattr(fcntl, "flock", ask)
+    monkeypatch.setattr(build, "_built", built)
+    file = build_native_fmus(["shaft_coupling"])["shaft_coupling"]
+    other.join()
+    assert file.read_bytes() == b"an FMU"
+    assert builders == [threading.current_thread()]
+
+
+def test_a_kind_of_processor_is_optimised_for_once(monkeypatch):
+    """Whichever platforms are asked for together, each gets the same code."""
+    found, whole = [], objects._whole
+    monkeypatch.setattr(objects, "_whole", lambda k, p: found.append(p.name) or whole(k, p))
+    part = COMPONENTS["shaft_coupling"]
+    together = objects.object_code(part, PLATFORMS.values())
+    assert found == ["x86_64-linux", "aarch64-linux", "x86_64-darwin"]
+    for platform, code in together.items():
+        assert objects.object_code(part, [platform]) == {platform: code}
 
 
 @pytest.mark.slow

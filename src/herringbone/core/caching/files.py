@@ -7,6 +7,7 @@ import logging
 import os
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,27 @@ def read_stored(file: Path) -> bytes | None:
 def is_stored(file: Path) -> bool:
     """True if the cache has the file as it was stored; see `read_stored`."""
     return read_stored(file) is not None
+
+
+@contextlib.contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Context that one process, or thread, at a time enters for a folder, which is made if needed.
+
+    What one makes there, the others find made. A process that dies lets the next one in; where
+    there are no locks, all enter.
+    """
+    descriptor = -1
+    with contextlib.suppress(OSError, ImportError):
+        import fcntl  # noqa: PLC0415 (not on Windows)
+
+        folder.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+    try:
+        yield
+    finally:
+        if descriptor >= 0:
+            os.close(descriptor)
 
 
 def stored_files(folder: Path, pattern: str) -> list[Path]:

@@ -7,7 +7,7 @@ from herringbone.components.registry import COMPONENTS
 from herringbone.core import FmuError, ParameterError
 from herringbone.core.activity import activity
 from herringbone.core.caching.built import note_built
-from herringbone.core.caching.files import is_stored, store, stored_files
+from herringbone.core.caching.files import alone_in, is_stored, store, stored_files
 from herringbone.core.caching.keys import digest_of, kernels_key, wrapper_key
 from herringbone.core.places.paths import cache_folder
 from herringbone.core.places.temporary import temporary_folder
@@ -81,7 +81,10 @@ def build_models(
         model for model in models if not carried[model.name] and not is_stored(fmus[model.name])
     ]
     for model in missing:
-        with activity(f"building the native FMU of {model.name}", "only when its code has changed"):
+        what = f"building the native FMU of {model.name}"
+        with activity(what, "only when its code has changed"), alone_in(_folder_of_kernels(model)):
+            if is_stored(fmus[model.name]):  # another process was building it
+                continue
             content = _built(model, chosen, fmi)
             note_built(content)
             store(fmus[model.name], content)
@@ -118,10 +121,14 @@ def _chosen(platforms: Sequence[str]) -> list[Platform]:
     return [own]
 
 
-def _kernels(model: Model, platform: Platform) -> Path:
+def _folder_of_kernels(model: Model) -> Path:
     """Where the object code of a model's kernels lies in the cache; FMI versions share it."""
-    folder = cache_folder("native-objects") / f"{model.name}-{model.kernels_key}"
-    return folder / f"{platform.name}.o"
+    return cache_folder("native-objects") / f"{model.name}-{model.kernels_key}"
+
+
+def _kernels(model: Model, platform: Platform) -> Path:
+    """The object code of a model's kernels for a platform."""
+    return _folder_of_kernels(model) / f"{platform.name}.o"
 
 
 def _make_kernels(model: Model, platforms: list[Platform]) -> None:

@@ -1,7 +1,8 @@
 """Object code of kernels, without Python, for any platform.
 
 numba writes each kernel behind a C signature as LLVM code, which does not depend on the processor
-of this computer; it is optimised for its target with every function but the entry points internal.
+of this computer; it is optimised for its target with every function but the entry points internal,
+once for all systems on one kind of processor.
 LLVM then sees that no kernel ever reports an error, and drops all of numba's error path: nothing of
 Python remains. That is checked, see `symbols`.
 
@@ -217,14 +218,35 @@ def _optimised(kernels: dict[str, CFunction], platform: Platform, *, fast: bool)
     return module
 
 
-def _of_platform(kernels: dict[str, CFunction], platform: Platform) -> bytes:
-    """Object code of all entry points for a platform."""
-    target = _target(platform)
+def _whole(kernels: dict[str, CFunction], platform: Platform) -> llvm.ModuleRef:
+    """LLVM code of all entry points, optimised for a platform."""
     fast = {symbol: compiled for symbol, compiled in kernels.items() if symbol in _FAST}
     small = {symbol: compiled for symbol, compiled in kernels.items() if symbol not in _FAST}
     whole = _optimised(fast, platform, fast=True)
     whole.link_in(_optimised(small, platform, fast=False))
+    return whole
+
+
+def _machine_code(whole: llvm.ModuleRef, platform: Platform) -> bytes:
+    """Object code for a platform, of code that was optimised for its kind of processor."""
+    target = _target(platform)
+    whole.triple, whole.data_layout = platform.triple, str(target.target_data)
     return target.emit_object(whole)
+
+
+def _of_platforms(
+    kernels: dict[str, CFunction], platforms: Iterable[Platform]
+) -> dict[Platform, bytes]:
+    """Object code of entry points by platform; most of the time goes into what is optimised."""
+    of_kinds: dict[Platform, list[Platform]] = {}
+    for platform in platforms:
+        of_kinds.setdefault(platform.optimised_as, []).append(platform)
+    found: dict[Platform, bytes] = {}
+    for like, alike in of_kinds.items():
+        whole = _whole(kernels, like)  # which becomes another one when machine code is made of it
+        codes = {p: whole if p == like else whole.clone() for p in alike}
+        found |= {p: _machine_code(code, p) for p, code in codes.items()}
+    return found
 
 
 def object_code(component: Component, platforms: Iterable[Platform]) -> dict[Platform, bytes]:
@@ -233,4 +255,4 @@ def object_code(component: Component, platforms: Iterable[Platform]) -> dict[Pla
     llvm.initialize_all_asmprinters()
     with quickly():
         kernels = entry_points(component)
-    return {platform: _of_platform(kernels, platform) for platform in platforms}
+    return _of_platforms(kernels, platforms)

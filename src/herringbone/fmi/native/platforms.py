@@ -30,6 +30,17 @@ class Platform:
     tested: bool
 
     @property
+    def optimised_as(self) -> "Platform":
+        """The platform whose optimised code this one takes, where systems alone differ.
+
+        Of two systems on one kind of processor, what LLVM needs to know of them follows later, when
+        it makes machine code. Code that asks for wide vectors is not taken where it is not tested.
+        """
+        machine = self.name.partition("-")[0]
+        like = PLATFORMS[f"{machine}-linux"]
+        return like if self.chooses_vectors == like.chooses_vectors else self
+
+    @property
     def chooses_vectors(self) -> bool:
         """Whether code asks the processor for wide vectors, where that is tested: see `wide`."""
         return self.triple.startswith("x86_64") and self.tested
