@@ -2,6 +2,7 @@
 
 from herringbone.analysis.steady.marching.marched import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.searching.found import Found
 from herringbone.analysis.steady.searching.guess import LONG, SETTLING
 from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
@@ -49,6 +50,15 @@ def not_repeating(march: Repeated | None) -> str:
         f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
         f"still changes by {100.0 * march.change:.2g} % from one period to later ones, though "
         "motions beside it come together; ask for a larger torque, or run it"
+    )
+
+
+def not_exact(found: Found, tolerance: float) -> str:
+    """Why a march that repeats does not give the motion to a tolerance."""
+    return (
+        f"a march repeats, but at {found.orbit.resolved.per_mesh // 2} harmonics of the mesh and "
+        f"the shortest of its steps its error is {found.errors.worst:.2g}, where {tolerance:g} is "
+        "asked: ask for no less than that"
     )
 
 
