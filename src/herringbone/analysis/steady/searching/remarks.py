@@ -28,10 +28,10 @@ def told(times: int) -> tuple[str, ...]:
 
 def unsettled(structure: Structure, march: March | None) -> str:
     """Why there is no march that could be followed to a motion."""
-    if structure.meshes >= LONG:
+    if structure.problem.free is not None and structure.meshes > 1:
         return (
-            f"its period of {structure.meshes} meshes is too long for a march in which nothing "
-            "holds the speed; join a drive and a load, or set run-outs and deviations to 0"
+            f"nothing holds the speed, which drifts in a march over the {structure.meshes} meshes "
+            "of its period; join a drive and a load, or set run-outs and deviations to 0"
         )
     if march is None:
         return "a march from equilibrium fails, too"
