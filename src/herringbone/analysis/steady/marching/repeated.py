@@ -83,6 +83,38 @@ def repeated(
     return None
 
 
+def with_halved_steps(
+    structure: Structure, motion: Motion, found: Repeated, close: float
+) -> Repeated:
+    """A march that repeats, with steps of half the length, until it repeats again, or for a while.
+
+    Shorter steps have another motion, which it has to come to; in which teeth may rattle.
+
+    Args:
+        structure: the system.
+        motion: what is given of one period.
+        found: the march; it goes on.
+        close: see `repeated`.
+
+    Returns:
+        What it has come to; its change tells whether it repeats.
+
+    Raises:
+        CoreStopped: the march fails.
+    """
+    found.way.halve()
+    now = found.finer(1)
+    for _ in range(_MOST):
+        before, now = now.march, now.finer(1)
+        both = now.march._replace(values=np.hstack([before.values, now.march.values]))
+        now = now._replace(change=both.change(now.times))
+        if now.change <= close:
+            return now
+    mesh = now.way.period / structure.meshes
+    apart = parting(structure, motion, now.march.end, mesh, structure.meshes)
+    return now._replace(march=both, parting=apart)
+
+
 def _until_repeated(way: Following, close: float, most: int) -> Repeated:
     periods: list[March] = []
     changes = {1: np.inf}

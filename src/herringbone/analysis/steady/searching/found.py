@@ -10,7 +10,12 @@ from herringbone.analysis.steady.harmonic_balance.accuracy import Accuracy, accu
 from herringbone.analysis.steady.harmonic_balance.balance import Balance
 from herringbone.analysis.steady.harmonic_balance.floquet import multipliers
 from herringbone.analysis.steady.harmonic_balance.orbit import Motion, Orbit
-from herringbone.analysis.steady.marching.repeated import INSIDE, Repeated, repeated
+from herringbone.analysis.steady.marching.repeated import (
+    INSIDE,
+    Repeated,
+    repeated,
+    with_halved_steps,
+)
 from herringbone.analysis.steady.marching.shooting import Shooting, Shot
 from herringbone.analysis.steady.searching.guess import PLACES, several
 from herringbone.analysis.steady.searching.irregular import Irregular
@@ -91,7 +96,7 @@ def by_marching(
     march = repeated(structure, motion, still, resolution.per_mesh, _SETTLED * tolerance)
     if march is None or march.change > _SETTLED * tolerance:
         return None, march
-    now, motion = march, several(motion, march.times)
+    now, once, motion = march, motion, several(motion, march.times)
 
     def values(per_mesh: int) -> np.ndarray:
         nonlocal now
@@ -99,11 +104,12 @@ def by_marching(
             now = now.finer(per_mesh // PLACES)
         return now.march.harmonics(now.times)
 
-    def stepped(halved: int) -> Found:
+    def stepped(halved: int) -> Found | None:
         nonlocal now
         if halved:
-            now.way.halve()
-            now = now.finer(1)
+            now = with_halved_steps(structure, once, now, _SETTLED * tolerance)
+            if now.change > _SETTLED * tolerance:
+                return None
         close = _left_out(tolerance, halved)
         found = _in_harmonics(structure, motion, now.times, close, values)
         return found._replace(by=Settled(now.way.time, now.change))
@@ -205,7 +211,7 @@ def _in_harmonics(
         orbit = Balance(structure.problem, period, motion).along(values, known)
         errors = accuracy(structure, period, motion, orbit)
         stalls = errors.worst > _FALLS * before[0]  # then it is the march's own error
-        if errors.worst <= tolerance or resolution.finest(period) or stalls:
+        if errors.worst <= tolerance or resolution.finest(period, marched=True) or stalls:
             return Found(motion, orbit, errors)
         resolution = resolution.finer(errors, tolerance)
         before = before[1], errors.worst

@@ -2,6 +2,7 @@
 
 from herringbone.analysis.steady.marching.marched import March
 from herringbone.analysis.steady.marching.repeated import Repeated
+from herringbone.analysis.steady.searching.found import Found
 from herringbone.analysis.steady.searching.guess import LONG, SETTLING
 from herringbone.analysis.steady.searching.irregular import Irregular
 from herringbone.analysis.steady.set_points import Point
@@ -27,10 +28,10 @@ def told(times: int) -> tuple[str, ...]:
 
 def unsettled(structure: Structure, march: March | None) -> str:
     """Why there is no march that could be followed to a motion."""
-    if structure.meshes >= LONG:
+    if structure.problem.free is not None and structure.meshes > 1:
         return (
-            f"its period of {structure.meshes} meshes is too long for a march in which nothing "
-            "holds the speed; join a drive and a load, or set run-outs and deviations to 0"
+            f"nothing holds the speed, which drifts in a march over the {structure.meshes} meshes "
+            "of its period; join a drive and a load, or set run-outs and deviations to 0"
         )
     if march is None:
         return "a march from equilibrium fails, too"
@@ -49,6 +50,15 @@ def not_repeating(march: Repeated | None) -> str:
         f"no periodic motion was found: after {march.way.time:.3g} s from equilibrium a march "
         f"still changes by {100.0 * march.change:.2g} % from one period to later ones, though "
         "motions beside it come together; ask for a larger torque, or run it"
+    )
+
+
+def not_exact(found: Found, tolerance: float) -> str:
+    """Why a march that repeats does not give the motion to a tolerance."""
+    return (
+        f"a march repeats, but at {found.orbit.resolved.per_mesh // 2} harmonics of the mesh and "
+        f"the shortest of its steps its error is {found.errors.worst:.2g}, where {tolerance:g} is "
+        "asked: ask for no less than that"
     )
 
 

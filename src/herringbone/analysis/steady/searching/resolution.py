@@ -7,8 +7,9 @@ from herringbone.analysis.steady.harmonic_balance.orbit import Period
 from herringbone.analysis.steady.searching.guess import LONG
 from herringbone.analysis.steady.structure import Structure
 
-_MOST_PLACES, _MOST_IN_ALL = 2048, 150_000
-"""Points in time of a mesh period, and of a long one, at most."""
+_MOST_PLACES, _MOST_IN_ALL, _MOST_MARCHED = 2048, 150_000, 300_000
+"""Points in time of a mesh period, and of a long one that is solved for or marched, from which on
+they are not doubled."""
 _THIN = 0.005
 """Alternating part of the contact that harmonics may have that are not in use, over the tolerance:
 at first, of many meshes."""
@@ -54,9 +55,15 @@ class Resolution(NamedTuple):
         meshes = times * structure.meshes
         return Period(self.per_mesh // 4, meshes * self.per_mesh, meshes, self.thin)
 
-    def finest(self, period: Period) -> bool:
-        """True if a period that was looked at so is not to be looked at more finely."""
-        long = period.meshes >= LONG and period.places > _MOST_IN_ALL
+    def finest(self, period: Period, *, marched: bool = False) -> bool:
+        """True if a period that was looked at so is not to be looked at more finely.
+
+        Args:
+            period: that was looked at.
+            marched: its motion is known in time, and nothing solved for.
+        """
+        most = _MOST_MARCHED if marched else _MOST_IN_ALL
+        long = period.meshes >= LONG and period.places > most
         return long or self.per_mesh >= _MOST_PLACES
 
     def finer(self, errors: Accuracy, tolerance: float) -> "Resolution":

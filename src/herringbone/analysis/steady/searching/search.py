@@ -35,6 +35,7 @@ from herringbone.analysis.steady.searching.remarks import (
     NO_ROTATION,
     NO_SHOT,
     never_repeats,
+    not_exact,
     not_repeating,
     told,
     unsettled,
@@ -180,7 +181,10 @@ class Search:
         """The motion that a march repeats, or what was found before."""
         repeating, march = by_marching(self._structure, self._motion, self._still, self._tolerance)
         if repeating is not None and march is not None:
-            return repeating, told(march.times)
+            said = told(march.times)
+            if not repeating.good(self._tolerance):
+                said = (*said, not_exact(repeating, self._tolerance))
+            return repeating, said
         never = irregular(self._structure, self._motion, march) if march else None
         if march is None or never is None:
             return found, (not_repeating(march),)
