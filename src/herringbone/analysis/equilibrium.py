@@ -98,6 +98,20 @@ def answered_equilibrium(twin: Twin, answers: Answers) -> AnsweredEquilibrium:
         return AnsweredEquilibrium(_start_values(twin, x), x, acceleration, answered.rotation)
 
 
+def even_acceleration(system: System) -> dict[str, float]:
+    """Start values of a rotation that torques which do not balance speed up evenly.
+
+    Args:
+        system: of components.
+
+    Raises:
+        StructureError: a part is a foreign FMU.
+        EquilibriumError: there is none.
+    """
+    none = np.empty(0)
+    return answered_equilibrium(Twin(system), Answers((), none, (), np.empty((0, 0)), none)).values
+
+
 def equilibrium(system: System, angles: bool = True) -> Equilibrium:
     """Start values for steady rotation of a system of components.
 

@@ -7,11 +7,14 @@ from support.kinds import build_kinds
 from support.strangers import write_system
 
 import herringbone as hb
+from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.stability.limits import stability
+from herringbone.analysis.twin.monolithic import Twin
 from herringbone.components.registry import COMPONENTS
 from herringbone.cosim.algorithms import Jacobi
 from herringbone.running.foreign.surrogates import opened_surrogates, turned_back, under_load
 from herringbone.running.prepared import Wishes, prepared
+from herringbone.running.start import known_parts
 from herringbone.scenes import Start
 
 STEP = 4e-5
@@ -124,6 +127,28 @@ def test_limit_that_runs_show_from_a_turning_start(driven):
         ).limits
     assert limits.promised and limits.simulated_limit is not None
     assert 0.99 <= limits.simulated_limit / limits.limit <= 1.15
+
+
+def test_linear_start_under_a_load_that_only_a_foreign_motor_would_balance(driven):
+    """The load speeds own parts up evenly, by Newton's law, and the meshes carry what it takes.
+
+    Teeth without load have a fifth less stiffness, and no damping: limits of another system.
+    """
+    system = under_load(prepared(driven, None, Wishes(start_offset={})).system)
+    twin = Twin(known_parts(system))
+    rates = dict(zip(names_of_states(twin), twin.rhs(0.0, twin.state), strict=True))
+    pinion, wheel = (2.0 * of("gear_mesh", f"{gear}.inertia") for gear in ("pinion", "wheel"))
+    inertia = pinion + (wheel + of("load_motor", "inertia")) / 9.0
+    acceleration = rates["gearbox.gear_mesh.der(angle)"]
+    # As above: what the slope of the mesh stiffness gives back.
+    assert acceleration == pytest.approx(-200.0 / inertia, abs=0.2 / inertia)
+    assert rates["load.speed"] == pytest.approx(acceleration / 3.0, rel=1e-6)
+    names = [f"gearbox.gear_mesh.mesh_{side}.force" for side in ("left", "right")]
+    forces = twin.observe(np.zeros(1), twin.state[:, None], names)[0]
+    # All that speeds the pinion up goes through the meshes; normal forces are larger, by at most
+    # 1 / cos(35 degrees).
+    force = -pinion * acceleration / of("gear_mesh", "pinion.base_radius")
+    assert force < np.sum(forces) < 1.3 * force
 
 
 def test_foreign_at_both_ends(driven):

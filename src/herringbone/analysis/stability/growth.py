@@ -15,7 +15,9 @@ RIGID = 1e-5
 square root of rounding only) and motions that take more than 1e5 steps; they are left out."""
 _SPLIT, _EVENLY = 9e-4, 0.05
 """Errors of what stands for foreign parts split a double eigenvalue evenly, by so much at most: its
-mean stays where it was, while what the coupling adds moves both, or one of them.
+mean stays where it was, while what the coupling adds moves both, or one of them. The first is set,
+not measured: double eigenvalues go by the root of an error, and this is the root of 8e-7, eighty
+times the error that is stated of such matrices.
 """
 NEAR_MIRROR = 1.1
 """Steps longer by so much at most bring a motion of `Growth.near_mirror` to half the rate."""

@@ -1,11 +1,12 @@
 """Linear surrogates of a system's foreign parts, for what is predicted before a run."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from herringbone.analysis.equilibrium import even_acceleration
 from herringbone.analysis.rigid_rotation import names_of_states
 from herringbone.analysis.stability.surrogates.sampled import SampledSurrogate, round_period
 from herringbone.analysis.stability.surrogates.stand_in import Stranger
@@ -32,6 +33,7 @@ from herringbone.running.foreign.foreign_parts import (
 )
 from herringbone.running.loading import instances, open_parts
 from herringbone.running.pairs.carrying_flank import loaded_start
+from herringbone.running.pairs.mesh_phases import steady_values
 from herringbone.running.pairs.open_flanges import loaded
 from herringbone.running.start import known_parts, ramp_times, without_parts
 
@@ -122,8 +124,10 @@ def under_load(system: System) -> System:
     """The system with its own parts in steady rotation under load, as they are after a ramp.
 
     What foreign parts would feed is taken as zero; but gears that only these load have 200 N m at
-    the pinion, so that their meshes are closed. As it is where there is no such rotation, or where
-    it is in equilibrium with foreign parts, too.
+    the pinion, so that their meshes are closed. Where nothing balances a load, as the motor is
+    foreign, it speeds the drivetrain up evenly: teeth that carry nothing are softer, and have no
+    damping. As it is where there is no such rotation either, or where it is in equilibrium with
+    foreign parts, too.
     """
     if not system.foreign_parts or len(system.foreign_parts) == len(system.parts):
         return system
@@ -139,10 +143,10 @@ def under_load(system: System) -> System:
             for name, value in part.values.items()
         }
         steady = steady.with_values(values)
-    try:
-        return steady.with_values(loaded_start(own)[0])
-    except HerringboneError:
-        return system
+    for rotation in (steady_values, even_acceleration):
+        with suppress(HerringboneError):
+            return steady.with_values(loaded_start(own, rotation)[0])
+    return system
 
 
 def turned_back(system: System) -> System:

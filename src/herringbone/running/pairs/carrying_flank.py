@@ -5,6 +5,8 @@ touch on the coast flank there, y becomes that of the coast flank, in the pair a
 it. A flank that is set by name stays.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from herringbone.analysis.anatomy import anatomy
@@ -17,18 +19,21 @@ from herringbone.running.pairs.mesh_phases import steady_values
 COAST = -1.0
 
 
-def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
+def loaded_start(
+    system: System, steady: Callable[[System], Values] = steady_values
+) -> tuple[Values, tuple[str, ...]]:
     """Start values of steady rotation with the flanks that carry, and lines on these.
 
     Args:
         system: of known parts.
+        steady: finds the rotation on given flanks.
 
     Raises:
         EquilibriumError: there is no steady rotation on either flank.
     """
     flanks, wrong = free_flanks(system), None
     try:
-        values = steady_values(system)
+        values = steady(system)
     except EquilibriumError as error:
         if not flanks:
             raise _with_hint(error, system) from error
@@ -40,7 +45,7 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
             return values, ()
     chosen = {path: COAST for gear in coasting for path in flanks[gear]}
     try:
-        found = _coasting(system.with_values(chosen), coasting)
+        found = _coasting(system.with_values(chosen), coasting, steady)
     except EquilibriumError:
         if wrong:  # what is wrong on the drive flank is what the user can tell
             raise wrong from None
@@ -49,13 +54,13 @@ def loaded_start(system: System) -> tuple[Values, tuple[str, ...]]:
     return {**chosen, **found}, tuple(lines)
 
 
-def _coasting(system: System, gears: list[str]) -> Values:
+def _coasting(system: System, gears: list[str], steady: Callable[[System], Values]) -> Values:
     """Start values of steady rotation with gear pairs on their coast flanks.
 
     Raises:
         EquilibriumError: there is none, or the teeth touch on the other flank there.
     """
-    found = steady_values(system)
+    found = steady(system)
     for gear in gears:
         if not coasts(system.with_values(found), gear):
             raise EquilibriumError(
