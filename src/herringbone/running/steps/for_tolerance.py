@@ -15,8 +15,11 @@ What is given by name wins: an algorithm, a step (the largest one then), an inne
 
 from dataclasses import replace
 
+from herringbone.analysis.anatomy import anatomy
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.algorithms import LI, with_tolerance
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.running.coupled import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
@@ -25,6 +28,22 @@ from herringbone.scenes import Scene
 _FINE = 3e-5
 """Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
 teeth are in contact and where they separate."""
+
+
+def by_default(system: System, asked: Asked) -> Asked:
+    """What is asked, with the default tolerance where nothing is said of how to couple own parts.
+
+    The ladder of steps is made for gears: without a pair the fastest bond tells the step. With
+    foreign parts a tolerance takes several runs, and is there for the asking.
+    """
+    told = (asked.algorithm, asked.step, asked.tolerance, asked.slow or None)
+    if any(each is not None for each in told) or asked.fuse:
+        return asked
+    if system.foreign_parts or not system.connections:
+        return asked
+    if not anatomy(system).with_role(Role.GEAR_PAIR):
+        return asked
+    return replace(asked, tolerance=DEFAULT_TOLERANCE, by_default=True)
 
 
 def for_tolerance(
@@ -54,7 +73,8 @@ def for_tolerance(
     algorithm = with_tolerance(algorithm, tolerance)
     degree = algorithm.degree if isinstance(algorithm, LI) else LI().degree
     found = with_inner_steps(system, tolerance, degree, kicked=kicked)
-    why = "" if given else f"tolerance = {tolerance:g}: {algorithm}, the cheapest for it"
+    said = f"tolerance = {tolerance:g}" + " (default)" * asked.by_default
+    why = "" if given else f"{said}: {algorithm}, the cheapest for it"
     return found.system, replace(
         asked,
         algorithm=algorithm,
