@@ -168,32 +168,11 @@ def test_interrupt(tmp_path, fmu):
     """Ctrl-C while the bar moves: it ends within 0.5 s of CPU, then files are written."""
     import termios
 
-    command = [
-        sys.executable,
-        "-m",
-        "herringbone",
-        "run",
-        "test_rig",
-        "--algorithm",
-        "li",
-        "--t-end",
-        "60",
-    ]
+    run_rig = ["run", "test_rig", "--algorithm", "li", "--t-end", "60", "--fmu", fmu]
     terminal, stderr = os.openpty()
     termios.tcsetwinsize(stderr, (40, 120))
     with subprocess.Popen(
-        [
-            sys.executable,
-            "-m",
-            "herringbone",
-            "run",
-            "test_rig",
-            *asked,
-            "--fmu",
-            fmu,
-            "-o",
-            tmp_path,
-        ],
+        [sys.executable, "-m", "herringbone", *run_rig, "-o", str(tmp_path)],
         stdout=subprocess.PIPE,
         stderr=stderr,
     ) as process:

@@ -13,6 +13,7 @@
 What is given by name wins: an algorithm, a step (the largest one then), an inner step.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from herringbone.analysis.anatomy import anatomy
@@ -23,6 +24,7 @@ from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.running.coupled import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
+from herringbone.running.steps.suited_step import RECORDS_APART
 from herringbone.scenes import Scene
 
 _FINE = 3e-5
@@ -37,12 +39,15 @@ def by_default(system: System, asked: Asked) -> Asked:
     foreign parts a tolerance takes several runs, and is there for the asking.
     """
     told = (asked.algorithm, asked.step, asked.tolerance, asked.slow or None)
-    if any(each is not None for each in told) or asked.fuse:
+    if any(each is not None for each in told) or asked.fuse or not system.connections:
         return asked
-    if system.foreign_parts or not system.connections:
+    foreign = system.foreign_parts
+    if len(foreign) == len(system.parts) or not anatomy(system).with_role(Role.GEAR_PAIR):
         return asked
-    if not anatomy(system).with_role(Role.GEAR_PAIR):
-        return asked
+    if foreign:
+        why = f"no tolerance by default: with {', '.join(foreign)} it takes several runs"
+        line = f"{why}; --tolerance {DEFAULT_TOLERANCE:g} asks for it"
+        return replace(asked, notes=(*asked.notes, line))
     return replace(asked, tolerance=DEFAULT_TOLERANCE, by_default=True)
 
 
@@ -80,5 +85,17 @@ def for_tolerance(
         algorithm=algorithm,
         inner_step=found.longest,
         part_tolerance=SHARE * tolerance,
-        notes=(*asked.notes, *filter(None, (why,)), *found.lines),
+        notes=(*asked.notes, *_said(why, scene, asked), *found.lines),
     )
+
+
+def _said(why: str, scene: Scene, asked: Asked) -> Iterator[str]:
+    """A line on what was chosen, and on records that are fewer than the scene's."""
+    apart = ""
+    if asked.record_step is None and asked.step is None and scene.record_step < RECORDS_APART:
+        apart = (
+            f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} "
+            "gives the scene's, and takes longer"
+        )
+    if why or apart:
+        yield "; ".join(filter(None, (why, apart)))
