@@ -2,6 +2,8 @@
 
 from herringbone.core import ParameterError
 
+DEFAULT_TOLERANCE = 1e-3
+"""Of runs that nothing is said of [1]."""
 SMALLEST_TOLERANCE = 1e-8
 """The twin of a run errs 6e-9 itself (test rig, relative tolerance of 1e-10 against 1e-12) [1]."""
 

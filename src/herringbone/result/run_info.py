@@ -25,6 +25,8 @@ class RunInfo:
             "shortest", "median" and "longest" of the accepted ones [s].
         estimate: if the step is adaptive, the relative error "asked" for, and what the steps let
             expect: of the "coupling", and of the "inner_steps" of the parts.
+        tolerance_by_default: the error that was asked for is the default one: nothing was said of
+            algorithm, step or tolerance.
         energy: what the coupling did to the energy; None where no element has dampers.
         why: of an unstable run, what grows and what helps; None if the linear parts do not tell.
         slow: bodies that step once in several macro steps, and in how many.
@@ -53,6 +55,7 @@ class RunInfo:
     notes: tuple[str, ...] = ()
     steps: Mapping[str, float] | None = None
     estimate: Mapping[str, float] | None = None
+    tolerance_by_default: bool = False
     energy: EnergyReport | None = None
     why: Diagnosis | None = None
     slow: Mapping[str, int] = field(default_factory=dict)

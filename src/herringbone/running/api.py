@@ -70,10 +70,12 @@ def run(
             joined to its gear pair; the scene's if not given, as in `herringbone.sweep`.
         torque: at the pinion [N m], likewise.
         algorithm: coupling algorithm, such as `LI(degree=3)` or "li:degree=3"; "auto", the
-            default, takes li if all parts can repeat a step, and jacobi otherwise.
-        step: communication step size [s]; the algorithm's default if not given, or, if all parts
-            are foreign, what a tolerance of 1e-3 needs. With a tolerance the largest one; an
-            adaptive step goes down to 1/200 of it.
+            default, takes li if all parts can repeat a step, and jacobi otherwise; see `step` for
+            what it is asked.
+        step: communication step size [s]; the algorithm's default if not given, or, if nothing
+            else is said and all parts are foreign, or of this package with a gear pair, what a
+            tolerance of 1e-3 needs. With a tolerance the largest one; an adaptive step goes down
+            to 1/200 of it.
         tolerance: relative error (see `analysis.accuracy.error`) for which `li` adapts its step, as
             in "li:tolerance=1e-3"; with foreign parts the step is fixed, and found by several runs
             with any algorithm, see `running.steps.step_search`.

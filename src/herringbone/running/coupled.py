@@ -81,6 +81,7 @@ class Asked:
         judge: make the error budget, and lines on what does not fit together; False for runs that
             only tell the error of another.
         left_out: row of the error budget, of what the model leaves out.
+        by_default: the tolerance is the default one, as nothing was said.
     """
 
     fmu: str
@@ -100,6 +101,7 @@ class Asked:
     core_step: float | None = None
     judge: bool = True
     left_out: BudgetRow | None = None
+    by_default: bool = False
 
 
 class Coupled(NamedTuple):
@@ -190,7 +192,9 @@ def _coupled(
         lines += _record_notes(asked.record_step, algorithm, grid)
         kind, streaming = KIND if asked.fuse else asked.fmu, None
         if output is not None:
-            start = start_of(system, scene, algorithm, kind, grid, lines)
+            start = start_of(
+                system, scene, algorithm, kind, grid, lines, by_default=asked.by_default
+            )
             streaming = _streaming(output, start, scene, grid, asked)
         with told(progress, f"simulating {1e3 * scene.t_end:g} ms of {system.name}") as tell:
             recording = simulate(
@@ -199,7 +203,9 @@ def _coupled(
             )  # fmt: skip
         recording = with_core_steps(recording, opened)
         lines += _step_notes(asked.step, algorithm, recording)
-        every = make_result(system, scene, algorithm, kind, recording, lines)
+        every = make_result(
+            system, scene, algorithm, kind, recording, lines, by_default=asked.by_default
+        )
         if asked.judge:
             every = with_row(judged(every, system, bond), asked.left_out)
         _log_end(recording)

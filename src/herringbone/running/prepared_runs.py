@@ -19,7 +19,7 @@ from herringbone.running.output.run_output import RunOutput
 from herringbone.running.reporting.progress import Progress
 from herringbone.running.reporting.run_result import compared
 from herringbone.running.steps.error_by_steps import can_be_verified, verified_by_other_steps
-from herringbone.running.steps.for_tolerance import for_tolerance
+from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.step_search import searched, searched_tolerance
 from herringbone.running.steps.verification import check_fixed_step, verified
 from herringbone.scenes import Scene
@@ -84,6 +84,7 @@ def coupled_run(
     """
     progress, recorded, output = heard
     refuse_lean(scene)
+    asked = by_default(system, asked)
     adapts = asked.tolerance is not None or (
         asked.algorithm is not None and asked.algorithm.adaptive
     )
@@ -97,7 +98,9 @@ def coupled_run(
     if verify and aim is None:
         check_fixed_step(asked.algorithm, asked.tolerance)
     if output is not None:
-        wanted = replace(asked, notes=(), left_out=None, tolerance=aim or asked.tolerance)
+        wanted = replace(
+            asked, notes=(), left_out=None, tolerance=aim or asked.tolerance, by_default=False
+        )
         output.claim(system, scene, wanted)
     system, asked = for_tolerance(system, scene, asked, searched=aim is not None)
     if aim is not None:

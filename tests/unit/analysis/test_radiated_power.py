@@ -92,6 +92,29 @@ def test_exact_for_straight_lines():
     np.testing.assert_allclose(found[:, 1], rigid, atol=1e-12 * rigid.max())
 
 
+@pytest.mark.parametrize("step", [1e-6, 1e-4, 1e-3])
+def test_exact_for_cubics(step):
+    """A hundred times as many rows change nothing, and of a mass v is the force's integral.
+
+    h w is 0.004, 0.4 and 4: below and above where the phi functions are series.
+    """
+    housing = oscillators([700.0, 0.0], [0.03, 0.0], GRAM * np.eye(2))
+
+    def seen(count, h):
+        time = np.arange(count) * h
+        forces = np.zeros((count, 12))
+        forces[:, AT] = np.polyval([2.0, -3.0, 1.0, 0.5], time / (20 * step))
+        return modal_velocity(housing, forces, h)
+
+    coarse, fine = seen(21, step), seen(2001, step / 100)[::100]
+    for k in range(2):
+        scale = np.abs(fine[:, k]).max()
+        np.testing.assert_allclose(coarse[:, k], fine[:, k], atol=1e-11 * scale)
+    integral = np.polyval([0.5, -1.0, 0.5, 0.5, 0.0], np.arange(21) / 20)
+    mass = SHAPE * 20 * step * integral
+    np.testing.assert_allclose(coarse[:, 1], mass, atol=1e-12 * abs(mass).max())
+
+
 def test_constant_forces_are_silent():
     found = radiated_power(result_under(lambda t: 2e3 + 0 * t), default_housing())
     assert found.level_db < -100.0

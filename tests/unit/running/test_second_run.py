@@ -6,6 +6,7 @@ import herringbone as hb
 from herringbone.components.resources import flat_csv
 from herringbone.cosim.fmu import unpacked
 from herringbone.running import remembered_answers
+from herringbone.running.steps import inner_steps
 
 ONCE = [
     (flat_csv, "_read"),
@@ -14,6 +15,7 @@ ONCE = [
     (remembered_answers, "loaded_start"),
     (remembered_answers, "fastest_bond"),
     (remembered_answers, "warn_if_unstable"),
+    (inner_steps, "linear_network"),
 ]
 
 
@@ -36,12 +38,21 @@ def calls(monkeypatch):
     return found
 
 
-def test_second_run(calls):
-    first = hb.run("test_rig", t_end=2e-4, fmu="native")
+@pytest.mark.parametrize(
+    ("algorithm", "deviation", "asked_again"),
+    [
+        ("li:degree=3", 1.2e-5, {"loaded_start", "fastest_bond", "warn_if_unstable"}),
+        ("auto", 1.3e-5, {"loaded_start", "fastest_bond", "linear_network"}),
+    ],
+)
+def test_second_run(calls, algorithm, deviation, asked_again):
+    """An adaptive step, as of the default, is asked for no limit."""
+    asked = {"algorithm": algorithm, "t_end": 2e-4, "fmu": "native"}
+    first = hb.run("test_rig", **asked)
     calls.clear()
-    second = hb.run("test_rig", t_end=2e-4, fmu="native")
+    second = hb.run("test_rig", **asked)
     assert calls == []
     assert second.data.equals(first.data)
     assert second.info.notes == first.info.notes
-    hb.run("test_rig", t_end=2e-4, fmu="native", values={"gear_mesh.symmetry_deviation": 1.2e-5})
-    assert set(calls) == {"loaded_start", "fastest_bond", "warn_if_unstable"}
+    hb.run("test_rig", **asked, values={"gear_mesh.symmetry_deviation": deviation})
+    assert set(calls) == asked_again

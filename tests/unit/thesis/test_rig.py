@@ -36,7 +36,7 @@ def test_harmonics_fold():
     ratio = filtered["amplitude"][2] / plain["amplitude"][2]
     assert ratio == pytest.approx(expected, rel=0.05)
     found = finding("aliasing", "2000 Hz")
-    assert found.number == pytest.approx(4.11, abs=0.05)
+    assert found.number == pytest.approx(4.29, abs=0.05)
     assert found.number > 1.0
 
 
@@ -94,4 +94,4 @@ def test_pairs_of_one_class_differ():
     assert found.number == pytest.approx(0.65, abs=0.02)
     assert outcome("prediction_and_measurement").tables["pairs"]["likeness"].max() < 0.9
     level = finding("prediction_and_measurement", "discrepancy in amplitude")
-    assert level.number == pytest.approx(24.3, abs=1.0)
+    assert level.number == pytest.approx(22.7, abs=1.0)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import select
 import signal
@@ -50,15 +51,44 @@ JACOBI = ("--algorithm", "jacobi:order=2")
 
 
 def test_default_algorithm(tmp_path, capsys):
-    """All our parts can repeat a step: li with one correction is two passes and one rollback."""
+    """Steps follow a tolerance of 1e-3; rows are 0.1 ms apart, and the estimate is within it."""
     found = run(capsys, tmp_path, "--fmu", "in-process")
-    assert found["algorithm"].startswith("li:degree=3")
+    assert found["algorithm"] == "li:degree=3,iterations=1,tolerance=0.001"
+    assert found["tolerance_by_default"]
+    assert found["record_step"] == pytest.approx(1e-4, rel=1e-12)
+    estimate = found["estimate"]
+    assert estimate["asked"] == 1e-3
+    assert 0.0 < math.hypot(estimate["coupling"], estimate["inner_steps"]) < 1e-3
+    assert found["notes"][0].startswith("tolerance = 0.001 (default): li:degree=3")
+    header = (tmp_path / "summary.txt").read_text().splitlines()[3]
+    assert "li:degree=3,iterations=1,tolerance=0.001 (default)" in header
+
+
+@pytest.mark.parametrize(
+    ("asked", "algorithm"),
+    [
+        (("--step", "4e-5"), "li:degree=3,iterations=1"),
+        (("--algorithm", "jacobi:order=2"), "jacobi:order=2"),
+        (("--slow", "drive_motor=5"), "li:degree=3,iterations=1"),
+        (("--tolerance", "1e-3"), "li:degree=3,iterations=1,tolerance=0.001"),
+    ],
+)
+def test_what_is_said_wins_over_the_default_tolerance(tmp_path, capsys, asked, algorithm):
+    found = run(capsys, tmp_path, "--fmu", "in-process", *asked)
+    assert found["algorithm"].startswith(algorithm)
+    assert not found["tolerance_by_default"]
+    assert (found["estimate"] is not None) == ("--tolerance" in asked)
+
+
+def test_li_by_name(tmp_path, capsys):
+    """Equal steps; with one correction two passes and one rollback each."""
+    found = run(capsys, tmp_path, "--fmu", "in-process", "--algorithm", "li:degree=3")
+    assert found["algorithm"] == "li:degree=3,iterations=1"
     assert found["macro_steps"] == 125
     jacobian = 1 + 3 * 24  # one pass per unknown: 24 forces at 3 nodes
     first = 1  # the first step, predicted from one point, is corrected twice
     assert found["passes"]["gearbox.gear_mesh"] == 2 * 125 + jacobian + first
     assert found["rollbacks"] == 125 + jacobian + first
-    assert found["notes"][0].startswith("auto: li:degree=3")
 
 
 @pytest.mark.parametrize("fmu", ["python", "in-process"])
@@ -138,11 +168,13 @@ def test_interrupt(tmp_path, fmu):
     """Ctrl-C while the bar moves: it ends within 0.5 s of CPU, then files are written."""
     import termios
 
-    command = [sys.executable, "-m", "herringbone", "run", "test_rig", "--t-end", "60"]
+    run_rig = ["run", "test_rig", "--algorithm", "li", "--t-end", "60", "--fmu", fmu]
     terminal, stderr = os.openpty()
     termios.tcsetwinsize(stderr, (40, 120))
     with subprocess.Popen(
-        [*command, "--fmu", fmu, "-o", str(tmp_path)], stdout=subprocess.PIPE, stderr=stderr
+        [sys.executable, "-m", "herringbone", *run_rig, "-o", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=stderr,
     ) as process:
         os.close(stderr)
         try:

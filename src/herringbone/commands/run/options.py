@@ -29,7 +29,8 @@ def add_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--tolerance",
         type=float,
-        help="relative error, e.g. 1e-3: li adapts its step; with foreign FMUs it is found by runs",
+        help="relative error: li adapts its step; with foreign FMUs it is found by runs; 1e-3 for "
+        "gear pairs of this package if no algorithm, step or slow body is given",
     )
     sub.add_argument(
         "--slow", metavar=SLOW, help="heavy bodies that step once in N communication steps"

@@ -41,7 +41,8 @@ def settled(
         wishes: over the scene, but for the duration.
         tolerance: change of levels and means that counts as none, see `SettledState`.
         longest: duration that is tried at most [s].
-        algorithm, step: of the coupling, see `herringbone.run`.
+        algorithm, step: of the coupling, see `herringbone.run`; nothing said is no tolerance here:
+            with foreign parts it is none by default.
 
     Returns:
         A state; ask it whether it is `converged`.

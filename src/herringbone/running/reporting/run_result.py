@@ -36,6 +36,8 @@ def make_result(
     fmu: str,
     recording: Recording,
     notes: Sequence[str],
+    *,
+    by_default: bool = False,
 ) -> Result:
     """What a recording and the ways it came about make together.
 
@@ -46,6 +48,7 @@ def make_result(
         fmu: kind of the parts' FMUs.
         recording: of the run.
         notes: lines that the user should read, besides those of the recording.
+        by_default: see `RunInfo.tolerance_by_default`.
     """
     data = pd.DataFrame(
         np.column_stack([recording.time, recording.values]), columns=[TIME, *recording.names]
@@ -75,6 +78,7 @@ def make_result(
         notes=(*notes, *recording.notes),
         steps=recording.steps and recording.steps._asdict(),
         estimate=recording.estimate and recording.estimate._asdict(),
+        tolerance_by_default=by_default,
         energy=recording.energy,
         slow=recording.slow,
         core=recording.core and recording.core._asdict(),
@@ -94,6 +98,8 @@ def start_of(
     fmu: str,
     grid: Grid,
     notes: Sequence[str],
+    *,
+    by_default: bool = False,
 ) -> Result:
     """All that is known of a result before there are rows: what is left of a run that is killed."""
     outcome = Outcome(OutcomeKind.INTERRUPTED, 0.0)
@@ -101,7 +107,7 @@ def start_of(
         np.empty(0), np.empty((0, 0)), (), (), outcome, grid.step, grid.every * grid.step, 0, {}, 0,
         0.0, 0.0, (),
     )  # fmt: skip
-    return make_result(system, scene, algorithm, fmu, nothing, notes)
+    return make_result(system, scene, algorithm, fmu, nothing, notes, by_default=by_default)
 
 
 def judged(result: Result, system: System, bond_frequency: float | None) -> Result:

@@ -116,7 +116,8 @@ def _cost(result: Result) -> Iterator[str]:
             yield _wall(info, reached)
         return
     micro = ", ".join(f"{name} {_time(step)}" for name, step in info.micro_steps.items())
-    yield labelled("Algorithm", f"{info.algorithm}, parts: {info.fmu}")
+    default = " (default)" * info.tolerance_by_default
+    yield labelled("Algorithm", f"{info.algorithm}{default}, parts: {info.fmu}")
     yield labelled("Steps", f"communication {_steps(info)}, record {_time(info.record_step)}")
     if info.core:
         yield from _core(info)

@@ -13,18 +13,42 @@
 What is given by name wins: an algorithm, a step (the largest one then), an inner step.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
+from herringbone.analysis.anatomy import anatomy
+from herringbone.core.declaring.roles import Role
 from herringbone.cosim.algorithms import LI, with_tolerance
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.running.coupled import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
+from herringbone.running.steps.suited_step import RECORDS_APART
 from herringbone.scenes import Scene
 
 _FINE = 3e-5
 """Tolerance below which degree 4 takes less time than degree 3, as measured on the test rig, where
 teeth are in contact and where they separate."""
+
+
+def by_default(system: System, asked: Asked) -> Asked:
+    """What is asked, with the default tolerance where nothing is said of how to couple own parts.
+
+    The ladder of steps is made for gears: without a pair the fastest bond tells the step. With
+    foreign parts a tolerance takes several runs, and is there for the asking.
+    """
+    told = (asked.algorithm, asked.step, asked.tolerance, asked.slow or None)
+    if any(each is not None for each in told) or asked.fuse or not system.connections:
+        return asked
+    foreign = system.foreign_parts
+    if len(foreign) == len(system.parts) or not anatomy(system).with_role(Role.GEAR_PAIR):
+        return asked
+    if foreign:
+        why = f"no tolerance by default: with {', '.join(foreign)} it takes several runs"
+        line = f"{why}; --tolerance {DEFAULT_TOLERANCE:g} asks for it"
+        return replace(asked, notes=(*asked.notes, line))
+    return replace(asked, tolerance=DEFAULT_TOLERANCE, by_default=True)
 
 
 def for_tolerance(
@@ -54,11 +78,24 @@ def for_tolerance(
     algorithm = with_tolerance(algorithm, tolerance)
     degree = algorithm.degree if isinstance(algorithm, LI) else LI().degree
     found = with_inner_steps(system, tolerance, degree, kicked=kicked)
-    why = "" if given else f"tolerance = {tolerance:g}: {algorithm}, the cheapest for it"
+    said = f"tolerance = {tolerance:g}" + " (default)" * asked.by_default
+    why = "" if given else f"{said}: {algorithm}, the cheapest for it"
     return found.system, replace(
         asked,
         algorithm=algorithm,
         inner_step=found.longest,
         part_tolerance=SHARE * tolerance,
-        notes=(*asked.notes, *filter(None, (why,)), *found.lines),
+        notes=(*asked.notes, *_said(why, scene, asked), *found.lines),
     )
+
+
+def _said(why: str, scene: Scene, asked: Asked) -> Iterator[str]:
+    """A line on what was chosen, and on records that are fewer than the scene's."""
+    apart = ""
+    if asked.record_step is None and asked.step is None and scene.record_step < RECORDS_APART:
+        apart = (
+            f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} "
+            "gives the scene's, and takes longer"
+        )
+    if why or apart:
+        yield "; ".join(filter(None, (why, apart)))

@@ -25,13 +25,16 @@ from herringbone.analysis.stability.linear_parts import Member, linear_network
 from herringbone.analysis.stability.recommendation import RULE_ERROR, separation_step
 from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, ParameterError
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.declaring.roles import Quantity, Role
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.network import Network
 from herringbone.cosim.structure.system import System
+from herringbone.running.content import contents_of_system
 from herringbone.running.pairs.carrying_flank import loaded_start
 from herringbone.running.pairs.open_flanges import loaded
 
+_known: Remembered[tuple[dict[str, float], tuple[str, ...]]] = Remembered(256)
 _LI = LI()
 _RULE = _LI.accurate_step or 0.0
 _BY_DEGREE = {4: 0.7}
@@ -81,10 +84,19 @@ def with_inner_steps(
         degree: of the forces' polynomials.
         kicked: the run does not begin in equilibrium, so that teeth may part for a while.
     """
+    key = (system.name, *contents_of_system(system), tolerance, degree, kicked)
+    chosen, lines = _known(key, lambda: _chosen(system, tolerance, degree, kicked=kicked))
+    return InnerSteps(system.with_values(chosen), _longest(system, chosen), lines)
+
+
+def _chosen(
+    system: System, tolerance: float, degree: int, *, kicked: bool
+) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Inner steps [s] by path, and lines; see `with_inner_steps`."""
     found = _linear(system)
     bond = highest_frequency(found.network, found.members) if found else 0.0
     if found is None or not bond:
-        return InnerSteps(system, _longest(system, {}))
+        return {}, ()
     macro = _RULE / bond * (tolerance / RULE_ERROR) ** (1.0 / _LI.convergence_order)
     wanted = macro / _LI.degree * _BY_DEGREE.get(degree, 1.0)
     why = ""
@@ -100,8 +112,7 @@ def with_inner_steps(
         own = "as it swings by itself" if follows < 1.0 else "the longest that is stable"
         reason = why if step == wanted else own
         said.append(f"{path} {1e6 * step:.3g} us" + f" ({reason})" * bool(reason))
-    lines = (f"inner steps: {', '.join(said)}",) if said else ()
-    return InnerSteps(system.with_values(chosen), _longest(system, chosen), lines)
+    return chosen, (f"inner steps: {', '.join(said)}",) if said else ()
 
 
 def stable_inner_steps(system: System) -> dict[str, float]:

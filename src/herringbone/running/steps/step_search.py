@@ -19,6 +19,7 @@ from dataclasses import replace
 from herringbone.core import HerringboneError, ParameterError
 from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.result import Result
 from herringbone.running.coupled import Asked, Coupled, coupled
 from herringbone.running.loading import in_one_run
@@ -30,7 +31,6 @@ from herringbone.running.steps.inner_steps_of_runs import with_inner_steps_of
 from herringbone.running.steps.tried import Search
 from herringbone.scenes import Scene
 
-_DEFAULT = 1e-3
 _PIECES = 47
 _COARSE = 5.0
 
@@ -53,7 +53,7 @@ def searched_tolerance(system: System, asked: Asked) -> float | None:
             return None
     single = in_one_run(system)
     if asked.tolerance is None:
-        return None if single else _DEFAULT
+        return None if single else DEFAULT_TOLERANCE
     if single:
         raise ParameterError(
             f"tolerance = {asked.tolerance:g}: {', '.join(single)} can be instantiated once only "

@@ -9,7 +9,7 @@ from herringbone.cosim.structure.system import System
 from herringbone.scenes import Scene
 
 _FEWEST_STEPS = 200
-_APART = 1e-4
+RECORDS_APART = 1e-4
 """Records of an adaptive run [s] where no others are asked for. Steps end at them, so that more of
 them cost time: at 1e-3 steps take half of it."""
 _ROUNDING = 1e-9
@@ -39,7 +39,7 @@ def suited_step(
         record_step: that the caller gave [s].
     """
     if algorithm.adaptive:
-        apart = min(record_step or max(scene.record_step, _APART), scene.t_end)
+        apart = min(record_step or max(scene.record_step, RECORDS_APART), scene.t_end)
         return apart / math.ceil(apart / own - _ROUNDING)
     rule = algorithm.accurate_step
     geared = any(Role.GEAR_PAIR in part.roles for part in anatomy(system).parts.values())

@@ -20,7 +20,8 @@ class Transient:
     Attributes:
         fuse: condense all parts into one core; None: where all are components of this package.
         step: communication step size [s], of a fused run the base step; None: chosen.
-        tolerance: relative error; None: as of `herringbone.run`.
+        tolerance: relative error; None: as of `herringbone.run`, 1e-3 of own parts with a gear pair
+            where neither step nor algorithm is given.
         algorithm: coupling algorithm; None: chosen.
         columns: further columns or patterns with figures of their own.
     """

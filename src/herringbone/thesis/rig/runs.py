@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from herringbone.core import HerringboneError
+from herringbone.cosim.algorithms import LI
 from herringbone.cosim.structure.system import System
 from herringbone.gears.accuracy.given import GivenDeviations
 from herringbone.gears.job import GearJob
@@ -65,7 +66,8 @@ def fused_or_coupled(
 ) -> Result:
     """A run from equilibrium without coupling, or with it where that does not come to its end.
 
-    Where large deviations part teeth at little load, a fused run may stop.
+    Where large deviations part teeth at little load, a fused run may stop; equal steps of the
+    coupling go on whatever the teeth do.
 
     Raises:
         HerringboneError: neither comes to its end.
@@ -74,6 +76,7 @@ def fused_or_coupled(
         result = run(
             system,
             fuse=fuse,
+            algorithm=None if fuse else LI(),
             start="equilibrium",
             t_end=t_end,
             record_step=record_step,

@@ -27,7 +27,7 @@ def state():
 @pytest.fixture(scope="module")
 def run():
     values = {**_STILL, **_FINE}
-    return hb.run("test_rig", values=values, t_end=0.2, record_step=1e-5, fuse=True, tolerance=1e-4)
+    return hb.run("test_rig", values=values, t_end=0.5, record_step=1e-5, fuse=True, tolerance=1e-4)
 
 
 def _questions(state) -> list[Question]:
@@ -37,9 +37,9 @@ def _questions(state) -> list[Question]:
 def test_power_is_that_of_a_run_that_has_settled(state, run):
     power = lines_of(state, _questions(state)[0])
     total = power.coefficients[0, 1:].real.sum()
-    # the run's forces are straight lines between records of 10 us: amplitudes lack (w h)^2 / 12,
-    # 6e-4 at 1350 Hz
-    assert total == pytest.approx(radiated_power(run).total, rel=1e-3)
+    # what rings from the start, in the lowest mode (1 % at 249 Hz), has 4 % of the power there, and
+    # over the steady part, from 0.1 s on, 3.5e-3 of that
+    assert total == pytest.approx(radiated_power(run).total, rel=2e-4)
     (line, *_) = answers(state, _ASKS)
     assert f"{10.0 * math.log10(total / 1e-12):.1f} dB" in line
 
