@@ -3,9 +3,12 @@
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.twin.condensed import modes
+from herringbone.analysis.twin.fused import core
 from herringbone.components.resources import flat_csv
 from herringbone.cosim.fmu import unpacked
 from herringbone.running import remembered_answers
+from herringbone.running.fused import fused
 from herringbone.running.steps import inner_steps
 
 ONCE = [
@@ -16,6 +19,9 @@ ONCE = [
     (remembered_answers, "fastest_bond"),
     (remembered_answers, "warn_if_unstable"),
     (inner_steps, "linear_network"),
+    (core, "take_apart"),
+    (modes, "_eigen"),
+    (fused, "suited"),
 ]
 
 
@@ -56,3 +62,19 @@ def test_second_run(calls, algorithm, deviation, asked_again):
     assert second.info.notes == first.info.notes
     hb.run("test_rig", **asked, values={"gear_mesh.symmetry_deviation": deviation})
     assert set(calls) == asked_again
+
+
+def test_second_fused_run(calls):
+    """What is found is that of the values; eigenvectors are those of the matrix."""
+    asked = {"fuse": True, "t_end": 2e-4}
+    values = {"gear_mesh.symmetry_deviation": 1.4e-5}
+    first = hb.run("test_rig", **asked, values=values)
+    other = hb.run("test_rig", **asked, values={"gear_mesh.symmetry_deviation": 1.5e-5})
+    assert not other.data.equals(first.data)
+    calls.clear()
+    second = hb.run("test_rig", **asked, values=values)
+    assert calls == []
+    assert second.data.equals(first.data)
+    assert second.info.notes == first.info.notes
+    hb.run("test_rig", **asked, values={"drive_motor.inertia": 0.0801})
+    assert {"take_apart", "_eigen", "suited"} <= set(calls)

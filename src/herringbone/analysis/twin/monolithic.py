@@ -20,6 +20,7 @@ from herringbone.components.registry import component
 from herringbone.core import HerringboneError, Instance, StructureError
 from herringbone.core.activity import activity
 from herringbone.core.caching.generated import load_generated
+from herringbone.core.caching.keys import digest_of
 from herringbone.cosim.structure.network import build_network
 from herringbone.cosim.structure.system import System
 
@@ -104,6 +105,11 @@ class Twin:
             return self._compiled
         _called[self._source] = asked
         return self._by_calls
+
+    @property
+    def content(self) -> str:
+        """Digest of all that the equations follow from: structure, and what blocks start with."""
+        return digest_of(self._source, *(i.block.tobytes() for i in self.instances))
 
     @property
     def state(self) -> np.ndarray:

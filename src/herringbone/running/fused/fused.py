@@ -8,6 +8,7 @@ from herringbone.analysis.twin.fused.core import Core, Steps, closeness
 from herringbone.analysis.twin.fused.measured import DEGREES, Measured, measured, suited
 from herringbone.core import ParameterError, StructureError
 from herringbone.core.activity import activity
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.one_thread import one_blas_thread
 from herringbone.core.places.files import same_folder
 from herringbone.cosim.rows.record import Grid
@@ -33,6 +34,8 @@ from herringbone.scenes import Scene
 
 TOLERANCE = 1e-3
 """Error of a run for which nothing else is asked."""
+_trials: Remembered[Measured] = Remembered(64)
+"""By system, what is left out, channels that are measured, and what is asked."""
 
 
 @dataclass(frozen=True)
@@ -158,9 +161,14 @@ def verified_by_half(
 def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     """Steps that were asked for, or that a tolerance needs, with their error."""
     tolerance = asked.tolerance or TOLERANCE
-    if asked.step is None:
-        return suited(core, tolerance, t_end)
-    return measured(core, Steps(asked.step, DEGREES[0], closeness(tolerance)), t_end)
+
+    def tried() -> Measured:
+        if asked.step is None:
+            return suited(core, tolerance, t_end)
+        return measured(core, Steps(asked.step, DEGREES[0], closeness(tolerance)), t_end)
+
+    key = core.content, core.lean, repr(core.groups()), asked.step, tolerance, t_end
+    return _trials(key, tried)
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:

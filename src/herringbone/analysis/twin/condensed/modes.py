@@ -15,11 +15,15 @@ from scipy.linalg import eig, matrix_balance, qr
 from herringbone.analysis.twin.condensed.equations import Equations, laws_of
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError
+from herringbone.core.caching.remembered import Remembered
 
 _RIGID = 1e-12
 """Singular value, over the largest one, below which a motion is rigid."""
 _WORST = 1e8
 """Condition of the eigenvectors beyond which they are no coordinates."""
+_Eigen = tuple[np.ndarray, np.ndarray, np.ndarray]
+_known: Remembered[_Eigen] = Remembered(8)
+"""By the matrix, which other loads and speeds share; a fraction of a MB each."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +129,8 @@ def make_modes(
     driven = (b - rigid @ b[references])[inside]
     if np.abs(b[references]).max(initial=0.0) > 0.0:
         raise StructureError(f"{twin.system.name}: an angle is driven without inertia")
-    rates, shapes, inverse = _eigen(twin, rest[np.ix_(inside, inside)])
+    inner = rest[np.ix_(inside, inside)]
+    rates, shapes, inverse = _known(inner.tobytes(), lambda: _eigen(twin, inner))
     every = np.zeros((n, rates.size), dtype=complex)
     every[inside] = shapes
     back = np.zeros((rates.size, n), dtype=complex)
@@ -134,7 +139,7 @@ def make_modes(
     of_channels = equations.d.copy()
     of_channels[:, -1] += equations.c @ constant
     return Modes(
-        rates,
+        rates.copy(),  # who has the same array has taken over all of another's modes
         inverse @ driven,
         every,
         a[references] @ every,
@@ -185,7 +190,7 @@ def _rotations(
     return rigid, [turning[i] for i in chosen]
 
 
-def _eigen(twin: Twin, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _eigen(twin: Twin, a: np.ndarray) -> _Eigen:
     """Eigenvalues, doubled eigenvectors and inverse rows of one of each pair of modes."""
     balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
     rates, vectors = eig(balanced)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from herringbone.analysis.accuracy.apart import outputs_in
-from herringbone.analysis.twin.condensed.equations import take_apart
+from herringbone.analysis.twin.condensed.equations import Equations, take_apart
 from herringbone.analysis.twin.condensed.lean import WHOLE, Lean, leaner, with_harmonics
 from herringbone.analysis.twin.condensed.outputs import (
     Outputs,
@@ -20,11 +20,15 @@ from herringbone.analysis.twin.condensed.system import Condensed, condensed
 from herringbone.analysis.twin.condensed.wanted import places_seen
 from herringbone.analysis.twin.monolithic import Twin
 from herringbone.core import StructureError, Variable
+from herringbone.core.caching.remembered import Remembered
 from herringbone.core.names import matches_any
 from herringbone.cosim.structure.system import System
 
 _OF_TOLERANCE = 100.0
 """Residual whose correction solves a step, over the tolerance: each makes it 1000 times smaller."""
+
+_equations: Remembered[Equations] = Remembered(4)
+"""By content; some MB each at the most."""
 
 
 class Steps(NamedTuple):
@@ -65,6 +69,7 @@ class Core:
         names: outputs that can be recorded, `instance.variable`.
         missing: outputs that only steps of the components make.
         lean: what the model leaves out.
+        content: digest of all that the system's equations follow from.
 
     Raises:
         StructureError: a part can neither be condensed nor stepped inside of the core.
@@ -90,9 +95,10 @@ class Core:
                 )
         places = [twin.index(name) for name in open_inputs]
         known = like.condensed if like else None
-        apart = leaner(
-            twin, take_apart(twin, places_seen(twin), places), self.lean, places_seen(twin)
-        )
+        seen, self.content = places_seen(twin), twin.content
+        key = self.content, tuple(seen), tuple(places)
+        equations = _equations(key, lambda: take_apart(twin, seen, places))
+        apart = leaner(twin, equations, self.lean, seen)
         self.condensed: Condensed = condensed(twin, apart, known, same_tangents=same_tangents)
         same = like is not None and self.condensed.modes.rates is like.condensed.modes.rates
         self.affine: np.ndarray = like.affine if like and same else affine_places(self.condensed)
@@ -115,6 +121,7 @@ class Core:
         found.lean, found.twin = self.lean | lean, with_harmonics(self.twin, lean)
         apart = leaner(found.twin, known.equations, lean, places_seen(found.twin))
         found.condensed = condensed(found.twin, apart, known, same_tangents=True)
+        found.content = found.twin.content
         return found
 
     def chosen(
