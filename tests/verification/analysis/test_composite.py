@@ -1,5 +1,7 @@
 """A system as one component: the same equations as the twin, the feedthrough that it declares."""
 
+import sys
+
 import numpy as np
 import pytest
 from support.rig_as_one import rig_as_one
@@ -11,6 +13,7 @@ from herringbone.components.tangent import tangent_kernel
 from herringbone.core import Instance, ResourceError, StructureError
 from herringbone.fmi.used_states import used_states
 from herringbone.running.loading import load_scene, load_system
+from herringbone.running.prepared import Wishes, prepared
 from herringbone.running.start import started
 
 GEAR = "gearbox.gear_mesh"
@@ -37,6 +40,14 @@ def rig():
 def composite():
     """The rig as one component."""
     return rig_as_one()
+
+
+def test_what_steps_are_compiled_with_is_in_their_source(composite):
+    """Native objects are kept by it; which of two systems was built first would decide."""
+    wishes = Wishes(values={f"{GEAR}.micro_step": 1e-6})
+    finer = make_composite(prepared("test_rig", "loaded", wishes).system)
+    modules = [sys.modules[c.component.kernels.rhs.py_func.__module__] for c in (composite, finer)]
+    assert [m.MICRO_STEP for m in modules] == [2.5e-6, 1e-6]
 
 
 def test_it_moves_as_the_twin_does(rig, composite, tmp_path):

@@ -62,6 +62,9 @@ Wanner, Solving Ordinary Differential Equations II, 1996, section IV.2); and a s
 which steeper tangents than the mean ones may do."""
 _REMARK = """
 
+MICRO_STEP = {without_form!r}
+
+
 @kernel
 def remark(b: np.ndarray, w: np.ndarray, which: int, report: np.ndarray) -> int:
     micro_step = b[{micro_step}]
@@ -108,8 +111,16 @@ def by_tolerance(module: ModuleType) -> ByTolerance:
 
 
 def remark_source(found: Stepping, micro_step: int) -> str:
-    """Source of the kernel of the remarks; the parameter's place in the block."""
+    """Source of the kernel of the remarks, and the micro step that the step is compiled with.
+
+    Native code is kept by this source, so that what is compiled in stands in it.
+
+    Args:
+        found: how the system steps.
+        micro_step: the parameter's place in the block.
+    """
     return _REMARK.format(
+        without_form=float(found.micro_step),
         micro_step=micro_step,
         status=found.at.status,
         fastest=found.at.fastest,
@@ -143,7 +154,7 @@ def step_kernel(
         found: how it steps.
         micro_step: name of the parameter that, above 0, asks for Runge-Kutta alone.
     """
-    d, at, micro = declaration, found.at, found.micro_step
+    d, at, micro = declaration, found.at, module.MICRO_STEP
     kept, refresh = d.first_kept, module.refresh
     sizes = (*(v.nominal for v in d.states), *(_HIDDEN,) * d.hidden_states)
     equations = equations_of(d, module, sizes, kept)
