@@ -95,7 +95,8 @@ def _said(why: str, scene: Scene, asked: Asked) -> Iterator[str]:
     if asked.record_step is None and asked.step is None and scene.record_step < RECORDS_APART:
         apart = (
             f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} "
-            "gives the scene's, and takes longer"
+            f"gives the scene's, and takes longer; what is faster than {0.5 / RECORDS_APART:g} Hz "
+            "shows folded in spectra"
         )
     if why or apart:
         yield "; ".join(filter(None, (why, apart)))
