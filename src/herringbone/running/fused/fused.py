@@ -16,6 +16,7 @@ from herringbone.cosim.rows.recording import Recording
 from herringbone.cosim.rows.stream import Streaming
 from herringbone.cosim.simulation import make_grid
 from herringbone.cosim.structure.system import System
+from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.result.budget import BudgetRow
 from herringbone.result.result import Result
 from herringbone.result.verification import Verification
@@ -32,8 +33,6 @@ from herringbone.running.reporting.run_result import (
 )
 from herringbone.scenes import Scene
 
-TOLERANCE = 1e-3
-"""Error of a run for which nothing else is asked."""
 _trials: Remembered[Measured] = Remembered(64)
 """By system, what is left out, channels that are measured, and what is asked."""
 
@@ -146,7 +145,7 @@ def verified_by_half(
     """
     taken = result.info.core or {}
     step = 0.5 * taken["step"]
-    steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or TOLERANCE))
+    steps = Steps(step, int(taken["degree"]), closeness(asked.tolerance or DEFAULT_TOLERANCE))
     with same_folder(), one_blas_thread():
         core = Core(system, lean=lean_of(scene))
         columns = core.chosen(asked.record)
@@ -160,7 +159,7 @@ def verified_by_half(
 
 def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
     """Steps that were asked for, or that a tolerance needs, with their error."""
-    tolerance = asked.tolerance or TOLERANCE
+    tolerance = asked.tolerance or DEFAULT_TOLERANCE
 
     def tried() -> Measured:
         if asked.step is None:
@@ -172,7 +171,7 @@ def _trial(core: Core, asked: FusedAsked, t_end: float) -> Measured:
 
 
 def _lines(core: Core, asked: FusedAsked, trial: Measured) -> list[str]:
-    tolerance, errors = asked.tolerance or TOLERANCE, f"{100.0 * trial.error:.2g} %"
+    tolerance, errors = asked.tolerance or DEFAULT_TOLERANCE, f"{100.0 * trial.error:.2g} %"
     steps = f"steps of {1e6 * trial.steps.length:.4g} us, degree {trial.steps.degree}"
     over = f"the first {1e3 * trial.window:.3g} ms"
     if asked.step is None:

@@ -69,7 +69,7 @@ class Core:
         names: outputs that can be recorded, `instance.variable`.
         missing: outputs that only steps of the components make.
         lean: what the model leaves out.
-        content: digest of all that the system's equations follow from.
+        content: digest of all that the equations follow from, but for what is left out.
 
     Raises:
         StructureError: a part can neither be condensed nor stepped inside of the core.
@@ -121,7 +121,6 @@ class Core:
         found.lean, found.twin = self.lean | lean, with_harmonics(self.twin, lean)
         apart = leaner(found.twin, known.equations, lean, places_seen(found.twin))
         found.condensed = condensed(found.twin, apart, known, same_tangents=True)
-        found.content = found.twin.content
         return found
 
     def chosen(
