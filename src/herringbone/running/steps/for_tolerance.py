@@ -13,7 +13,6 @@
 What is given by name wins: an algorithm, a step (the largest one then), an inner step.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from herringbone.analysis.anatomy import anatomy
@@ -80,23 +79,23 @@ def for_tolerance(
     found = with_inner_steps(system, tolerance, degree, kicked=kicked)
     said = f"tolerance = {tolerance:g}" + " (default)" * asked.by_default
     why = "" if given else f"{said}: {algorithm}, the cheapest for it"
+    line = "; ".join(filter(None, (why, _fewer_records(scene, asked))))
     return found.system, replace(
         asked,
         algorithm=algorithm,
         inner_step=found.longest,
         part_tolerance=SHARE * tolerance,
-        notes=(*asked.notes, *_said(why, scene, asked), *found.lines),
+        notes=(*asked.notes, *filter(None, (line,)), *found.lines),
     )
 
 
-def _said(why: str, scene: Scene, asked: Asked) -> Iterator[str]:
-    """A line on what was chosen, and on records that are fewer than the scene's."""
-    apart = ""
-    if asked.record_step is None and asked.step is None and scene.record_step < RECORDS_APART:
-        apart = (
-            f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} "
-            f"gives the scene's, and takes longer; what is faster than {0.5 / RECORDS_APART:g} Hz "
-            "shows folded in spectra"
-        )
-    if why or apart:
-        yield "; ".join(filter(None, (why, apart)))
+def _fewer_records(scene: Scene, asked: Asked) -> str:
+    """That records are fewer than the scene's; "" if they are not."""
+    given = asked.record_step is not None or asked.step is not None
+    if given or scene.record_step >= RECORDS_APART:
+        return ""
+    return (
+        f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} gives "
+        f"the scene's, and takes longer; what is faster than {0.5 / RECORDS_APART:g} Hz shows "
+        "folded in spectra"
+    )
