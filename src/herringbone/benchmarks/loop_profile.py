@@ -32,6 +32,8 @@ from herringbone.running.steps.suited_step import suited_step
 
 TOLERANCE, PARTING = 1e-3, "separation"
 """Relative error of the runs whose steps follow it, and the scene in which teeth part."""
+RECORD_STEP = 1e-4
+"""Time between records of these [s], as of fused runs in `benchmarks.fused`."""
 CALLS = {
     "set": repeated.SET, "doStep": repeated.STEP, "get": repeated.GET,
     "save": repeated.SAVE, "restore": repeated.RESTORE,
@@ -126,10 +128,11 @@ def _cases() -> Iterator[_Case]:
         suited, asked = for_tolerance(system, scene, asked, searched=False)
         if not isinstance(asked.algorithm, LI):
             raise HerringboneError(f"{asked.algorithm}: there is no profile of its steps")
-        step = suited_step(suited, scene, asked.algorithm, asked.algorithm.start_step, None, None)
+        longest = asked.algorithm.start_step
+        step = suited_step(suited, scene, asked.algorithm, longest, None, RECORD_STEP)
         yield _Case(
             f"scene '{name}', {asked.algorithm}", suited, asked.algorithm, asked.inner_step,
-            asked.part_tolerance, step, scene.record_step,
+            asked.part_tolerance, step, RECORD_STEP,
         )  # fmt: skip
 
 

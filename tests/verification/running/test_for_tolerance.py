@@ -69,11 +69,12 @@ def test_no_tolerance_by_default_without_a_gear_pair_or_with_foreign_parts(rig):
 
 @pytest.mark.parametrize(("given", "told"), [(None, True), (1e-4, False), (2e-5, False)])
 def test_records_that_a_scene_would_have_are_told(rig, given, told):
-    """Those of `loaded` are 20 us apart, those of a run by tolerance 0.1 ms."""
-    asked = Asked("native", tolerance=1e-3, record_step=given)
-    _, asked = for_tolerance(rig.system, rig.scene, asked, searched=False)
-    said = "records are 0.1 ms apart; --record-step 2e-05 gives the scene's"
-    assert (said in asked.notes[0]) == told
+    """Of `loaded` 20 us; of a run by tolerance 50 us, and 0.1 ms above 1e-3."""
+    for tolerance, apart in ((1e-3, "50 us"), (2e-3, "100 us")):
+        asked = Asked("native", tolerance=tolerance, record_step=given)
+        _, asked = for_tolerance(rig.system, rig.scene, asked, searched=False)
+        said = f"records are {apart} apart; --record-step 2e-05 gives the scene's"
+        assert (said in asked.notes[0]) == told
 
 
 def test_one_inner_step_from_node_to_node(rig):

@@ -93,7 +93,7 @@ def test_rows_that_a_replay_does_not_repeat_are_refused(tmp_path, capsys, monkey
     for file in folder.glob("checkpoint*"):
         file.unlink()
     with (folder / "results.npy").open("r+b") as stream:
-        stream.seek(128 + 8 * 118 * 3 + 8 * 5)
+        stream.seek(128 + 8 * 118 * 2 + 8 * 5)
         stream.write(b"\1")
     before = (folder / "results.npy").read_bytes()
     assert main(["run", "--resume", str(folder)]) == 2

@@ -29,6 +29,7 @@ __all__ = [
     "parse_algorithm",
     "refuse_adaptive",
     "start_step",
+    "tolerance_of",
     "with_tolerance",
 ]
 
@@ -82,11 +83,16 @@ def with_tolerance(algorithm: Algorithm, tolerance: float) -> Algorithm:
             f"tolerance = {tolerance:g}: {algorithm} keeps its step; only {able} adapts it, which "
             "takes parts that save and restore their state"
         )
-    if algorithm.adaptive and getattr(algorithm, _TOLERANCE) != tolerance:
+    if algorithm.adaptive and tolerance_of(algorithm) != tolerance:
         raise ParameterError(f"tolerance = {tolerance:g}, but the algorithm is {algorithm}")
     said = f"{algorithm.name}: tolerance={{:g}};"
     check_tolerance(tolerance, said, "; leave it out for a fixed step")
     return replace(algorithm, **{_TOLERANCE: tolerance})
+
+
+def tolerance_of(algorithm: Algorithm) -> float | None:
+    """The tolerance that the algorithm's step follows [1]; None if it keeps its step."""
+    return float(getattr(algorithm, _TOLERANCE)) if algorithm.adaptive else None
 
 
 def adapts(kind: type[Algorithm]) -> bool:

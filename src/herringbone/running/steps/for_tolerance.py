@@ -17,13 +17,13 @@ from dataclasses import replace
 
 from herringbone.analysis.anatomy import anatomy
 from herringbone.core.declaring.roles import Role
-from herringbone.cosim.algorithms import LI, with_tolerance
+from herringbone.cosim.algorithms import LI, tolerance_of, with_tolerance
 from herringbone.cosim.structure.system import System
 from herringbone.cosim.tolerance import DEFAULT_TOLERANCE
 from herringbone.running.coupled import Asked
 from herringbone.running.steps.inner_steps import with_inner_steps
 from herringbone.running.steps.inner_steps_of_runs import SHARE
-from herringbone.running.steps.suited_step import RECORDS_APART
+from herringbone.running.steps.suited_step import records_apart
 from herringbone.scenes import Scene
 
 _FINE = 3e-5
@@ -67,7 +67,7 @@ def for_tolerance(
     given = asked.algorithm
     tolerance = asked.tolerance
     if given is not None and tolerance is None:
-        tolerance = given.tolerance if isinstance(given, LI) and given.adaptive else None
+        tolerance = tolerance_of(given)
     if tolerance is None:
         return system, asked
     if searched:
@@ -79,7 +79,7 @@ def for_tolerance(
     found = with_inner_steps(system, tolerance, degree, kicked=kicked)
     said = f"tolerance = {tolerance:g}" + " (default)" * asked.by_default
     why = "" if given else f"{said}: {algorithm}, the cheapest for it"
-    line = "; ".join(filter(None, (why, _fewer_records(scene, asked))))
+    line = "; ".join(filter(None, (why, _fewer_records(scene, asked, tolerance))))
     return found.system, replace(
         asked,
         algorithm=algorithm,
@@ -89,13 +89,12 @@ def for_tolerance(
     )
 
 
-def _fewer_records(scene: Scene, asked: Asked) -> str:
+def _fewer_records(scene: Scene, asked: Asked, tolerance: float) -> str:
     """That records are fewer than the scene's; "" if they are not."""
-    given = asked.record_step is not None or asked.step is not None
-    if given or scene.record_step >= RECORDS_APART:
+    apart = records_apart(scene, tolerance)
+    if asked.record_step is not None or asked.step is not None or scene.record_step >= apart:
         return ""
     return (
-        f"records are {1e3 * RECORDS_APART:g} ms apart; --record-step {scene.record_step:g} gives "
-        f"the scene's, and takes longer; what is faster than {0.5 / RECORDS_APART:g} Hz shows "
-        "folded in spectra"
+        f"records are {1e6 * apart:g} us apart; --record-step {scene.record_step:g} gives the "
+        f"scene's, and takes longer; what is faster than {0.5 / apart:g} Hz shows folded in spectra"
     )
