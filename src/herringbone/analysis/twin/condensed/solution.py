@@ -1,6 +1,7 @@
 """One solution of a condensed system, piece by piece between breakpoints."""
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 
 import numpy as np
 
@@ -352,6 +353,7 @@ def _room_of(fixed: Fixed, state: State) -> Work:
     )
 
 
+@cache
 def _ahead(degree: int, of: int) -> np.ndarray:
     """Values of a step, continued over one of 2^-d of its length, d from -HALVINGS on.
 
