@@ -3,6 +3,7 @@
 import pytest
 
 import herringbone as hb
+from herringbone.analysis.twin import monolithic
 from herringbone.analysis.twin.condensed import modes
 from herringbone.analysis.twin.fused import core
 from herringbone.components.resources import flat_csv
@@ -19,6 +20,7 @@ ONCE = [
     (remembered_answers, "fastest_bond"),
     (remembered_answers, "warn_if_unstable"),
     (inner_steps, "linear_network"),
+    (monolithic, "build_network"),
     (core, "take_apart"),
     (modes, "_eigen"),
     (fused, "suited"),
@@ -78,3 +80,4 @@ def test_second_fused_run(calls):
     assert second.info.notes == first.info.notes
     hb.run("test_rig", **asked, values={"drive_motor.inertia": 0.0801})
     assert {"take_apart", "_eigen", "suited"} <= set(calls)
+    assert "build_network" not in calls  # what is wired how does not go by values

@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 
 from herringbone.analysis.steady.harmonic_balance.problem import Problem, Samples
-from herringbone.analysis.twin.condensed.along import laws_along
 from herringbone.analysis.twin.condensed.equations import laws_of
+from herringbone.analysis.twin.condensed.laws import laws_along
 from herringbone.analysis.twin.condensed.system import Condensed
 from herringbone.core import StructureError
 

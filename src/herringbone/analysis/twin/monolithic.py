@@ -8,6 +8,7 @@ breakpoints that the components declare.
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
 
@@ -21,7 +22,8 @@ from herringbone.core import HerringboneError, Instance, StructureError
 from herringbone.core.activity import activity
 from herringbone.core.caching.generated import load_generated
 from herringbone.core.caching.keys import digest_of
-from herringbone.cosim.structure.network import build_network
+from herringbone.core.caching.remembered import Remembered
+from herringbone.cosim.structure.network import Network, build_network
 from herringbone.cosim.structure.system import System
 
 TOLERANCE = 1e-10
@@ -33,6 +35,8 @@ _FEW = 20_000
 """Evaluations of a twin in one process for which it is not compiled: a second, or half of it."""
 _called: Counter[str] = Counter()
 """Evaluations by calls, by source of the twin."""
+_networks: Remembered[Network] = Remembered(32)
+"""By connections and components, without parts: values change nothing in it."""
 
 
 def refuse_foreign_parts(system: System) -> None:
@@ -66,6 +70,14 @@ def make_instances(system: System) -> list[Instance]:
     return instances
 
 
+def _network(system: System, instances: list[Instance]) -> Network:
+    """See `build_network`."""
+    parts = tuple(InProcessPart(i) for i in instances)
+    key = system.connections, tuple((part.name, part.component) for part in system.parts)
+    known = _networks(key, lambda: replace(build_network(system, parts), parts=()))
+    return replace(known, parts=parts)
+
+
 class Twin:
     """A system as one right-hand side.
 
@@ -79,7 +91,8 @@ class Twin:
     def __init__(self, system: System) -> None:
         self.system = system
         self.instances = make_instances(system)
-        self.network = build_network(system, [InProcessPart(i) for i in self.instances])
+        self.network = _network(system, self.instances)
+        self._places: dict[str, int] = {}
         self.layout: TwinLayout = twin_layout(self.instances)
         self._source = twin_source(self.network, self.instances, self.layout)
         self._by_calls = CalledTwin(self.network, self.instances, self.layout)
@@ -135,6 +148,11 @@ class Twin:
 
     def index(self, column: str) -> int:
         """Index in the twin's block of `instance.variable`."""
+        if column not in self._places:
+            self._places[column] = self._place(column)
+        return self._places[column]
+
+    def _place(self, column: str) -> int:
         name, variable = self.system.split(column)
         for p, instance in enumerate(self.instances):
             if instance.name == name:

@@ -18,6 +18,8 @@ from herringbone.analysis.twin.condensed.solution import Solution
 from herringbone.analysis.twin.condensed.system import Condensed
 
 _DEGREE, _CLOSE = 3, 1e-3
+"""Of steps, and the residual whose correction solves one: half a step begins so much nearer to its
+solution that what is left falls with the steps' own error."""
 _LONGEST = 100e-6
 """Longest base step [s]."""
 _SAME = 1e-10

@@ -78,12 +78,13 @@ class _Given:
         self._twin = twin
         self._block, self._seen = twin.block.copy(), list(seen)
         self._first = twin.layout.block_first
+        self._counts = [i.component.declaration.state_count for i in twin.instances]
         self.laws = {p: found for p, i in enumerate(twin.instances) if (found := laws_of(i))}
         for p, laws in self.laws.items():
             laws.prepare(self._own(p))
         given = [(int(np.searchsorted(self._first, i, "right")) - 1, i) for i in open_inputs]
         driven = {p for p, _ in given}
-        sources = [p for p in twin.network.sources if not self._states(p) and p not in driven]
+        sources = [p for p in twin.network.sources if not self._counts[p] and p not in driven]
         self._moving = [
             p
             for p in (*twin.network.sources, *twin.network.bodies, *twin.network.elements)
@@ -102,9 +103,6 @@ class _Given:
     def _own(self, p: int) -> np.ndarray:
         return self._block[self._first[p] : self._first[p + 1]]
 
-    def _states(self, p: int) -> int:
-        return self._twin.instances[p].component.declaration.state_count
-
     def _places(self, c: Connection) -> tuple[int, int]:
         indices = [
             self._twin.instances[p].component.declaration.index for p in (c.target, c.source)
@@ -120,8 +118,8 @@ class _Given:
         """
         twin, block = self._twin, self._block
         firsts = twin.layout.state_first
-        for p in range(len(twin.instances)):
-            block[self._first[p] : self._first[p] + self._states(p)] = x[firsts[p] : firsts[p + 1]]
+        for first, begin, count in zip(self._first, firsts, self._counts, strict=False):
+            block[first : first + count] = x[begin : begin + count]
         for (_, place), value in zip(self.signals, u[self.values :], strict=True):
             block[place] = value
         given, at = {}, 0
@@ -136,7 +134,7 @@ class _Given:
         for p in self._moving:
             if p not in twin.network.elements:
                 self._feed(p)
-            if self._states(p):
+            if self._counts[p]:
                 self._evaluate(p, given, dx[firsts[p] : firsts[p + 1]], rates=True)
         z = self._gathered()
         for p in self._moving if self._seen else ():

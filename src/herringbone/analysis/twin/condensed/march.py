@@ -2,7 +2,16 @@
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.march_arrays import Calls, Fixed, Samples, State, Work
+from herringbone.analysis.twin.condensed.laws import call_laws, call_signals
+from herringbone.analysis.twin.condensed.march_arrays import (
+    Arrays,
+    Asked,
+    Calls,
+    Fixed,
+    Samples,
+    State,
+    Work,
+)
 from herringbone.analysis.twin.condensed.products import (
     add_of_inputs,
     add_of_state,
@@ -10,7 +19,6 @@ from herringbone.analysis.twin.condensed.products import (
     coordinates,
 )
 from herringbone.analysis.twin.condensed.rungs import Rungs
-from herringbone.cosim.loops.calls import c_call
 from herringbone.kernels.compiling.jit import inlined, kernel
 from herringbone.kernels.compiling.views import matrix
 from herringbone.kernels.condensed.channels import inputs, predict
@@ -22,7 +30,7 @@ from herringbone.kernels.condensed.collocation import (
     spread,
     turned,
 )
-from herringbone.kernels.condensed.correction import Room, correct
+from herringbone.kernels.condensed.correction import correct
 from herringbone.kernels.condensed.modal import copy, turn
 
 DONE, NOT_CONVERGED, NOT_FINITE, RUNG_WANTED = 0, 1, 2, 3
@@ -34,98 +42,18 @@ STEPS, HALVINGS, EVALUATIONS, BENDS = 0, 1, 2, 3
 """What is counted; bends: shortest steps in which a law bends."""
 BASE, INSIDE, RUNG, LAST, KEPT, TRIED = 0, 1, 2, 3, 4, 5
 """Places of a state, see `State.place`."""
-_REAL = 8
-
-_call_law = c_call("address", "address", "address", "address", "address")
-_call_signals = c_call("address", "real")
 
 
 @inlined
-def call_laws(
-    calls: Calls, t: float, z: np.ndarray, f: np.ndarray, k: np.ndarray, e: np.ndarray
-) -> None:
-    """Values, tangents and indicators of all laws at their arguments and a time [s]."""
-    blocks = calls.blocks.ctypes.data
-    for p in range(calls.law.size):
-        if calls.clock[p] >= 0:
-            calls.blocks[calls.clock[p]] = t
-        _call_law(
-            calls.law[p],
-            (
-                blocks + _REAL * calls.block[p],
-                z.ctypes.data + _REAL * calls.argument[p],
-                f.ctypes.data + _REAL * calls.value[p],
-                k.ctypes.data + _REAL * calls.tangent[p],
-                e.ctypes.data + _REAL * calls.indicator[p],
-            ),
-        )
-
-
-@kernel
-def call_sources(calls: Calls, t: float) -> None:
-    """Let the sources write their signals at a time [s] into their blocks."""
-    for k in range(calls.source.size):
-        _call_signals(
-            calls.source[k], (calls.blocks.ctypes.data + _REAL * calls.source_block[k], t)
-        )
-
-
-@inlined
-def _signals(calls: Calls, fixed: Fixed, state: State, t: float, h: float, u: np.ndarray) -> None:
-    """Write the signals at the nodes of a step from t [s] on, and the last channel.
+def _solve_step(on: Arrays, rungs: Rungs, rung: int, t: float, h: float) -> bool:
+    """Find the laws' inputs of a step from those in `on.work.u`; False if that does not end.
 
     Args:
-        calls, fixed, state: of the march.
+        on: with rows, in its room, without the laws' inputs.
+        rungs, rung: of the step.
         t, h: start and length of the step [s].
-        u: (channels, nodes).
     """
-    count, channels = fixed.nodes.size, len(u)
-    own = u[channels - 1 - calls.signal.size :]
-    if calls.source.size > 0:
-        for i in range(count):
-            call_sources(calls, t + h * fixed.nodes[i])
-            for k in range(calls.signal.size):
-                if calls.signal[k] >= 0:
-                    own[k, i] = calls.blocks[calls.signal[k]]
-    for k in range(calls.signal.size):
-        if calls.source.size > 0 and calls.signal[k] >= 0:
-            continue
-        curve = state.curve[k]
-        since, last = t - curve[0], curve.size - 1
-        while last > 1 and curve[last] == 0.0:
-            last -= 1
-        for i in range(count):
-            now, value = since + h * fixed.nodes[i], curve[last]
-            for j in range(last - 1, 0, -1):
-                value = curve[j] + now * value
-            own[k, i] = value
-    for i in range(count):
-        own[calls.signal.size, i] = fixed.one
-
-
-@inlined
-def _solve_step(
-    calls: Calls,
-    fixed: Fixed,
-    rungs: Rungs,
-    rung: int,
-    table: Table,
-    nodes: Nodes,
-    state: State,
-    t: float,
-    h: float,
-    work: Work,
-    room: Room,
-) -> bool:
-    """Find the laws' inputs of a step from those in `work.u`; False if the iteration does not end.
-
-    Args:
-        calls, fixed, rungs, table, nodes, state: of the march.
-        rung: of the step.
-        t, h: start and length of the step [s].
-        work: with rows without the laws' inputs.
-        room: for corrections.
-    """
+    calls, fixed, table, nodes, room, state, work = on
     inner, values = len(nodes.z), table.unknown.size
     channels = table.least.size
     u, v = matrix(work.u, 0, channels, inner + 1), matrix(work.v, 0, channels, inner + 1)
@@ -140,14 +68,8 @@ def _solve_step(
         else:
             copy(rows[: z.size], z)
         for i in range(inner):
-            call_laws(
-                calls,
-                t + h * fixed.nodes[i + 1],
-                nodes.z[i],
-                nodes.f[i],
-                nodes.k[i],
-                nodes.e[i + 1],
-            )
+            now = t + h * fixed.nodes[i + 1]
+            call_laws(calls, now, nodes.z[i], nodes.f[i], nodes.k[i], nodes.e[i + 1])
         state.counted[EVALUATIONS] += 1
         residual = residuals(table, nodes, u, room.r)
         correct(table, nodes, rungs.along[rung], room)
@@ -205,46 +127,29 @@ def _advance(fixed: Fixed, table: Table, rungs: Rungs, rung: int, work: Work, st
 
 
 @inlined
-def march_in(
-    calls: Calls,
-    fixed: Fixed,
-    rungs: Rungs,
-    table: Table,
-    nodes: Nodes,
-    room: Room,
-    state: State,
-    samples: Samples,
-    work: Work,
-    t0: float,
-    steps: int,
-) -> int:
+def march_in(on: Arrays, asked: Asked) -> int:
     """Take base steps until all of them are taken, or every time that is wanted is passed.
 
     Where a law bends inside a step, or its iteration does not end, the step is halved, down to the
     last rung; there it is taken with the bend inside.
 
     Args:
-        calls, fixed, rungs, table, nodes, room: of the system.
-        state: where it stands; changed.
-        samples: filled from the place on that stands in the state.
-        work: room.
-        t0: start of base step 0 [s].
-        steps: base steps in all.
+        on: of the system; where its state stands is changed.
+        asked: the samples are filled from the place on that stands in the state.
 
     Returns:
         A status; but after DONE, `state` is at the start of the step. After RUNG_WANTED, go on when
         the rung at which it stands is made.
     """
-    if len(nodes.z) == _USUAL:
-        known, own = _of_degree(_USUAL, fixed, nodes)
-        return _march(calls, known, rungs, table, own, room, state, samples, work, t0, steps)
-    return _march(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)
+    if len(on.nodes.z) == _USUAL:
+        return _march(_of_degree(_USUAL, on), asked)
+    return _march(on, asked)
 
 
 @inlined
-def _of_degree(degree: int, fixed: Fixed, nodes: Nodes) -> tuple[Fixed, Nodes]:
+def _of_degree(degree: int, on: Arrays) -> Arrays:
     """The same arrays. Loops over the nodes of a step get short where the compiler knows them."""
-    count = degree + 1
+    fixed, nodes, count = on.fixed, on.nodes, degree + 1
     known = Fixed(
         fixed.offset,
         fixed.ahead,
@@ -261,23 +166,13 @@ def _of_degree(degree: int, fixed: Fixed, nodes: Nodes) -> tuple[Fixed, Nodes]:
         matrix(nodes.e, 0, count, nodes.e.shape[1]),
         nodes.start,
     )
-    return known, own
+    return Arrays(on.calls, known, on.table, own, on.room, on.state, on.work)
 
 
 @inlined
-def _march(
-    calls: Calls,
-    fixed: Fixed,
-    rungs: Rungs,
-    table: Table,
-    nodes: Nodes,
-    room: Room,
-    state: State,
-    samples: Samples,
-    work: Work,
-    t0: float,
-    steps: int,
-) -> int:
+def _march(on: Arrays, asked: Asked) -> int:
+    calls, fixed, table, nodes, _room, state, work = on
+    rungs, samples, t0, steps = asked
     last = rungs.lengths.size - 1
     shortest, per_step = rungs.lengths[last], 1 << last
     count, values, place = len(nodes.e), table.unknown.size, state.place
@@ -289,20 +184,20 @@ def _march(
         if not rungs.made[rung]:
             return RUNG_WANTED
         t, h = t0 + (place[BASE] * per_step + place[INSIDE]) * shortest, rungs.lengths[rung]
-        _signals(calls, fixed, state, t, h, u)
+        call_signals(calls, fixed, state, t, h, u)
         if place[TRIED] == 1:
             place[TRIED] = 0
             for value in range(values):
                 u[value, 0] = before[value, count - 1]
         else:
-            on, apart = place[LAST] >= 0, len(fixed.ahead) // 2
-            first = (apart + (rung - place[LAST]) * on) * count * count
-            predict(matrix(fixed.ahead, first, count, count), on, values, before, u)
+            follows, apart = place[LAST] >= 0, len(fixed.ahead) // 2
+            first = (apart + (rung - place[LAST]) * follows) * count * count
+            predict(matrix(fixed.ahead, first, count, count), follows, values, before, u)
         copy(fixed.offset, free)
         add_of_state(rungs, rung, state.q[: coordinates(rungs)], free)
         given = inputs(fixed.nodes, table.least, u, values, channels, v, work.chosen)
         add_of_inputs(rungs, rung, work.v, work.chosen, given, free)
-        solved = _solve_step(calls, fixed, rungs, rung, table, nodes, state, t, h, work, room)
+        solved = _solve_step(on, rungs, rung, t, h)
         bent = solved and turned(nodes)
         if rung < last and (bent or not solved):
             place[RUNG], place[LAST] = rung + 1, -1 if not solved else place[LAST]
@@ -334,18 +229,6 @@ def _march(
 
 
 @kernel
-def march(
-    calls: Calls,
-    fixed: Fixed,
-    rungs: Rungs,
-    table: Table,
-    nodes: Nodes,
-    room: Room,
-    state: State,
-    samples: Samples,
-    work: Work,
-    t0: float,
-    steps: int,
-) -> int:
+def march(on: Arrays, asked: Asked) -> int:
     """As `march_in`, called from Python."""
-    return march_in(calls, fixed, rungs, table, nodes, room, state, samples, work, t0, steps)
+    return march_in(on, asked)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from herringbone.analysis.twin.condensed.rungs import Rungs
 from herringbone.kernels.condensed.collocation import Nodes, Sharp, Table
 from herringbone.kernels.condensed.correction import Room
 
@@ -100,6 +101,7 @@ class Arrays(NamedTuple):
     nodes: Nodes
     room: Room
     state: State
+    work: Work
 
 
 class Samples(NamedTuple):
@@ -116,3 +118,19 @@ class Samples(NamedTuple):
     held: np.ndarray
     since: np.ndarray
     length: np.ndarray
+
+
+class Asked(NamedTuple):
+    """What a march is asked.
+
+    Attributes:
+        rungs: matrices of its base step, and of shorter ones.
+        samples: what is to be kept; filled.
+        t0: start of base step 0 [s].
+        steps: base steps in all.
+    """
+
+    rungs: Rungs
+    samples: Samples
+    t0: float
+    steps: int

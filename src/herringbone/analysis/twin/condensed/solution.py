@@ -1,6 +1,7 @@
 """One solution of a condensed system, piece by piece between breakpoints."""
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from herringbone.analysis.twin.condensed.march import (
 )
 from herringbone.analysis.twin.condensed.march_arrays import (
     Arrays,
+    Asked,
     Fixed,
     Samples,
     State,
@@ -79,7 +81,6 @@ class Solution:
 
     Attributes:
         state: where it stands.
-        work: room of the march.
     """
 
     def __init__(
@@ -126,7 +127,7 @@ class Solution:
             np.zeros(4, dtype=np.int64),
         )
         self._reference = np.zeros(channels)
-        self.work = _room_of(self._fixed, self.state)
+        self._work = _room_of(self._fixed, self.state)
         self._held, self._lengths = np.zeros((0, 0)), np.zeros((2, 0))
         self._rungs: dict[float, Rungs] = {}
         self._shared: dict[float, Rungs] = {}
@@ -135,8 +136,9 @@ class Solution:
     def arrays(self) -> Arrays:
         """All that a march works on but matrices of steps and samples."""
         return Arrays(
-            self._calls, self._fixed, self._table, self._nodes, self._corrections, self.state
-        )
+            self._calls, self._fixed, self._table, self._nodes, self._corrections, self.state,
+            self._work,
+        )  # fmt: skip
 
     def saved(self) -> dict[str, np.ndarray]:
         """What is needed to go on with the same bits; copies."""
@@ -206,13 +208,11 @@ class Solution:
             samples.held[:] = np.concatenate([self.state.q, self._ends])
         else:
             rungs = self.rungs_of(h)
+            asked = Asked(rungs, samples, t0, round((t1 - t0) / h))
             status = RUNG_WANTED
             while status == RUNG_WANTED:
                 self.make(rungs, int(self.state.place[RUNG]))
-                status = march(
-                    self._calls, self._fixed, rungs, self._table, self._nodes, self._corrections,
-                    self.state, samples, self.work, t0, round((t1 - t0) / h),
-                )  # fmt: skip
+                status = march(self.arrays, asked)
             if status != DONE:
                 self._fail(status, t0, rungs)
         return Samples(*(array[:count] for array in samples))
@@ -353,6 +353,7 @@ def _room_of(fixed: Fixed, state: State) -> Work:
     )
 
 
+@cache
 def _ahead(degree: int, of: int) -> np.ndarray:
     """Values of a step, continued over one of 2^-d of its length, d from -HALVINGS on.
 

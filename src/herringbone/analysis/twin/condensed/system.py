@@ -63,6 +63,12 @@ class Condensed:
         return np.concatenate(rows)
 
     @cached_property
+    def _means(self) -> np.ndarray:
+        """(tangents,) mean tangents of all laws."""
+        means = [laws.mean(instance.block) for instance, laws in self._parts()]
+        return np.concatenate([np.zeros(0), *means])
+
+    @cached_property
     def stiff(self) -> tuple[int, ...]:
         """Which of all laws' values are unknowns of a step."""
         every = [i in laws.stiff for _, laws in self._parts() for i in range(len(laws.values))]
@@ -93,11 +99,14 @@ class Condensed:
 
     def signals(self, t: float) -> np.ndarray:
         """Signals (signals,) at a time [s]; of open inputs the values that the twin has."""
-        blocks, first = self.twin.block.copy(), self.twin.layout.block_first
-        for p in {p for p, _ in self.equations.of_sources}:
-            own = blocks[first[p] : first[p + 1]]
-            self.twin.instances[p].component.kernels.out(own, t)
-        return blocks[[place for _, place in self.equations.signals]]
+        twin, first = self.twin, self.twin.layout.block_first
+        own = {p: twin.block[first[p] : first[p + 1]].copy() for p, _ in self.equations.of_sources}
+        for p, block in own.items():
+            twin.instances[p].component.kernels.out(block, t)
+        return np.array([
+            own[p][place - first[p]] if p in own else twin.block[place]
+            for p, place in self.equations.signals
+        ], dtype=float)  # fmt: skip
 
     def calls(self) -> Calls:
         """Addresses, and fresh blocks for them to work on.
@@ -142,10 +151,8 @@ class Condensed:
         unknown = np.full(calls.value[-1], -1)
         unknown[list(self.stiff)] = np.arange(len(self.stiff))
         value: list[int] = []
-        mean: list[float] = []
-        for first, (instance, laws) in zip(calls.value, self._parts(), strict=False):
+        for first, (_, laws) in zip(calls.value, self._parts(), strict=False):
             value += [int(first) + v for v in laws.stiff]
-            mean += laws.mean(instance.block).tolist()
         rows, arguments = np.nonzero(self.modes.tangent)
         first = np.searchsorted(rows, np.arange(len(self.modes.tangent) + 1))
         return Table(
@@ -153,7 +160,7 @@ class Condensed:
             arguments.astype(np.int64),
             self.modes.tangent[rows, arguments],
             np.array(value, dtype=np.int64),
-            np.array(mean, dtype=float),
+            self._means,
             unknown,
             np.full(calls.value[-1], np.finfo(float).tiny),
             np.zeros(self.equations.channels),

@@ -116,7 +116,6 @@ class CorePart:
         )  # fmt: skip
         for key, tuple_ in arrays._asdict().items():
             write(self._memory, key, tuple_, self._kept)
-        write(self._memory, "work", run.work, self._kept)
         write(self._memory, "sent", self._sent.shown, self._kept)
         write(self._memory, "others", self._others.shown, self._kept)
         write(self._memory, "signals", self._signals, self._kept)

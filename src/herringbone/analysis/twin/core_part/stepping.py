@@ -21,6 +21,7 @@ from herringbone.analysis.twin.condensed.march import (
     begin,
     march_in,
 )
+from herringbone.analysis.twin.condensed.march_arrays import Arrays, Asked
 from herringbone.analysis.twin.condensed.solution import HALVINGS as SHORTEST
 from herringbone.analysis.twin.core_part.memory import PLACES, readers
 from herringbone.cosim.loops.calls import c_call
@@ -106,11 +107,11 @@ def advance(m: np.ndarray, t: float, h: float) -> int:
     halvings = state.counted[HALVINGS]
     status = RUNG_WANTED
     while status == RUNG_WANTED:
-        status = march_in(
-            _calls_at(m, _CALLS), _fixed_at(m, _FIXED), _rungs_at(m, _RUNGS),
-            _table_at(m, _TABLE), _nodes_at(m, _NODES), _room_at(m, _ROOM), state, samples,
-            _work_at(m, _WORK), t, flags[PER_STEP],
+        on = Arrays(
+            _calls_at(m, _CALLS), _fixed_at(m, _FIXED), _table_at(m, _TABLE), _nodes_at(m, _NODES),
+            _room_at(m, _ROOM), state, _work_at(m, _WORK),
         )  # fmt: skip
+        status = march_in(on, Asked(_rungs_at(m, _RUNGS), samples, t, flags[PER_STEP]))
         if status == RUNG_WANTED and ask(flags[ASK], (FOR_RUNG, float(place[RUNG]))) != ANSWERED:
             return DISCARD
     flags[STATUS] = status

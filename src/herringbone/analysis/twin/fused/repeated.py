@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from herringbone.analysis.twin.condensed.march import call_laws
+from herringbone.analysis.twin.condensed.laws import call_laws
 from herringbone.analysis.twin.condensed.march_arrays import Arrays
 from herringbone.analysis.twin.condensed.products import (
     add_of_inputs,
