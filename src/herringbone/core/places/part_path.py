@@ -116,7 +116,7 @@ def endings(parts: Iterable[PartPath], column: str) -> tuple[str, ...]:
 def in_groups(
     parts: Sequence[PartPath], columns: Sequence[str], groups: Mapping[str, Sequence[str]]
 ) -> dict[str, list[str]]:
-    """Columns of each group, in their order; empty where none matches.
+    """Columns of each group, in their order; without the groups of which no column is there.
 
     Args:
         parts: whose variables they are.
@@ -124,7 +124,8 @@ def in_groups(
         groups: patterns by group.
     """
     called = {name: endings(parts, name) for name in columns}
-    return {
+    found = {
         group: [name for name, own in called.items() if matches_any(own, patterns)]
         for group, patterns in groups.items()
     }
+    return {group: names for group, names in found.items() if names}

@@ -206,8 +206,8 @@ class PreparedAdaptive(PreparedNodes):
         found = channel_outputs(self.network, self.channels)
         self._downgrades += tuple(
             f"no part takes anything of '{group}': the step is not measured by these channels"
-            for group, outputs in found.items()
-            if not outputs.size
+            for group in self.channels
+            if group not in found
         )
         measured = measured_signals(nodes, held, list(found.values()))
         adaptive = new_adaptive(
