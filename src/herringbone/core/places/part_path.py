@@ -1,7 +1,7 @@
 """Canonical names of parts: the path through the systems that contain them.
 
-A part of the system itself is `gear_mesh`; one of the nested system `gearbox` is
-`gearbox.gear_mesh`, to any depth. Files and results have the whole path; what people write may be
+A part of the system itself is `gears`; one of the nested system `gearbox` is `gearbox.gears`, to
+any depth. Files and results have the whole path; what people write may be
 any ending of it that is not ambiguous.
 """
 
